@@ -1,0 +1,1 @@
+"""Comparison of the LTCA with closed forms, other codes, the paper and the finite-element solution."""
