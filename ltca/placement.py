@@ -1,0 +1,111 @@
+"""Where pins, rollers and holes stand and how large they are, errors included.
+
+Each part is given in the frame of the body that carries it, as complex numbers in mm: wheel pins in the
+wheel frame, holes in the disc frame, shaft pins in the fixed frame, rollers by their cage angle. Numbering
+starts at 0 and runs counter-clockwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive import Drive, PlacementErrors
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+def _filled(values: Sequence[float], count: int) -> FloatArray:
+    return np.array(values, dtype=float) if len(values) else np.zeros(count)
+
+
+def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
+    ray = np.exp(2j * np.pi * np.arange(count) / count)
+    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * ray)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Placement:
+    """Places and radii of all pins, rollers and holes.
+
+    Attributes
+    ----------
+    wheel_pin_centres : array of complex, shape (z_P,)
+        In the wheel frame, mm.
+    wheel_pin_radii : array of float, shape (z_P,)
+        mm.
+    hole_centres : array of complex, shape (z_PS,)
+        In the disc frame, mm.
+    hole_radii : array of float, shape (z_PS,)
+        With the pin-hole clearance, mm.
+    shaft_pin_centres : array of complex, shape (z_PS,)
+        In the fixed frame, mm.
+    shaft_pin_radii : array of float, shape (z_PS,)
+        mm.
+    roller_cage_angles : array of float, shape (n_BR,)
+        Angle of each roller in the cage, rad.
+    roller_radii : array of float, shape (n_BR,)
+        mm.
+    inner_race_radius, bore_radius : float
+        r_i, and r_o with half the bearing clearance, mm.
+    eccentricity : float
+        e, mm.
+    cage_speed : float
+        Cage angle by crank angle, r_i/(r_i + r_o) with the nominal r_o.
+    reduction_ratio : float
+        u.
+    """
+
+    wheel_pin_centres: ComplexArray
+    wheel_pin_radii: FloatArray
+    hole_centres: ComplexArray
+    hole_radii: FloatArray
+    shaft_pin_centres: ComplexArray
+    shaft_pin_radii: FloatArray
+    roller_cage_angles: FloatArray
+    roller_radii: FloatArray
+    inner_race_radius: float
+    bore_radius: float
+    eccentricity: float
+    cage_speed: float
+    reduction_ratio: float
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> Placement:
+        """Return the places of a drive's parts."""
+        wheel, bearing, shaft = drive.pin_wheel, drive.crank_bearing, drive.pin_shaft
+        holes = shaft.number_of_pins
+        rollers = bearing.number_of_rollers
+        pitch_radius = bearing.inner_race_radius + bearing.roller_radius
+        pocket_error = _filled(bearing.roller_errors.tangential, rollers) / pitch_radius
+        return cls(
+            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
+            wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
+            hole_centres=_circle(shaft.pin_circle_radius, holes, drive.disc.hole_errors),
+            hole_radii=drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, holes),
+            shaft_pin_centres=_circle(shaft.pin_circle_radius, holes, shaft.pin_errors),
+            shaft_pin_radii=shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, holes),
+            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error,
+            roller_radii=bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers),
+            inner_race_radius=bearing.inner_race_radius,
+            bore_radius=drive.bore_radius,
+            eccentricity=drive.crank.eccentricity,
+            cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
+            reduction_ratio=drive.reduction_ratio,
+        )
+
+    def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return the centre of inner race and cage, e·e^{iφ_C}, in the fixed frame, mm (Eq. 47)."""
+        return np.asarray(self.eccentricity * np.exp(1j * np.asarray(crank_angle)))
+
+    def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
+        """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, n_BR)."""
+        return self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles
+
+    def wheel_rotation(self, crank_angle: FloatArray) -> FloatArray:
+        """Return φ_P = φ_C/u, the ideal rotation of the wheel, rad."""
+        return np.asarray(crank_angle) / self.reduction_ratio

@@ -1,0 +1,98 @@
+"""Quantities of the drive file: plain numbers are mm, N, MPa, N·mm, rad; a text may carry another unit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from pydantic import BeforeValidator
+from pydantic_core import PydanticCustomError
+
+UNIT_LABELS = {"N*mm": "N·mm", "N/mm": "N/mm", "dimensionless": ""}
+
+
+def label(unit: str) -> str:
+    """Return the printed form of a unit, e.g. ``N·mm`` for ``N*mm``."""
+    return UNIT_LABELS.get(unit, unit)
+
+
+def _number(value: Any, unit: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise PydanticCustomError("quantity", "must be a number{unit}", {"unit": _in(unit)})
+    if not isinstance(value, str):
+        return float(value)
+    # pint costs half a second to import: only files that carry units in texts pay for it.
+    import pint
+
+    try:
+        quantity = _registry().Quantity(value)
+        return float(quantity.to(unit).magnitude)
+    except pint.DimensionalityError as error:
+        raise PydanticCustomError(
+            "quantity", "must have the unit {unit} or one that converts to it", {"unit": label(unit) or "1"}
+        ) from error
+    except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, SyntaxError) as error:
+        raise PydanticCustomError(
+            "quantity",
+            'is not a quantity; write a number{unit} or a text like "{example}"',
+            {"unit": _in(unit), "example": f"12.5 {unit}".replace("*", " ")},
+        ) from error
+
+
+_REGISTRY: list[Any] = []
+
+
+def _registry() -> Any:
+    if not _REGISTRY:
+        import pint
+
+        _REGISTRY.append(pint.UnitRegistry(cache_folder=None))
+    return _REGISTRY[0]
+
+
+def _in(unit: str) -> str:
+    return f" in {label(unit)}" if label(unit) else ""
+
+
+def quantity(
+    unit: str,
+    *,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+) -> BeforeValidator:
+    """Validate a quantity: convert texts, refuse what is not finite or out of bounds.
+
+    Parameters
+    ----------
+    unit : str
+        The unit inside the suite: ``mm``, ``N``, ``MPa``, ``N*mm``, ``N/mm``, ``rad`` or ``dimensionless``.
+    gt, ge, lt, le : float, optional
+        Bounds (greater than, at least, less than, at most) in that unit.
+
+    Returns
+    -------
+    pydantic.BeforeValidator
+        To be used in ``Annotated[float, quantity("mm", gt=0)]``.
+    """
+    bounds = [("greater than", gt), ("at least", ge), ("less than", lt), ("at most", le)]
+
+    def check(value: Any) -> float:
+        number = _number(value, unit)
+        if not math.isfinite(number):
+            raise PydanticCustomError("quantity", "must be finite{unit}", {"unit": _in(unit)})
+        holds = (
+            (gt is None or number > gt)
+            and (ge is None or number >= ge)
+            and (lt is None or number < lt)
+            and (le is None or number <= le)
+        )
+        if not holds:
+            text = " and ".join(f"{word} {bound:g}" for word, bound in bounds if bound is not None)
+            raise PydanticCustomError(
+                "quantity", "must be {text}{unit}", {"text": text, "unit": f" {label(unit)}".rstrip()}
+            )
+        return number
+
+    return BeforeValidator(check)
