@@ -52,9 +52,7 @@ def _array_lengths(drive: Drive) -> Iterator[str]:
         ),
     ]
     # A placement error is a deviation; beyond a tenth of the part's radius it is a different design.
-    bound = 0.1 * min(
-        drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius, drive.pin_shaft.pin_radius
-    )
+    bound = 0.1 * min(drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius, drive.pin_shaft.pin_radius)
     for path, errors, count, things in parts:
         for name in ("radial", "tangential", "diameter"):
             values = getattr(errors, name, ())

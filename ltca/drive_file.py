@@ -89,9 +89,7 @@ def load_drive(source: str | Path) -> DriveFile:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise DriveError(
-            [
-                f"no such file; give a TOML file or 'paper' ('cyclo init {path.name}' writes a copy to start from)"
-            ],
+            [f"no such file; give a TOML file or 'paper' ('cyclo init {path.name}' writes a copy to start from)"],
             str(source),
         ) from error
     except (OSError, UnicodeDecodeError) as error:
@@ -127,9 +125,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
         drives[NOMINAL_CASE] = base
         contradictions[NOMINAL_CASE] = find_contradictions(base)
     # A contradiction in every case is one of the common part: said once.
-    common = [
-        p for p in next(iter(contradictions.values()), []) if all(p in c for c in contradictions.values())
-    ]
+    common = [p for p in next(iter(contradictions.values()), []) if all(p in c for c in contradictions.values())]
     problems += common
     for name, found in contradictions.items():
         problems += [f"case {name}: {problem}" for problem in found if problem not in common]
