@@ -13,12 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive import Drive, contact_modulus
-from ltca.line_contact import LineContactLaw, ProfiledLineContactLaw, law_for_profile
+from ltca.line_contact import LineContactLaw
 from ltca.pairs import ContactGeometry, FlankMotion, PairMotion
 from ltca.roller_series import RollerLaws, RollerState, balance_rollers
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+
+def law_for_profile(profile, *, length, radius, contact_modulus, effective_radii):  # TEMPORARY
+    return LineContactLaw(length, contact_modulus)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +100,7 @@ class HalfSpaceCompliance:
     ----------
     geometry : ContactGeometry
         The contact geometry of the drive.
-    pin_law : LineContactLaw or ProfiledLineContactLaw
+    pin_law : LineContactLaw
         Law of wheel pin and flank.
     roller_laws : RollerLaws
         Laws of the rollers.
@@ -105,7 +109,7 @@ class HalfSpaceCompliance:
     """
 
     geometry: ContactGeometry
-    pin_law: LineContactLaw | ProfiledLineContactLaw
+    pin_law: LineContactLaw
     roller_laws: RollerLaws
     hole_stiffness: float
 

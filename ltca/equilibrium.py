@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance import ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
+from ltca.tooth_contact import WHEEL_ANGLE, first_contact
 
 FloatArray = NDArray[np.float64]
 
@@ -79,7 +80,7 @@ def solve_equilibrium(
     wheel_moment : float or array, shape (positions,)
         External moment on the wheel, ccw positive, N·mm.
     start : array, shape (positions, 4), optional
-        Poses to start from; by default the disc on the inner-race centre and the wheel turned back by the load.
+        Poses to start from; by default the disc on the inner-race centre and the wheel turned to first contact.
 
     Returns
     -------
@@ -97,6 +98,10 @@ def solve_equilibrium(
     load = np.abs(moment) / lever[3]
     if start is None:
         start = np.zeros((angle.size, 4))
+        sense = np.where(moment < 0.0, -1, 1)
+        for value in np.unique(sense):
+            rows = sense == value
+            start[rows, WHEEL_ANGLE], _ = first_contact(model.geometry, angle[rows], WHEEL_ANGLE, int(value))
     search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
     return search.run()
 

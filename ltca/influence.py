@@ -63,9 +63,7 @@ def love_displacement(
     ----------
     A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; Johnson, Contact Mechanics (1985), Eq. 3.25.
     """
-    x, y, a, b = np.broadcast_arrays(
-        *(np.asarray(v, dtype=float) for v in (x, y, half_length_x, half_length_y))
-    )
+    x, y, a, b = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, half_length_x, half_length_y)))
     total = np.zeros(x.shape)
     # Sum of signed corner terms X asinh(Y/|X|) + Y asinh(X/|Y|), paired so that far points do not cancel:
     # asinh differences are formed from one quotient instead of two large logarithms.
@@ -190,9 +188,7 @@ def lagged_influence(cell_width: float, lag_count: int, y_edges: Array, *, mirro
     for sign in (1.0, -1.0) if mirrored else (1.0,):
         edge_distance = y_edges[:, None] - sign * y_edges[None, :]
         potential = _mean_line_potential(lags, cell_width, edge_distance)
-        block = sign * (
-            potential[:, 1:, :-1] - potential[:, 1:, 1:] - potential[:, :-1, :-1] + potential[:, :-1, 1:]
-        )
+        block = sign * (potential[:, 1:, :-1] - potential[:, 1:, 1:] - potential[:, :-1, :-1] + potential[:, :-1, 1:])
         distance = np.broadcast_to(centres[:, None] - sign * centres[None, :], block.shape)
         gap = np.maximum(
             np.abs(distance) - 0.5 * (lengths[:, None] + lengths[None, :]), lags[:, None, None] - cell_width
@@ -236,9 +232,7 @@ def assemble_influence_matrix(
     count, width = widths.size, float(np.mean(widths))
     if not np.allclose(widths, width, rtol=1e-6, atol=0.0):
         raise ValueError("the x edges of an influence grid must be uniform")
-    if (symmetric_x and abs(x_edges[0]) > 1e-9 * width) or (
-        symmetric_y and abs(y_edges[0]) > 1e-9 * y_edges[-1]
-    ):
+    if (symmetric_x and abs(x_edges[0]) > 1e-9 * width) or (symmetric_y and abs(y_edges[0]) > 1e-9 * y_edges[-1]):
         raise ValueError("the edges of a symmetric direction must start at 0")
     lags = lagged_influence(width, 2 * count if symmetric_x else count, y_edges, mirrored=symmetric_y)
     ny = y_edges.size - 1

@@ -123,9 +123,7 @@ class SlendernessCurve:
             decay = np.exp(-t)
             whole = value * np.exp(rate * t + bend * (t - 1.0 + decay))
             slope = rate + bend * (1.0 - decay)
-            for result, part in zip(
-                results, (whole, whole * slope, whole * (slope**2 + bend * decay)), strict=False
-            ):
+            for result, part in zip(results, (whole, whole * slope, whole * (slope**2 + bend * decay)), strict=False):
                 result[high] = part
         return tuple(results)
 
@@ -211,9 +209,7 @@ class LineContactLaw:
     contact_modulus: float
     table: LineContactTable = field(default_factory=line_contact_table)
 
-    def _place(
-        self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[Array, Array, NDArray[np.bool_]]:
+    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Approach (zero where open), X (harmless where open) and the mask of closed contacts."""
         delta = np.asarray(approach, dtype=float)
         radius = np.asarray(effective_radius, dtype=float)

@@ -281,9 +281,7 @@ def expected_half_width(length: float, effective_radius: float, approach: float)
     # b²/(ρδ) = 4/(2 ln(2λ/b̂) + 1), iterated; short patches tend to the footprint of the undeformed bodies, √2.
     ratio = 0.7
     for _ in range(20):
-        ratio = float(
-            np.sqrt(4.0 / (2.0 * np.log1p(2.0 * slenderness / ratio) + 1.0 + 1.0 / (1.0 + slenderness)))
-        )
+        ratio = float(np.sqrt(4.0 / (2.0 * np.log1p(2.0 * slenderness / ratio) + 1.0 + 1.0 / (1.0 + slenderness))))
     return min(ratio, 1.3) * scale
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.line_contact import LineContactLaw, ProfiledLineContactLaw
+from ltca.line_contact import LineContactLaw
 from ltca.pairs import RollerRays
 
 FloatArray = NDArray[np.float64]
@@ -28,14 +28,14 @@ class RollerLaws:
 
     Attributes
     ----------
-    inner, outer : LineContactLaw or ProfiledLineContactLaw
+    inner, outer : LineContactLaw
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (n_BR,)
         Effective radii of curvature, mm.
     """
 
-    inner: LineContactLaw | ProfiledLineContactLaw
-    outer: LineContactLaw | ProfiledLineContactLaw
+    inner: LineContactLaw
+    outer: LineContactLaw
     inner_radius: FloatArray
     outer_radius: FloatArray
 

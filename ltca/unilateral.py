@@ -101,9 +101,7 @@ def solve_unilateral_contact(
         if inside.size:
             factor, info = lapack.dpotrf(influence[np.ix_(inside, inside)], lower=1, clean=0, overwrite_a=1)
             if info != 0:
-                raise ConvergenceError(
-                    "the influence matrix is not positive definite on the contact cells", history
-                )
+                raise ConvergenceError("the influence matrix is not positive definite on the contact cells", history)
             solved, _ = lapack.dpotrs(factor, penetration[inside], lower=1)
             pressure[inside] = solved
             opening = influence[:, inside] @ solved - penetration
