@@ -76,11 +76,13 @@ def line_contact_table(
         slenderness = float(np.exp(-0.5 * place))
         half_width = expected_half_width(slenderness, 1.0, 1.0)
         for _ in range(2):
-            coarse = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
-            half_width = coarse.half_width
+            guess = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
+            half_width = guess.half_width
         # Both grids must cut the contact at the same place for their difference to extrapolate.
         coarse = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
-        fine = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells, half_width=half_width)
+        fine = solve_cylinder_patch(
+            slenderness, 1.0, 1.0, 1.0, cells=cells, half_width=half_width, start=coarse
+        )
         row[0] = (fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)) / slenderness
         row[1] = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
         row[2] = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
