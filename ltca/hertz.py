@@ -76,9 +76,7 @@ def cylinder_approach(
     diameter is the sum of both sides with their own half-widths (Eq. 5.58).
     """
     q, b, r = (np.asarray(value, dtype=float) for value in (line_load, half_width, radius))
-    return np.asarray(
-        q * (1.0 - poisson_ratio**2) / (np.pi * young_modulus) * (2.0 * np.log(4.0 * r / b) - 1.0)
-    )
+    return np.asarray(q * (1.0 - poisson_ratio**2) / (np.pi * young_modulus) * (2.0 * np.log(4.0 * r / b) - 1.0))
 
 
 def strip_approach(
@@ -122,9 +120,7 @@ class PlaneStress2D:
         return np.asarray(np.hypot(0.5 * (self.across - self.depthwise), self.shear))
 
 
-def line_contact_stress(
-    x: ArrayLike, depth: ArrayLike, half_width: float, peak_pressure: float
-) -> PlaneStress2D:
+def line_contact_stress(x: ArrayLike, depth: ArrayLike, half_width: float, peak_pressure: float) -> PlaneStress2D:
     """Stresses below a Hertz line contact in closed form (McEwen; Johnson Eq. 4.49).
 
     Parameters
@@ -220,16 +216,12 @@ def solve_point_contact(
         side = float(np.sqrt(approach * radius_small))
         peak = 2.0 * contact_modulus * side / (np.pi * radius_small)
         load = 2.0 / 3.0 * peak * np.pi * side**2
-        return PointContact(
-            load=load, approach=approach, half_axis_long=side, half_axis_short=side, peak_pressure=peak
-        )
+        return PointContact(load=load, approach=approach, half_axis_long=side, half_axis_short=side, peak_pressure=peak)
 
     def curvature_mismatch(log_ratio: float) -> float:
         square = np.exp(-2.0 * log_ratio)
         first, second = ellipk(1.0 - square), ellipe(1.0 - square)
-        return float(
-            np.log((second / square - first) / (first - second)) - np.log(radius_large / radius_small)
-        )
+        return float(np.log((second / square - first) / (first - second)) - np.log(radius_large / radius_small))
 
     # a/b lies between (R_large/R_small)^½ and R_large/R_small.
     log_radii = float(np.log(radius_large / radius_small))

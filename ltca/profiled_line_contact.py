@@ -19,12 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ltca.length_profile import LengthProfile
 from ltca.patch import PatchSolution, end_grading, solve_cylinder_patch
-from ltca.slenderness_curve import quintic_spline_pieces
+from ltca.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
 
 Array = NDArray[np.float64]
 
 LIGHTEST = 2.0e4
-HEAVIEST = 1.0
+HEAVIEST = 2.0
 _NODES = 49
 _CELLS = 16
 # Orders measured with both cell counts doubled: energy 3, fields 2 (smooth ends: no singularity spoils them).
@@ -118,7 +118,7 @@ def profiled_table(
     cells : int
         Cells over the half-width and the half-length on the finer of two grids.
     nodes : int
-        Nodes in X, from λ = L/√(ρδ) = 20000 to 1.
+        Nodes in X, from λ = L/√(ρδ) = 20000 to 2.
 
     Returns
     -------
@@ -130,9 +130,7 @@ def profiled_table(
         If the radii are not positive and in order.
     """
     if not 0.0 < smallest_radius <= largest_radius:
-        raise ValueError(
-            f"need 0 < smallest_radius <= largest_radius, got {smallest_radius}, {largest_radius}"
-        )
+        raise ValueError(f"need 0 < smallest_radius <= largest_radius, got {smallest_radius}, {largest_radius}")
     low, high = np.log(smallest_radius), np.log(largest_radius)
     # Three nodes per factor of e⁠: ln-polynomials then err by less than the grids (measured in the tests).
     count = 1 if high - low < 1e-9 else 3 + int(np.ceil(high - low))
@@ -140,7 +138,7 @@ def profiled_table(
     log_radii = np.sort(0.5 * (low + high) - 0.5 * (high - low) * np.cos(angles))
     places = np.linspace(-2.0 * np.log(LIGHTEST), -2.0 * np.log(HEAVIEST), nodes)
     length = profile.length
-    values = np.empty((count, 3, nodes))
+    values = np.empty((count, 4, nodes))
     for radius_values, log_radius in zip(values, log_radii, strict=True):
         radius = float(np.exp(log_radius))
         for column, place in enumerate(places):
@@ -148,23 +146,26 @@ def profiled_table(
             guess = solve_profiled_patch(profile, radius, 1.0, approach, cells=cells // 2)
             width = guess.half_width
             coarse = solve_profiled_patch(profile, radius, 1.0, approach, cells=cells // 2, half_width=width)
-            fine = solve_profiled_patch(
-                profile, radius, 1.0, approach, cells=cells, half_width=width, start=coarse
-            )
+            fine = solve_profiled_patch(profile, radius, 1.0, approach, cells=cells, half_width=width, start=coarse)
             energy = fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)
+            load = fine.load + _ENERGY_GAIN * (fine.load - coarse.load)
             pressure = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
             half_width = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
             radius_values[0, column] = -np.log(energy / (length * approach**2))
             radius_values[1, column] = np.log(pressure * np.sqrt(radius / approach))
             radius_values[2, column] = np.log(half_width / np.sqrt(radius * approach))
-    pieces = np.array([[quintic_spline_pieces(curve) for curve in rows] for rows in values])
+            # F = dU/dδ makes m' = 2 − F δ/U.
+            radius_values[3, column] = 2.0 - load * approach / energy
+    spacing = float(places[1] - places[0])
+    exponent = np.array([quintic_hermite_pieces(rows[0], rows[3] * spacing) for rows in values])
+    pieces = np.array([[quintic_spline_pieces(curve) for curve in rows[1:3]] for rows in values])
     return ProfiledTable(
         start=float(places[0]),
-        spacing=float(places[1] - places[0]),
+        spacing=spacing,
         log_radii=log_radii,
-        exponent=np.ascontiguousarray(pieces[:, 0]),
-        log_pressure=np.ascontiguousarray(pieces[:, 1]),
-        log_half_width=np.ascontiguousarray(pieces[:, 2]),
+        exponent=exponent,
+        log_pressure=np.ascontiguousarray(pieces[:, 0]),
+        log_half_width=np.ascontiguousarray(pieces[:, 1]),
     )
 
 
@@ -234,9 +235,7 @@ class ProfiledLineContactLaw:
         logarithm, _, _ = self._evaluate(self.table.log_half_width, place, radius)
         return np.asarray(np.sqrt(pressed * radius) * np.exp(logarithm))
 
-    def _place(
-        self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
         """Approach (zero where open), X (harmless where open), radius and the mask of closed contacts."""
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
