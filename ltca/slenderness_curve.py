@@ -113,7 +113,8 @@ def quintic_hermite_pieces(values: Array, slopes: Array) -> Array:
     system[inner, inner] = 18.0
     system[inner, inner + 1] = -3.0
     right[inner] = 60.0 * (rise[1:] - rise[:-1]) + 24.0 * (before[:-1] - after[1:])
-    # Fourth derivative: start −360 Δ + 192 y0' + 168 y1' + 36 y0'' − 24 y1'', end 360 Δ − 168 y0' − 192 y1' − 24 y0'' + 36 y1''.
+    # Fourth derivative: start −360 Δ + 192 y0' + 168 y1' + 36 y0'' − 24 y1'',
+    # end 360 Δ − 168 y0' − 192 y1' − 24 y0'' + 36 y1''; equal at the knots next to the ends.
     for row, knot in ((0, 1), (count - 1, count - 2)):
         system[row, knot - 1 : knot + 2] += (-24.0, 0.0, 24.0)
         left_end = 360.0 * rise[knot - 1] - 168.0 * before[knot - 1] - 192.0 * after[knot - 1]
