@@ -73,19 +73,21 @@ def love_displacement(
             size = np.abs(edge)
             safe = np.where(size > 0.0, size, 1.0)
             upper, lower = (far + half_far) / safe, (far - half_far) / safe
-            total += sign * np.where(size > 0.0, edge * _inverse_sinh_difference(upper, lower), 0.0)
+            total += sign * np.where(
+                size > 0.0, edge * _inverse_sinh_difference(upper, lower, 2.0 * half_far / safe), 0.0
+            )
     return total
 
 
-def _inverse_sinh_difference(upper: Array, lower: Array) -> Array:
-    """asinh(upper) − asinh(lower) for upper ≥ lower without cancellation when both are large or close."""
+def _inverse_sinh_difference(upper: Array, lower: Array, difference: Array) -> Array:
+    """asinh(upper) − asinh(lower), upper − lower given exactly: no cancellation when both are large or close."""
     root_upper, root_lower = np.hypot(1.0, upper), np.hypot(1.0, lower)
     same_side = upper * lower > 0.0
     # asinh u − asinh v = asinh(u √(1+v²) − v √(1+u²)); on the same side u²−v² over the sum avoids the difference.
     total = upper * root_lower + lower * root_upper
     argument = np.where(
         same_side,
-        (upper - lower) * (upper + lower) / np.where(same_side, total, 1.0),
+        difference * (upper + lower) / np.where(same_side, total, 1.0),
         upper * root_lower - lower * root_upper,
     )
     return np.asarray(np.arcsinh(argument))

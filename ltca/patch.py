@@ -228,7 +228,8 @@ class PatchSolution:
         before, centre, after = p[top - 1 : top + 2]
         bend = before - 2.0 * centre + after
         crest = 0.0 if bend >= 0.0 else (after - before) ** 2 / (8.0 * -bend)
-        return float(centre - bend / 24.0 + crest)
+        # A cell's value stands for its centre, half a cell from the edge, up to the same bias as above.
+        return float(centre + (0.125 - _PEAK_BIAS) * bend + crest)
 
     @property
     def max_pressure(self) -> float:
@@ -244,10 +245,15 @@ class PatchSolution:
             moments = (y[1:3] ** 2 + y[1:3] * y[:2] + y[:2] ** 2) / 3.0
             values = (field[:, 0] * moments[1] - field[:, 1] * moments[0]) / (moments[1] - moments[0])
             return np.asarray(np.maximum(values, 0.0))
-        cell = int(np.clip(np.searchsorted(y, 0.0) - 1, 0, field.shape[1] - 1))
-        if abs(y[cell + 1]) < 1e-9 * (y[-1] - y[0]) and cell + 1 < field.shape[1]:
-            return np.asarray(0.5 * (field[:, cell] + field[:, cell + 1]))
-        return np.asarray(field[:, cell])
+        count = field.shape[1]
+        first = int(np.clip(np.searchsorted(y, 0.0) - 2, 0, max(count - 4, 0)))
+        cells = slice(first, min(first + 4, count))
+        edges = y[first : cells.stop + 1] / (y[-1] - y[0])
+        # the polynomial with these cell means, at y = 0: weights that give the means of 1, y, y², … their values there
+        powers = np.arange(1.0, edges.size)[:, None]
+        means = (edges[1:] ** powers - edges[:-1] ** powers) / (powers * np.diff(edges))
+        weights = np.linalg.solve(means, np.eye(edges.size - 1)[0])
+        return np.asarray(np.maximum(field[:, cells] @ weights, 0.0))
 
 
 def solve_patch(
