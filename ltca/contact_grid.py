@@ -33,7 +33,7 @@ RUNG = 0.05
 FIT = 0.08
 """Largest misfit of ln(half-width) before a contact changes its rung."""
 
-END_GRADING = 3.5
+END_GRADING = 2.5
 """Grading of the cells along an unrelieved length: the end cell measures length/2 · cells^−3.5, 1 µm of 11.8 mm. It is
 the same at every load, since the pressure there depends on it."""
 

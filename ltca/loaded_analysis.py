@@ -160,17 +160,10 @@ def _check_half_widths(analysis: LoadedAnalysis) -> None:
     curvature = 1.0 / flank.effective_radius - 1.0 / drive.pin_wheel.pin_radius
     flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
     roller = drive.crank_bearing.roller_radius
-<<<<<<< HEAD
-    found = [
+    found: list[tuple[str, FloatArray, FloatArray | float]] = [
         ("wheel pin", analysis.pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
         ("roller on the bore", analysis.pressures.outer.half_width, roller),
         ("roller on the inner race", analysis.pressures.inner.half_width, roller),
-=======
-    found: list[tuple[str, FloatArray, FloatArray | float]] = [
-        ("wheel pin", analysis.pin_half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
-        ("roller on the bore", analysis.roller_half_width_outer, roller),
-        ("roller on the inner race", analysis.roller_half_width_inner, roller),
->>>>>>> main
     ]
     problems = []
     for name, half_width, radius in found:
