@@ -139,7 +139,7 @@ class _Search:
         active = np.arange(count)
         damping = np.full(count, 1e-6)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
-        start = Start.after(response)
+        start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
         for _ in range(ITERATIONS):
             self.history.append(residual.copy())
@@ -147,7 +147,7 @@ class _Search:
             active, start = active[going], start.take(going)
             gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
-                return self.finish(iterations)
+                return self.finish(iterations, known)
             iterations[active] += 1
             step, slope = _damped_step(tangent, gradient, damping[active])
             trial = self.pose[active] + step / self.lever
@@ -170,11 +170,8 @@ class _Search:
             self.pose[active] = trial
             residual[active] = new_residual
             gradient, tangent = new_gradient, new_tangent
-            after = Start.after(response)
-            start = Start(
-                parameter=np.where(moved[:, None], after.parameter, start.parameter),
-                share=np.where(moved[:, None], after.share, start.share),
-            )
+            start = start.replaced(moved, Start.after(response).take(moved))
+            known = known.replaced(active, start)
         worst = int(np.argmax(residual / self.load))
         raise ConvergenceError(
             f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {count}, "
@@ -183,8 +180,8 @@ class _Search:
             [float(values[worst]) for values in self.history],
         )
 
-    def finish(self, iterations: NDArray[np.intp]) -> Equilibrium:
-        response, gradient, _ = self.evaluate(np.arange(self.angle.size), self.pose, None)
+    def finish(self, iterations: NDArray[np.intp], start: Start) -> Equilibrium:
+        response, gradient, _ = self.evaluate(np.arange(self.angle.size), self.pose, start)
         return Equilibrium(
             crank_angle=self.angle,
             wheel_moment=np.array(self.moment),
