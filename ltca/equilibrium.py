@@ -30,8 +30,9 @@ ITERATIONS = 200
 SHORTENINGS = 12
 """Of one step, each to between a fiftieth and a half: enough to come from the largest step to a contact of 1e-5 mm."""
 
-STEP_BOUND = 0.05
-"""Largest step, mm: long against elastic approaches (µm), short against the radius of a flank (mm)."""
+STEP_BOUND = 1e-3
+"""Largest step as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches (µm), short
+against the radius of a flank (mm), and a part, so that the drive's size does not matter."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,7 +159,7 @@ class _Search:
             if active.size == 0:
                 return self.finish(iterations)
             iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active])
+            step, slope = _damped_step(tangent, gradient, damping[active], STEP_BOUND * self.lever[3])
             trial = self.pose[active] + step / self.lever
             response, new_gradient, new_tangent = self.evaluate(active, trial, start)
             # The slope of Π at the end of a step: where it has risen as steeply as it fell, Π may be higher than
@@ -206,7 +207,9 @@ class _Search:
         )
 
 
-def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _damped_step(
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: float
+) -> tuple[FloatArray, FloatArray]:
     """Return −(H + μ tr(H)/4)⁻¹ g, its length bounded, and the slope g·step."""
     stiffness = np.trace(tangent, axis1=1, axis2=2) / 4.0
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
@@ -217,5 +220,5 @@ def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray)
     if np.any(uphill):  # an indefinite tangent (strong geometric part): steepest descent instead
         step[uphill] = -gradient[uphill] / stiffness[uphill, None]
     length = np.max(np.abs(step), axis=1)
-    step *= np.minimum(1.0, STEP_BOUND / np.maximum(length, 1e-300))[:, None]
+    step *= np.minimum(1.0, bound / np.maximum(length, 1e-300))[:, None]
     return step, np.einsum("bi,bi->b", gradient, step)
