@@ -319,7 +319,7 @@ def solve_patch(
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
-    """Half-width at mid-width of an uncrowned contact [mm], a few per cent from the truth.
+    """Half-width at mid-width of an uncrowned contact [mm], a first guess: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
 
     From δ = q/(π E*) (1 + 2 ln(length/b) + ln 4 …) for a Hertz strip of even load q, solved for b.
     """
