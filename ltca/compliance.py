@@ -209,7 +209,7 @@ def resultant(
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
     force[:, 0] -= push.real
     force[:, 1] -= push.imag
-    return force
+    return np.asarray(force)
 
 
 def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:

@@ -207,4 +207,4 @@ def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray)
         step[uphill] = -gradient[uphill] / stiffness[uphill, None]
     length = np.max(np.abs(step), axis=1)
     step *= np.minimum(1.0, STEP_BOUND / np.maximum(length, 1e-300))[:, None]
-    return step, np.einsum("bi,bi->b", gradient, step)
+    return np.asarray(step), np.asarray(np.einsum("bi,bi->b", gradient, step))

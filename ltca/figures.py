@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 
 # Okabe and Ito's palette, readable with every kind of colour vision; black first for the clearance-free case.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A7A7A")
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "font.size": 9.0,
     "axes.spines.top": False,
     "axes.spines.right": False,

@@ -119,7 +119,7 @@ def _check_half_widths(analysis: LoadedAnalysis) -> None:
     curvature = 1.0 / flank.effective_radius - 1.0 / drive.pin_wheel.pin_radius
     flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
     roller = drive.crank_bearing.roller_radius
-    found = [
+    found: list[tuple[str, FloatArray, FloatArray | float]] = [
         ("wheel pin", analysis.pin_half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
         ("roller on the bore", analysis.roller_half_width_outer, roller),
         ("roller on the inner race", analysis.roller_half_width_inner, roller),
