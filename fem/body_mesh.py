@@ -55,9 +55,9 @@ class BodyMesh:
         return 2 * self.node_count
 
     def facets_of(self, name: str) -> IntArray:
-        """Return the facets of a boundary in counter-clockwise order about the origin of the body.
+        """Return the facets of a boundary in the order in which `boundary_nodes` walks along it.
 
-        See `boundary_nodes`, whose rows they match.
+        The rows of both match; the walk starts at the rightmost vertex, so it is the same after a file.
         """
         return self._chain(name)[0]
 
