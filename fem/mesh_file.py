@@ -171,7 +171,7 @@ def read_msh(path: str | Path, *, required_boundaries: Sequence[str] = ()) -> Bo
     path : str or Path
         The file; all triangles belong to one body and lie in the plane z = 0.
     required_boundaries : sequence of str
-        Names that must be there.
+        Names that must be there; when any is given, the named boundaries must also cover the whole outline.
 
     Returns
     -------
@@ -199,11 +199,13 @@ def read_msh(path: str | Path, *, required_boundaries: Sequence[str] = ()) -> Bo
         raise MeshError(f"{path}: nodes lie outside the plane z = 0")
     name, lines = _groups(content, path, order)
     body = _assemble(name, points[:, :2], elements, lines, order, path)
-    for boundary in required_boundaries:
-        try:
+    try:
+        for boundary in required_boundaries:
             body.require_boundary(boundary)
-        except MeshError as error:
-            raise MeshError(f"{path}: {error}") from error
+        if required_boundaries:
+            body.require_complete_boundaries()
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from error
     return body
 
 

@@ -140,8 +140,8 @@ def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]
         if width > 0.0:
             zooms.append(
                 Zoom(
-                    title=f"{title.format(index)}, expected half-width {1000.0 * width:.0f} µm\n"
-                    f"window {2.0 * reach:.3g} mm wide",
+                    title=f"{title.format(index)}\n"
+                    f"expected half-width {1000.0 * width:.3g} µm, window {2.0 * reach:.3g} mm",
                     centre=complex(points[index]),
                     half_side=reach,
                 )
