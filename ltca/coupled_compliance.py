@@ -16,8 +16,9 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Literal
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,7 +142,8 @@ class CoupledCompliance:
             )
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
-        return _join(parts)
+        joined: Response = _join(parts)
+        return joined
 
     def _solve(self, batch: _Batch, start: Start | None, rows: NDArray[np.intp]) -> Response:
         guess = batch.geometric.copy()
@@ -380,19 +382,19 @@ def _pressures(law: ContactLaw, approach: FloatArray, radius: FloatArray) -> Kin
     return KindPressures(mid=mid, largest=mid, half_width=law.half_width(approach, radius), end_cell=0.0)
 
 
-def _take(motion: PairMotion, rows: NDArray[np.intp]) -> PairMotion:
-    return replace(motion, **{name: getattr(motion, name)[rows] for name in motion.__dataclass_fields__})
+Motion = TypeVar("Motion", FlankMotion, PairMotion)
 
 
-def _join(parts: list[Response]) -> Response:
+def _take(motion: Motion, rows: NDArray[np.intp]) -> Motion:
+    return replace(motion, **{item.name: getattr(motion, item.name)[rows] for item in fields(motion)})
+
+
+def _join(parts: Sequence[Any]) -> Any:
+    """Join arrays, or dataclasses of arrays, along the positions."""
     if len(parts) == 1:
         return parts[0]
-
-    def join(values: list[object]) -> object:
-        first = values[0]
-        if isinstance(first, np.ndarray):
-            return np.concatenate(values)
-        names = type(first).__dataclass_fields__
-        return type(first)(**{name: join([getattr(value, name) for value in values]) for name in names})
-
-    return join(parts)
+    if isinstance(parts[0], np.ndarray):
+        return np.concatenate(parts)
+    return type(parts[0])(
+        **{item.name: _join([getattr(part, item.name) for part in parts]) for item in fields(parts[0])}
+    )

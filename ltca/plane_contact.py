@@ -53,7 +53,9 @@ class PlaneContactLaw:
         return scale * force * (logarithm + 0.5), scale * logarithm
 
     def _half_width_of(self, load: FloatArray, effective_radius: ArrayLike) -> FloatArray:
-        return np.sqrt(4.0 * load * np.asarray(effective_radius) / (np.pi * self.contact_modulus * self.thickness))
+        return np.asarray(
+            np.sqrt(4.0 * load * np.asarray(effective_radius) / (np.pi * self.contact_modulus * self.thickness))
+        )
 
     def _load(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Invert the law: concave in the load, so Newton from below rises to the root without passing it."""
