@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ltca.contact_grid import END_STRETCH
 from ltca.drive import Drive
-from ltca.figures import COLOURS, STYLE, _draw
+from ltca.figures import COLOURS, STYLE, draw_curves
 from ltca.output_files import whole_file
 from ltca.profile import FlankProfile
 from ltca.results import LOADED_FRACTION
@@ -65,7 +65,7 @@ def hardest_roller(fields: xr.Dataset, case: str) -> dict[str, Any]:
     """Return where the roller pressure at mid-width is largest in a case: angle, side and roller as an indexer."""
     mid = fields["roller_pressure_mid"].sel(case=case)
     at = np.unravel_index(int(np.argmax(mid.values)), mid.shape)
-    return {name: int(i) for name, i in zip(mid.dims, at, strict=True)}
+    return {str(name): int(i) for name, i in zip(mid.dims, at, strict=True)}
 
 
 def _named(fields: xr.Dataset, place: dict[str, Any]) -> str:
@@ -175,7 +175,7 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
     common = np.linspace(-reach, 0.0, 401) if not major else places[int(np.argmax([c[-1] for c in places]))]
     resampled = np.array([np.interp(common, c, curve, 0.0, 0.0) for c, curve in zip(places, curves, strict=True)])
     label = "distance from mid-width [mm]" if major else "distance across the contact [mm]"
-    _draw(figure, axes, common, resampled, names, label, "pressure [MPa]")
+    draw_curves(figure, axes, common, resampled, names, label, "pressure [MPa]")
     shown = titles[0] if len(set(titles)) == 1 else "the hardest loaded roller of each case"
     if major:
         cell = float(np.mean(np.diff(common)))
@@ -208,8 +208,8 @@ def render_roller_pressure(fields: xr.Dataset, case: str, path: Path) -> None:
     top = float(pressure.max())
     grid = pv.StructuredGrid(across, along, 0.9 * pressure / top)
     grid["pressure [MPa]"] = pressure.ravel(order="F")
-    plotter = pv.Plotter(off_screen=True, window_size=(1280, 860))
-    plotter.set_background("white")
+    plotter = pv.Plotter(off_screen=True, window_size=[1280, 860])
+    plotter.set_background("white")  # type: ignore[arg-type]  # stub takes the wrapper
     plotter.add_mesh(
         grid,
         scalars="pressure [MPa]",
