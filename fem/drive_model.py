@@ -201,18 +201,29 @@ class DriveModel:
             round_zone = self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
         return integrate_pair(pair.zone, carrier, circle, pair.radius, round_zone)
 
-    def start_pose(self) -> DrivePose:
-        """Return the pose the meshes were graded for, rollers midway between race and bore."""
+    def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
+        """Return a pose with rollers midway between race and bore and shaft pins unloaded.
+
+        Parameters
+        ----------
+        start : tuple of four floats, optional
+            Disc x, y (mm), disc rotation, wheel angle (rad); those the meshes were graded for by default.
+        """
         contacts, place = self.contacts, self.placement
-        displacement = complex(contacts.disc_x, contacts.disc_y)
-        toward = (displacement * self.roller_rays.conjugate()).real
+        x, y, rotation, wheel = start or (
+            contacts.disc_x,
+            contacts.disc_y,
+            contacts.disc_rotation,
+            contacts.wheel_angle,
+        )
+        toward = (complex(x, y) * self.roller_rays.conjugate()).real
         outer = place.bore_radius - place.roller_radii + toward
         inner = place.inner_race_radius + place.roller_radii
         return DrivePose(
-            disc_x=contacts.disc_x,
-            disc_y=contacts.disc_y,
-            disc_rotation=contacts.disc_rotation,
-            wheel_angle=contacts.wheel_angle,
+            disc_x=x,
+            disc_y=y,
+            disc_rotation=rotation,
+            wheel_angle=wheel,
             roller_distances=0.5 * (outer + inner),
             shaft_pin_displacements=np.zeros(len(place.hole_radii), dtype=complex),
         )
