@@ -18,7 +18,6 @@ its rigid motion removed, which does not depend on the choice of those unknowns.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -54,7 +53,7 @@ class CondensedBody:
     compliance: FloatArray
     loads: sp.csc_matrix
     resultants: FloatArray
-    _factor: Any
+    _factor: BorderedFactor
     _kept: IntArray
     _modes: FloatArray | None
     _area: FloatArray | None
@@ -194,13 +193,37 @@ def condense_body(
     )
 
 
-def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -> tuple[FloatArray, Any]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BorderedFactor:
+    """Factors L D Lᵀ of a bordered matrix.
+
+    Attributes
+    ----------
+    lower : csc_matrix
+        L, unit lower triangular.
+    diagonal : array
+        D.
+    """
+
+    lower: sp.csc_matrix
+    diagonal: FloatArray
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Return the solution of L D Lᵀ x = right, shape as right."""
+        forward = spla.spsolve_triangular(self.lower, right, lower=True, unit_diagonal=True)
+        scaled = forward / self.diagonal[:, None]
+        return np.asarray(spla.spsolve_triangular(self.lower.T, scaled, lower=False, unit_diagonal=True))
+
+
+def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -> tuple[FloatArray, BorderedFactor]:
     """Return Bᵀ K⁻¹ B over the kept unknowns and the factor of the bordered matrix."""
     inner = stiffness.tocsr()[kept].tocsc()[:, kept]
     border = loads.tocsr()[kept]
     count = len(kept)
     matrix = sp.vstack([sp.hstack([inner, border]), sp.hstack([border.T, sp.csr_matrix((loads.shape[1],) * 2)])])
     factor = spla.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
-    lower = factor.L[count:, count:].toarray()
-    upper = factor.U[count:, count:].toarray()
-    return -(lower @ upper), factor
+    # SuperLU's object would keep three copies of the factors alive; one of them holds all there is to know.
+    lower, diagonal = factor.L, factor.U.diagonal()
+    trailing = lower[count:, count:].toarray()
+    schur = -(trailing * diagonal[count:]) @ trailing.T
+    return schur, BorderedFactor(lower=lower, diagonal=diagonal)
