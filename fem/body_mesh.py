@@ -124,6 +124,24 @@ class BodyMesh:
             raise MeshError(f"mesh of {self.name} has no boundary {name!r}; its boundaries are: {known}")
         return np.asarray(boundaries[name], dtype=np.int64)
 
+    def require_complete_boundaries(self) -> None:
+        """Check that every outer facet belongs to exactly one named boundary.
+
+        Raises
+        ------
+        MeshError
+            With the number of facets that belong to none or to several.
+        """
+        count = np.zeros(self.mesh.nfacets, dtype=np.int64)
+        for name in self.boundary_names:
+            np.add.at(count, self.require_boundary(name), 1)
+        outer = count[self.mesh.boundary_facets()]
+        if np.any(outer != 1):
+            raise MeshError(
+                f"mesh of {self.name}: {int(np.sum(outer == 0))} outer edges belong to no named boundary and "
+                f"{int(np.sum(outer > 1))} to several; its boundaries are: {', '.join(self.boundary_names) or 'none'}"
+            )
+
     def turned(self, angle: float, name: str | None = None) -> BodyMesh:
         """Return the same mesh turned counter-clockwise about the origin by `angle`, rad, under a new name."""
         cosine, sine = np.cos(angle), np.sin(angle)

@@ -16,7 +16,6 @@ FloatArray = NDArray[np.float64]
 # its radius.
 LARGEST_TURN = np.pi / 12.0
 SAMPLES_PER_EDGE = 4.0
-COARSEST_SAMPLING = 720
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +47,7 @@ class DividedCurve:
 
 def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
     """Return parameters over one period, both ends included, dense where the size field asks for small edges."""
-    parameters = np.linspace(0.0, 2.0 * np.pi, COARSEST_SAMPLING + 1)
+    parameters = np.linspace(0.0, 2.0 * np.pi, 2 * curve.samples + 1)
     # Interval halving: each pass splits only intervals longer than a part of the wanted edge.
     for _ in range(40):
         points = curve.points(parameters)
@@ -83,7 +82,7 @@ def serve_curvature(curves: tuple[Curve, ...], field: SizeField) -> SizeField:
     """Return the size field with balls added where the curvature of a boundary asks for smaller elements."""
     added: list[Refinement] = []
     for curve in curves:
-        parameters = np.linspace(0.0, 2.0 * np.pi, 4 * COARSEST_SAMPLING, endpoint=False)
+        parameters = np.linspace(0.0, 2.0 * np.pi, 4 * curve.samples, endpoint=False)
         limit = LARGEST_TURN * curve.curvature_radius(parameters)
         so_far = SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)
         added += cover_small_edges(curve.points(parameters), limit, so_far)

@@ -40,6 +40,10 @@ class Curve(Protocol):
     def encloses_body(self) -> bool:
         """Whether the body lies inside the curve (else the curve is a hole in it)."""
 
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape."""
+
     def points(self, parameter: FloatArray) -> ComplexArray:
         """Return points, mm."""
 
@@ -73,6 +77,11 @@ class CircleCurve:
     radius: float
     centre: complex = 0j
     encloses_body: bool = True
+
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape."""
+        return 360
 
     def points(self, parameter: FloatArray) -> ComplexArray:
         """Return points, mm."""
@@ -112,6 +121,11 @@ class FlankCurve:
         """Whether the body lies inside: always."""
         return True
 
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape: 128 for each tooth."""
+        return 128 * round(self.profile.reduction_ratio)
+
     def points(self, parameter: FloatArray) -> ComplexArray:
         """Return points, mm."""
         return self.profile.flank(np.asarray(parameter))
@@ -129,7 +143,7 @@ class FlankCurve:
         """Return θ in [0, 2π) of the nearest point of the flank; for points within a pin radius of it."""
         points = np.asarray(point, dtype=complex).ravel()
         # The table only has to start Newton's method on the right tooth and side.
-        table = np.linspace(0.0, 2.0 * np.pi, 64 * round(self.profile.reduction_ratio), endpoint=False)
+        table = np.linspace(0.0, 2.0 * np.pi, self.samples, endpoint=False)
         samples = self.profile.flank(table)
         _, nearest = cKDTree(np.column_stack([samples.real, samples.imag])).query(
             np.column_stack([points.real, points.imag])

@@ -148,6 +148,7 @@ def _mesh_shape(
             doflocs[0, nodes], doflocs[1, nodes] = middles.real, middles.imag
         mesh = replace(mesh, doflocs=doflocs)
     body = BodyMesh(name=shape.name, mesh=mesh)
+    body.require_complete_boundaries()
     require_quality(body)
     return body
 
