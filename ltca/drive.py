@@ -331,7 +331,7 @@ class Drive:
 
     def fingerprint(self) -> str:
         """Return a hash of everything that defines the drive in this case (hex, 16 digits)."""
-        definition = asdict(self)  # type: ignore[call-overload]
+        definition = asdict(self)
         return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 

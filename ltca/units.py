@@ -8,6 +8,8 @@ from typing import Any
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
+from ltca.errors import DriveError
+
 UNIT_LABELS = {"N*mm": "N·mm", "N/mm": "N/mm", "dimensionless": ""}
 
 
@@ -96,3 +98,37 @@ def quantity(
         return number
 
     return BeforeValidator(check)
+
+
+def parse_quantity(text: str, unit: str, name: str) -> float:
+    """Return a number or a text with unit from the command line, in a unit of the suite.
+
+    Parameters
+    ----------
+    text : str
+        ``"377300"`` or ``"377.3 N m"``.
+    unit : str
+        Unit of the result and of plain numbers.
+    name : str
+        Option, for the message.
+
+    Returns
+    -------
+    float
+        The value in `unit`.
+
+    Raises
+    ------
+    DriveError
+        When the text is no finite quantity of that kind.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        try:
+            value = _number(text, unit)
+        except PydanticCustomError as error:
+            raise DriveError([f"{name} = {text!r}: {error.message()}"]) from error
+    if not math.isfinite(value):
+        raise DriveError([f"{name} = {text!r}: must be finite{_in(unit)}"])
+    return value

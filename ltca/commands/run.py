@@ -1,0 +1,121 @@
+"""``cyclo run``: the loaded tooth contact analysis of a drive, all cases."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ltca.pairs import FloatArray
+
+SUMMARY = "loaded tooth contact analysis: loads, pressures, bearing forces, transmission error"
+DEFAULT_POSITIONS = 360
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
+    parser.add_argument("--case", action="append", metavar="NAME", help="case to run, repeatable; default all")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--positions", metavar="N", type=int, help=f"crank angles 2πk/N, k = 0 … N−1; default {DEFAULT_POSITIONS}"
+    )
+    where.add_argument("--angles", metavar="φ", nargs="+", help="crank angles in rad (or texts such as '20 deg')")
+    parser.add_argument("--torque", metavar="T", help="output torque in N·mm (or a text such as '377.3 N m')")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>")
+    parser.add_argument("--no-figures", action="store_true", help="write results.nc and summary.json only")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the analysis and write results, summary and figures."""
+    from ltca.drive_file import load_drive
+    from ltca.loaded_analysis import analyse
+    from ltca.output_files import whole_file, write_json
+    from ltca.progress import progress
+    from ltca.results import build_dataset, check_common_shape, summarise
+
+    angles = _crank_angles(arguments)
+    torque = _torque(arguments.torque)
+    file = load_drive(arguments.drive)
+    cases = file.select(arguments.case)
+    check_common_shape(cases)
+    out = arguments.out or Path("out") / file.name
+    analyses = {}
+    with progress("cases", len(cases)) as advance:
+        for name, drive in cases.items():
+            analyses[name] = analyse(drive, angles, torque)
+            advance(name)
+    summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
+    dataset = build_dataset(file.name, analyses)
+    with whole_file(out / "results.nc") as part:
+        dataset.to_netcdf(part, engine="h5netcdf")
+    write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
+    print(_table(summaries))
+    print(f"results: {out / 'results.nc'}, {out / 'summary.json'}")
+    if not arguments.no_figures:
+        from ltca.figures import FIGURES, write_figures
+
+        with progress("figures", len(FIGURES)) as advance:
+            for path in write_figures(dataset, out / "figures"):
+                advance(path.name)
+        print(f"figures: {out / 'figures'} ({len(FIGURES)} as SVG and PNG)")
+    return 0
+
+
+def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
+    import numpy as np
+
+    from ltca.errors import DriveError
+    from ltca.results import position_angles
+    from ltca.units import parse_quantity
+
+    if arguments.angles is not None:
+        return np.array([parse_quantity(text, "rad", "--angles") for text in arguments.angles])
+    positions = DEFAULT_POSITIONS if arguments.positions is None else arguments.positions
+    if not 1 <= positions <= 1_000_000:
+        raise DriveError([f"--positions = {positions}: must be from 1 to 1000000"])
+    return position_angles(positions)
+
+
+def _torque(text: str | None) -> float | None:
+    from ltca.errors import DriveError
+    from ltca.units import parse_quantity
+
+    if text is None:
+        return None
+    torque = parse_quantity(text, "N*mm", "--torque")
+    if torque <= 0.0:
+        raise DriveError([f"--torque = {text}: must be greater than 0 N·mm (load.direction turns it)"])
+    return torque
+
+
+ROWS = (
+    ("mean bearing load", "mean_bearing_load_N", "N", "{:.1f}"),
+    ("  radial", "mean_radial_bearing_load_N", "N", "{:.1f}"),
+    ("  tangential", "mean_tangential_bearing_load_N", "N", "{:.1f}"),
+    ("  tangential, peak to peak", "ptp_tangential_bearing_load_N", "N", "{:.1f}"),
+    ("largest pin load", "max_pin_load_N", "N", "{:.1f}"),
+    ("largest pin pressure, mid-width", "max_pin_pressure_mid_MPa", "MPa", "{:.1f}"),
+    ("largest roller load", "max_roller_load_N", "N", "{:.1f}"),
+    ("largest roller pressure, mid-width", "max_roller_pressure_mid_MPa", "MPa", "{:.1f}"),
+    ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
+    ("pin-shaft loaded range", "pin_shaft_loaded_range_deg", "°", "{:.1f}"),
+    ("loaded wheel pins, mean", "mean_loaded_pins", "", "{:.2f}"),
+    ("loaded rollers, mean", "mean_loaded_rollers", "", "{:.2f}"),
+    ("loaded pin-shaft pins, mean", "mean_loaded_pin_shaft_pins", "", "{:.2f}"),
+    ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
+    ("  at the light torque", "ptp_transmission_error_light_arcsec", "″", "{:.2f}"),
+    ("backlash at the disc", "backlash_disc_arcmin", "′", "{:.2f}"),
+    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:.2f}"),
+    ("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),
+)
+
+
+def _table(summaries: dict[str, dict[str, float]]) -> str:
+    width = max(10, *(len(name) + 2 for name in summaries))
+    lines = [" " * 40 + "".join(f"{name:>{width}}" for name in summaries)]
+    for title, key, unit, form in ROWS:
+        head = f"{title}{f' [{unit}]' if unit else ''}"
+        lines.append(f"{head:<40}" + "".join(f"{form.format(case[key]):>{width}}" for case in summaries.values()))
+    return "\n".join(lines)
