@@ -57,6 +57,8 @@ class FullSolution:
         Loads, peak pressures, half-widths of all parts, and forces on the disc.
     scale : float
         Element edge as a multiple of an eighth of each half-width.
+    plane_state : {"strain", "stress"}
+        Plane strain or plane stress.
     pose_iterations : int
         Steps on the final meshes.
     seconds : dict of str to float
@@ -67,6 +69,7 @@ class FullSolution:
     state: PoseSolution
     contacts: ContactResults
     scale: float
+    plane_state: PlaneState
     pose_iterations: int
     seconds: dict[str, float]
 
@@ -161,6 +164,7 @@ def solve_drive(
                 state=solution,
                 contacts=summarise_contacts(model, solution),
                 scale=scale,
+                plane_state=state,
                 pose_iterations=solution.iterations,
                 seconds=watch.seconds,
             )
@@ -196,7 +200,14 @@ def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str
     )
     watch.lap("contact and pose")
     if find_shortcoming(model, solution, previous.scale):
-        return solve_drive(model.drive, model.crank_angle, torque=torque, scale=previous.scale, progress=progress)
+        return solve_drive(
+            model.drive,
+            model.crank_angle,
+            torque=torque,
+            scale=previous.scale,
+            state=previous.plane_state,
+            progress=progress,
+        )
     watch.seconds["total"] = sum(watch.seconds.values())
     return replace(
         previous,
