@@ -1,7 +1,7 @@
-r"""Integrals over one contact pair: exact gaps, resultants and loads on the round side.
+r"""Integrals over one contact pair: exact gaps, resultants and loads on the side opposite.
 
-Each point x of the pressure zone looks along its exact outward normal n; the first point y of the circle
-opposite on that ray is its partner. Pressure acts as the pair of forces −p n at x and +p n at y on one line
+Each point x of the pressure zone looks along its exact outward normal n; the first point y on that ray of the
+circle (or flat) opposite is its partner. Pressure acts as the pair of forces −p n at x and +p n at y on one line
 of action, so forces and moments balance pair by pair. The weighted gap of pressure unknown i is
 
 .. math:: g_i = t \int \varphi_i\, n \cdot (y - x)\, ds, \qquad
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.surface import GAUSS_POINTS, GAUSS_WEIGHTS, PressureZone, RoundZone
+from fem.surface import GAUSS_POINTS, GAUSS_WEIGHTS, PressureZone, OppositeZone
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -62,21 +62,37 @@ class PairIntegrals:
     measure : array, shape (m,)
         Weighted area t ∫ φ ds, mm².
     force : array, shape (3, m)
-        Force in x, y (N/MPa) and moment about the fixed origin (N·mm/MPa) on the round side; the pressure
+        Force in x, y (N/MPa) and moment about the fixed origin (N·mm/MPa) on the side opposite; the pressure
         side takes the opposite.
-    round_loads : array, shape (2 k, m)
-        Nodal forces on the k nodes of the round zone in its body frame, node by node (empty for a rigid side).
+    opposite_loads : array, shape (2 k, m)
+        Nodal forces on the k nodes of the zone opposite in its body frame, node by node (empty for a rigid side).
     """
 
     gap: FloatArray
     measure: FloatArray
     force: FloatArray
-    round_loads: FloatArray
+    opposite_loads: FloatArray
 
 
-def gap_to_circle(points: ComplexArray, normals: ComplexArray, centre: complex, radius: float) -> FloatArray:
-    """Return the distance along unit normals to the first point of a circle, mm; negative inside it."""
-    away = (centre - points) * normals.conjugate()
+def gap_to_opposite(points: ComplexArray, normals: ComplexArray, pose: Pose, radius: float) -> FloatArray:
+    """Return the distance along unit normals to the body opposite, mm; negative inside it.
+
+    Parameters
+    ----------
+    points, normals : array of complex
+        Fixed frame, mm.
+    pose : Pose
+        Of the body opposite: centre of its circle, or a point of its flat whose outward normal is the y axis of
+        the body.
+    radius : float
+        Of the circle, mm; infinite for a flat.
+    """
+    if np.isinf(radius):
+        outward = 1j * np.exp(1j * pose.rotation)
+        return np.asarray(
+            ((pose.centre - points) * np.conj(outward)).real / (normals * np.conj(outward)).real
+        )
+    away = (pose.centre - points) * normals.conjugate()
     reach = radius**2 - away.imag**2
     return np.where(reach > 0.0, away.real - np.sqrt(np.maximum(reach, 0.0)), NO_PARTNER)
 
@@ -84,9 +100,9 @@ def gap_to_circle(points: ComplexArray, normals: ComplexArray, centre: complex, 
 def integrate_pair(
     zone: PressureZone,
     pose: Pose,
-    circle_pose: Pose,
+    opposite_pose: Pose,
     radius: float,
-    round_zone: RoundZone | None,
+    opposite: OppositeZone | None,
 ) -> PairIntegrals:
     """Integrate gaps and loads of a pair over mortar segments.
 
@@ -96,12 +112,12 @@ def integrate_pair(
         The side that carries the pressure.
     pose : Pose
         Of its body.
-    circle_pose : Pose
-        Centre of the circle opposite, and rotation of its mesh.
+    opposite_pose : Pose
+        Of the body opposite, see `gap_to_opposite`; turns its mesh.
     radius : float
-        Exact radius of the circle, mm.
-    round_zone : RoundZone or None
-        Its meshed zone; None for a rigid circle.
+        Exact radius of the circle, mm; infinite for a flat.
+    opposite : OppositeZone or None
+        Its meshed zone; None for a rigid one.
 
     Returns
     -------
@@ -109,8 +125,8 @@ def integrate_pair(
         At these poses.
     """
     breaks = np.arange(zone.edge_count + 1, dtype=float)
-    if round_zone is not None:
-        breaks = _segment_ends(zone, pose, circle_pose, radius, round_zone)
+    if opposite is not None:
+        breaks = _segment_ends(zone, pose, opposite_pose, radius, opposite)
     length = np.diff(breaks)
     place = (breaks[:-1, None] + length[:, None] * GAUSS_POINTS).ravel()
     weight = (length[:, None] * GAUSS_WEIGHTS).ravel()
@@ -120,17 +136,17 @@ def integrate_pair(
     meshed, speed = zone.points(edge, xi)
     exact, normal = zone.exact(meshed)
     points, normals = pose.place(exact), pose.turn(normal)
-    gap = gap_to_circle(points, normals, circle_pose.centre, radius)
+    gap = gap_to_opposite(points, normals, opposite_pose, radius)
     area = zone.thickness * weight * speed
     partner = points + np.where(gap < NO_PARTNER, gap, 0.0) * normals
     moment = (partner.conjugate() * normals).imag
     count = zone.unknown_count
     sums = [np.zeros(count) for _ in range(5)]
-    nodes = 0 if round_zone is None else len(round_zone.nodes)
-    round_loads = np.zeros((2 * nodes, count))
-    if round_zone is not None:
-        local = circle_pose.turn(np.ones(1))[0].conjugate()
-        edge_opposite, shapes = round_zone.shapes_at(_angles(partner, circle_pose, round_zone))
+    nodes = 0 if opposite is None else len(opposite.nodes)
+    opposite_loads = np.zeros((2 * nodes, count))
+    if opposite is not None:
+        local = opposite_pose.turn(np.ones(1))[0].conjugate()
+        edge_opposite, shapes = opposite.shapes_at(_coordinates(partner, opposite_pose, radius, opposite))
         push = normals * local
     for vertex, hat in ((edge, 1.0 - xi), (edge + 1, xi)):
         inner = (vertex >= 1) & (vertex <= count)
@@ -138,24 +154,26 @@ def integrate_pair(
         share = (area * hat)[inner]
         for total, value in zip(sums, (gap, np.ones_like(gap), normals.real, normals.imag, moment), strict=True):
             total += np.bincount(column, weights=share * value[inner], minlength=count)
-        if round_zone is not None:
+        if opposite is not None:
             for corner in range(3):
                 row = 2 * (2 * edge_opposite[inner] + corner)
                 amount = share * shapes[corner, inner] * push[inner]
-                np.add.at(round_loads, (row, column), amount.real)
-                np.add.at(round_loads, (row + 1, column), amount.imag)
-    return PairIntegrals(gap=sums[0], measure=sums[1], force=np.array(sums[2:]), round_loads=round_loads)
+                np.add.at(opposite_loads, (row, column), amount.real)
+                np.add.at(opposite_loads, (row + 1, column), amount.imag)
+    return PairIntegrals(gap=sums[0], measure=sums[1], force=np.array(sums[2:]), opposite_loads=opposite_loads)
 
 
-def _angles(partner: ComplexArray, circle_pose: Pose, round_zone: RoundZone) -> FloatArray:
-    """Return polar angles in the frame of the round body, unwrapped about the middle of its zone."""
-    middle = 0.5 * (round_zone.angles[0] + round_zone.angles[-1])
-    turned = (partner - circle_pose.centre) * np.exp(-1j * (circle_pose.rotation + middle))
-    return np.asarray(middle + np.angle(turned))
+def _coordinates(partner: ComplexArray, pose: Pose, radius: float, opposite: OppositeZone) -> FloatArray:
+    """Return coordinates of partners along the zone opposite; angles unwrapped about its middle."""
+    local = (partner - pose.centre) * np.exp(-1j * pose.rotation)
+    if np.isinf(radius):
+        return np.asarray(local.real)
+    middle = 0.5 * (opposite.coordinates[0] + opposite.coordinates[-1])
+    return np.asarray(middle + np.angle(local * np.exp(-1j * middle)))
 
 
 def _segment_ends(
-    zone: PressureZone, pose: Pose, circle_pose: Pose, radius: float, round_zone: RoundZone
+    zone: PressureZone, pose: Pose, opposite_pose: Pose, radius: float, opposite: OppositeZone
 ) -> FloatArray:
     """Return vertices of both surfaces as places along the pressure zone, increasing, without repetition."""
     # Where the rays of vertices and middles meet the circle is a smooth function of the place; a vertex of the
@@ -165,16 +183,16 @@ def _segment_ends(
     meshed, _ = zone.points(edge, ends - edge)
     exact, normal = zone.exact(meshed)
     points, normals = pose.place(exact), pose.turn(normal)
-    gap = gap_to_circle(points, normals, circle_pose.centre, radius)
+    gap = gap_to_opposite(points, normals, opposite_pose, radius)
     hit = gap < NO_PARTNER
-    angles = _angles(points[hit] + gap[hit] * normals[hit], circle_pose, round_zone)
+    coordinates = _coordinates(points[hit] + gap[hit] * normals[hit], opposite_pose, radius, opposite)
     places = ends[hit]
     if len(places) < 2:
         return np.arange(zone.edge_count + 1, dtype=float)
-    if angles[-1] < angles[0]:
-        angles, places = angles[::-1], places[::-1]
-    vertices = round_zone.vertex_angles
-    inside = vertices[(vertices > angles[0]) & (vertices < angles[-1])]
-    found = np.interp(inside, angles, places)
+    if coordinates[-1] < coordinates[0]:
+        coordinates, places = coordinates[::-1], places[::-1]
+    vertices = opposite.vertices
+    inside = vertices[(vertices > coordinates[0]) & (vertices < coordinates[-1])]
+    found = np.interp(inside, coordinates, places)
     ends = np.unique(np.concatenate([np.arange(zone.edge_count + 1, dtype=float), found]))
     return ends[np.concatenate([[True], np.diff(ends) > 1e-9])]

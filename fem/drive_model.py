@@ -20,7 +20,7 @@ from fem.drive_mesh import DriveMeshes
 from fem.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
 from fem.expected_contacts import ExpectedContacts
 from fem.geometry import Curve, DriveShapes
-from fem.surface import PressureZone, RoundZone
+from fem.surface import PressureZone, OppositeZone
 from fem.unilateral import ContactProblem
 from ltca.drive import Drive, Material
 from ltca.placement import Placement
@@ -75,13 +75,13 @@ class RoundGroup:
         The mesh in the frame in which it was condensed.
     condensed : CondensedBody
         Unit loads are nodal forces of the zones, one zone after the other.
-    zones : tuple of RoundZone
+    zones : tuple of OppositeZone
         One for a pin; outer and inner for a roller.
     """
 
     body: BodyMesh
     condensed: CondensedBody
-    zones: tuple[RoundZone, ...]
+    zones: tuple[OppositeZone, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,10 +196,10 @@ class DriveModel:
         """Integrate one pair at a pose."""
         carrier = Pose(centre=self.race_centre) if pair.kind == "roller_inner" else self.disc_pose(pose)
         circle = Pose(centre=self.circle_centre(pair.kind, pair.index, pose), rotation=pair.turn)
-        round_zone = None
+        opposite = None
         if pair.group >= 0:
-            round_zone = self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
-        return integrate_pair(pair.zone, carrier, circle, pair.radius, round_zone)
+            opposite = self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+        return integrate_pair(pair.zone, carrier, circle, pair.radius, opposite)
 
     def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
         """Return a pose with rollers midway between race and bore and shaft pins unloaded.
@@ -264,7 +264,7 @@ class DriveModel:
                 motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
             if pair.kind == "pin":
                 motions[own, 3] = moment
-                loads = integral.round_loads
+                loads = integral.opposite_loads
                 compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
             elif pair.kind == "hole":
                 moved = pose.shaft_pin_displacements[pair.index]
@@ -277,12 +277,12 @@ class DriveModel:
         for ends in by_roller.values():
             (outer, outer_integral), (inner, inner_integral) = ends
             own = np.r_[outer.unknowns, inner.unknowns]
-            split = outer_integral.round_loads.shape[0]
+            split = outer_integral.opposite_loads.shape[0]
             compliance_round = self.groups[outer.group].condensed.compliance
             loads = np.zeros((compliance_round.shape[0], len(own)))
             width = outer_integral.gap.size
-            loads[:split, :width] = outer_integral.round_loads
-            loads[split:, width:] = inner_integral.round_loads
+            loads[:split, :width] = outer_integral.opposite_loads
+            loads[split:, width:] = inner_integral.opposite_loads
             compliance[np.ix_(own, own)] += loads.T @ compliance_round @ loads
         external = np.zeros(4 + len(rollers))
         external[3] = -wheel_moment
@@ -347,11 +347,8 @@ def condense_drive(
             for direction, width in zip(directions, widths, strict=True):
                 place_on = radius * np.exp(1j * direction[members[0]])
                 reach = OPPOSITE_REACH * float(width[members].max())
-                zones.append(RoundZone.on_boundary(body, "surface", complex(place_on), reach))
-            unknowns = np.concatenate([zone.unknowns for zone in zones])
-            loads = sp.csc_matrix(
-                (np.ones(len(unknowns)), (unknowns, np.arange(len(unknowns)))), shape=(body.unknowns, len(unknowns))
-            )
+                zones.append(OppositeZone.on_circle(body, "surface", complex(place_on), reach))
+            loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
             stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
             fixed = unknowns_of_boundary(body, "core") if core else None
             condensed = condense_body(body, stiffness, loads, fixed=fixed)

@@ -7,12 +7,13 @@ scikit-fem's ``ElementVector(ElementTriP2())``. Forces are those on the full thi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, LinearForm, MeshTri2
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from fem.body_mesh import BodyMesh, IntArray
@@ -168,3 +169,43 @@ def strain_energy(stiffness: sp.csc_matrix, displacement: FloatArray) -> float:
     """Return ½ uᵀKu, N·mm, of nodal displacements of any shape that ravels to node-by-node order."""
     u = np.asarray(displacement).reshape(-1)
     return float(0.5 * u @ (stiffness @ u))
+
+
+def traction_load(
+    body: BodyMesh,
+    boundary: str,
+    traction: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]],
+    *,
+    thickness: float,
+) -> FloatArray:
+    """Return nodal forces of a traction on a named boundary.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        The mesh.
+    boundary : str
+        Name of the boundary.
+    traction : callable
+        Takes places (x, y) and outward normals, arrays of shape (2, …) each, mm; returns tx, ty, MPa.
+    thickness : float
+        mm.
+
+    Returns
+    -------
+    array, shape (2 nodes,)
+        N.
+
+    Raises
+    ------
+    MeshError
+        When the mesh has no such boundary.
+    """
+    facets = body.require_boundary(boundary)
+    basis = FacetBasis(body.mesh, _vector_element(body), facets=facets, intorder=2 * CURVED_QUADRATURE)
+
+    def work(v, w):  # type: ignore[no-untyped-def]
+        tx, ty = traction(w.x, w.n)
+        return thickness * (tx * v[0] + ty * v[1])
+
+    return np.asarray(LinearForm(work).assemble(basis))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body_mesh import BodyMesh
+from fem.contact_results import vertex_means
 from fem.coupling import Pose
 from fem.drive_model import DriveModel, PairKind
 from fem.elasticity import PlaneState
@@ -139,7 +140,7 @@ def _round_displacements(model: DriveModel, solution: PoseSolution) -> dict[tupl
         if pair.group < 0:
             continue
         key = ("pin" if pair.kind == "pin" else "roller", pair.index)
-        own = integral.round_loads @ solution.contact.pressure[pair.unknowns]
+        own = integral.opposite_loads @ solution.contact.pressure[pair.unknowns]
         # Outer comes before inner for every roller, as in its group.
         loads[key] = np.concatenate([loads[key], own]) if key in loads else own
         turns[key] = (pair.group, pair.turn)
@@ -156,7 +157,7 @@ def _pressure_on(model: DriveModel, pressure: FloatArray, nodes: int, race: bool
     field = np.zeros(nodes)
     for pair in model.pairs:
         if (pair.kind == "roller_inner") == race:
-            full = np.concatenate([[0.0], pressure[pair.unknowns], [0.0]])
+            full = vertex_means(pair.zone.arc, np.concatenate([[0.0], pressure[pair.unknowns], [0.0]]))
             field[pair.zone.nodes[:, 0]] = full[:-1]
             field[pair.zone.nodes[:, 1]] = 0.5 * (full[:-1] + full[1:])
     return field

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.contact_results import vertex_means
 from fem.coupling import Pose
 from fem.drive_model import ContactPair, DriveModel
 from fem.fields import BodyField
@@ -135,7 +136,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         pose = _carrier_pose(model, solution, pair)
         arc = pair.zone.arc
         vertices = np.append(pair.zone.places[:, 0], pair.zone.places[-1, 2])
-        pressure = np.concatenate([[0.0], solution.state.contact.pressure[pair.unknowns], [0.0]])
+        pressure = vertex_means(arc, np.concatenate([[0.0], solution.state.contact.pressure[pair.unknowns], [0.0]]))
         exact, normal = pair.zone.exact(vertices)
         places, into = pose.place(exact), -pose.turn(normal)
         middle = complex(np.interp(detail.middle, arc, places.real), np.interp(detail.middle, arc, places.imag))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem.contact_results import ContactResults
+from fem.contact_results import ContactResults, vertex_means
 from fem.fields import BodyField, bore_motion
 from fem.mesh_file import write_vtu, written_whole
 from fem.solution import FullSolution
@@ -122,12 +122,13 @@ def _pressure_profiles(solution: FullSolution) -> dict[str, tuple[Any, str, str]
             kinds.append(np.full(len(arc), pair.kind))
             indices.append(np.full(len(arc), pair.index))
             places.append(arc - detail.middle)
-            values.append(np.concatenate([[0.0], solution.state.contact.pressure[pair.unknowns], [0.0]]))
+            own = np.concatenate([[0.0], solution.state.contact.pressure[pair.unknowns], [0.0]])
+            values.append(vertex_means(arc, own))
     return {
         "pressure_contact": (np.concatenate(kinds).astype(str), "1", "kind of the contact of each sample"),
         "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller or hole"),
         "pressure_place": (np.concatenate(places), "mm", "arc length from the centre of pressure"),
-        "pressure": (np.concatenate(values), "MPa", "contact pressure at the vertices, linear between them"),
+        "pressure": (np.concatenate(values), "MPa", "mean contact pressure under the shape function of each vertex"),
     }
 
 

@@ -1,4 +1,4 @@
-"""Contact zones on meshed boundaries: the side that carries the pressure and the round side opposite.
+"""Contact zones on meshed boundaries: the side that carries the pressure and the side opposite.
 
 Points are complex numbers in mm in the frame of the body. A zone is a run of boundary edges with the body on
 the left; a place on it is one number s, edge index plus the reference coordinate in [0, 1] along the edge.
@@ -156,7 +156,6 @@ class PressureZone:
         _, normal = self.exact(points)
         force = -self.thickness * weights * length * normal
         shapes = quadratic_shapes(xi)
-        matrix = sp.lil_matrix((unknowns, self.unknown_count))
         rows, columns, values = [], [], []
         for vertex, hat in ((edges, 1.0 - xi), (edges + 1, xi)):
             inner = (vertex >= 1) & (vertex <= self.unknown_count)
@@ -174,28 +173,36 @@ class PressureZone:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RoundZone:
-    """Meshed zone on a full circle, the elastic side opposite a pressure zone.
+class OppositeZone:
+    """Meshed zone opposite a pressure zone, on a full circle about the origin or on a flat.
 
     Attributes
     ----------
     nodes : array of int, shape (k,)
-        Nodes along the zone, counter-clockwise: vertex, middle, vertex, middle, …, vertex.
-    angles : array of float, shape (k,)
-        Polar angles of the nodes in the frame of the body, rad, increasing (unwrapped about the middle).
+        Nodes along the zone: vertex, middle, vertex, middle, …, vertex.
+    coordinates : array of float, shape (k,)
+        Of the nodes in the frame of the body, increasing: polar angle on a circle, rad (unwrapped about the
+        middle); place along a flat from its origin, mm.
     """
 
     nodes: IntArray
-    angles: FloatArray
+    coordinates: FloatArray
 
     @classmethod
-    def on_boundary(cls, body: BodyMesh, boundary: str, place: complex, reach: float) -> RoundZone:
-        """Return the zone of a mesh of a circle about the origin within `reach` (mm) of a place."""
+    def on_circle(cls, body: BodyMesh, boundary: str, place: complex, reach: float) -> OppositeZone:
+        """Return the zone of a circle about the origin within `reach` (mm) of a place on it."""
         edges = run_of_edges(body, boundary, place, reach)
         nodes = np.append(edges[:, :2].ravel(), edges[-1, 2])
         x, y = body.mesh.doflocs[:, nodes]
         middle = float(np.angle(place))
-        return cls(nodes=nodes, angles=middle + np.angle((x + 1j * y) * np.exp(-1j * middle)))
+        return cls(nodes=nodes, coordinates=middle + np.angle((x + 1j * y) * np.exp(-1j * middle)))
+
+    @classmethod
+    def on_flat(cls, body: BodyMesh, boundary: str, place: complex, reach: float) -> OppositeZone:
+        """Return the zone within `reach` of a place on a flat along x with the body below it."""
+        edges = run_of_edges(body, boundary, place, reach)[::-1, ::-1]
+        nodes = np.append(edges[:, :2].ravel(), edges[-1, 2])
+        return cls(nodes=nodes, coordinates=np.array(body.mesh.doflocs[0, nodes]))
 
     @property
     def edge_count(self) -> int:
@@ -208,20 +215,25 @@ class RoundZone:
         return unknowns_of_nodes(self.nodes)
 
     @property
-    def vertex_angles(self) -> FloatArray:
-        """Angles of the vertices, rad, shape (edges + 1,)."""
-        return self.angles[::2]
+    def vertices(self) -> FloatArray:
+        """Coordinates of the vertices, shape (edges + 1,)."""
+        return self.coordinates[::2]
 
-    def shapes_at(self, angle: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Return the edge at each angle and the shape functions of its nodes there, shapes (n,) and (3, n).
+    def unit_loads(self, unknowns: int) -> sp.csc_matrix:
+        """Return unit forces on each unknown of the zone, shape (unknowns, 2 k)."""
+        own = self.unknowns
+        return sp.csc_matrix((np.ones(len(own)), (own, np.arange(len(own)))), shape=(unknowns, len(own)))
 
-        Angles beyond the zone are taken at its end; the solution must not carry pressure there.
+    def shapes_at(self, coordinate: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return the edge at each coordinate and the shape functions of its nodes there, shapes (n,) and (3, n).
+
+        Coordinates beyond the zone are taken at its end; the solution must not carry pressure there.
         """
-        vertices = self.vertex_angles
-        edge = np.clip(np.searchsorted(vertices, angle, side="right") - 1, 0, self.edge_count - 1)
-        first, middle, last = (self.angles[2 * edge + k] for k in range(3))
-        # The angle runs along the edge as a quadratic in ξ; invert it (its second-order part is small).
+        vertices = self.vertices
+        edge = np.clip(np.searchsorted(vertices, coordinate, side="right") - 1, 0, self.edge_count - 1)
+        first, middle, last = (self.coordinates[2 * edge + k] for k in range(3))
+        # The coordinate runs along the edge as a quadratic in ξ; invert it (its second-order part is small).
         slope, bend = 4.0 * middle - 3.0 * first - last, 2.0 * (first + last - 2.0 * middle)
-        rise = np.clip(angle, vertices[0], vertices[-1]) - first
+        rise = np.clip(coordinate, vertices[0], vertices[-1]) - first
         xi = 2.0 * rise / (slope + np.sqrt(slope**2 + 4.0 * bend * rise))
         return edge, quadratic_shapes(xi)
