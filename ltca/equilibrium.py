@@ -29,7 +29,8 @@ ROUND_OFF_BOUND = 1e-5
 
 ITERATIONS = 200
 STEP_BOUND = 0.05
-"""Largest step, mm: long against elastic approaches (µm), short against the radius of a flank (mm)."""
+"""Largest first step of a mode, mm: long against elastic approaches (µm), short against the radius of a flank (mm).
+It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
 LINE_TRIALS = 12
 SLOPE_LEFT = 0.3
 """A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
@@ -137,6 +138,7 @@ class _Search:
     ) -> None:
         self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
         self.pose = pose
+        self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
         self.history: list[FloatArray] = []
 
     def evaluate(
@@ -154,7 +156,7 @@ class _Search:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        damping = np.full(count, 1e-6)
+        damping, bound = np.full(count, 1e-6), np.full(count, STEP_BOUND)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
@@ -167,10 +169,12 @@ class _Search:
             if active.size == 0:
                 return self.finish(iterations, known)
             iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active])
+            step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
             taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
             self.pose[active] = taken
             residual[active] = np.max(np.abs(gradient), axis=1)
+            bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
+            bound[active] = bound[active].clip(1e-3 * STEP_BOUND, max(STEP_BOUND, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
             known = known.replaced(active, start)
@@ -231,7 +235,9 @@ class _Search:
         )
 
 
-def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _damped_step(
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
 
     With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
@@ -244,5 +250,5 @@ def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray)
     values, modes = np.linalg.eigh(tangent)
     along = np.einsum("bij,bi->bj", modes, gradient)
     floor = np.maximum(damping, 1e-15) * stiffness
-    step = np.clip(-along / (np.abs(values) + floor[:, None]), -STEP_BOUND, STEP_BOUND)
+    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound[:, None], bound[:, None])
     return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)
