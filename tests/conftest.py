@@ -69,8 +69,7 @@ def random_drives() -> list[Drive]:
 
         def errors(count: int, size: float = size) -> dict[str, list[float]]:
             return {
-                name: (size * rng.uniform(-0.2, 0.2, count)).tolist()
-                for name in ("radial", "tangential", "diameter")
+                name: (size * rng.uniform(-0.2, 0.2, count)).tolist() for name in ("radial", "tangential", "diameter")
             }
 
         pocket = errors(rollers)

@@ -64,7 +64,9 @@ def test_turning_everything_by_a_hole_pitch(symmetric):
     np.testing.assert_allclose(plain.bearing_radial, turned.bearing_radial, atol=LOAD)
     np.testing.assert_allclose(plain.bearing_tangential, turned.bearing_tangential, atol=LOAD)
     np.testing.assert_allclose(plain.full.pose[:, 2:], turned.full.pose[:, 2:], atol=ANGLE)
-    displacement = [(a.full.pose[:, 0] + 1j * a.full.pose[:, 1]) * np.exp(-1j * a.full.crank_angle) for a in (plain, turned)]
+    displacement = [
+        (a.full.pose[:, 0] + 1j * a.full.pose[:, 1]) * np.exp(-1j * a.full.crank_angle) for a in (plain, turned)
+    ]
     np.testing.assert_allclose(displacement[0], displacement[1], atol=LENGTH)
     # and the errors are felt: without moving them on the answer differs
     unmoved = analyse(symmetric(0), angles + 2.0 * np.pi / 6.0)

@@ -19,7 +19,9 @@ class PowerLaw:
 
     def load_and_stiffness(self, approach, effective_radius):
         pressed = np.maximum(approach, 0.0) + 0.0 * effective_radius
-        slope = np.where(pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0)
+        slope = np.where(
+            pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0
+        )
         return self.factor * pressed**self.exponent, slope
 
     def energy(self, approach, effective_radius):

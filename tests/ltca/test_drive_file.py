@@ -64,7 +64,9 @@ def test_torque_share_is_one_over_the_number_of_discs():
 
 
 def test_error_arrays_are_read():
-    text = BASE.replace("pin_radius = 6.5 ", 'pin_errors = { radial = ["5 um", ' + "0.0, " * 13 + "] }\npin_radius = 6.5 ")
+    text = BASE.replace(
+        "pin_radius = 6.5 ", 'pin_errors = { radial = ["5 um", ' + "0.0, " * 13 + "] }\npin_radius = 6.5 "
+    )
     assert parse_drive(text).cases["nominal"].pin_wheel.pin_errors.radial[0] == pytest.approx(0.005)
 
 
@@ -84,7 +86,11 @@ def test_error_arrays_are_read():
         ("stiffness = 1.0e6", "stiffness = '1 N'", "pin_shaft.stiffness = '1 N': must have the unit N/mm"),
         ("bearing = 0.0 ", "bearing = -0.01 ", "clearance.bearing = -0.01: must be at least 0 mm"),
         ("poisson_ratio = 0.3 }", "poisson_ratio = 0.5 }", "must be at least 0 and less than 0.5"),
-        ("# torque_share = 1.0", "torque_share = 1.5 #", "disc.torque_share = 1.5: must be greater than 0 and at most 1"),
+        (
+            "# torque_share = 1.0",
+            "torque_share = 1.5 #",
+            "disc.torque_share = 1.5: must be greater than 0 and at most 1",
+        ),
         ("[crank]\neccentricity = 4.0", "crank = 4.0", "crank = 4.0: must be a table"),
     ],
 )
@@ -104,7 +110,8 @@ def test_several_mistakes_are_told_together():
 
 def test_mistakes_of_cases_carry_their_names():
     error = refuse(
-        BASE + '[[case]]\nname = "A"\nclearance = { bearing = -1.0 }\n[[case]]\nname = "B"\nclearance = { pin_hole = 3.0 }'
+        BASE
+        + '[[case]]\nname = "A"\nclearance = { bearing = -1.0 }\n[[case]]\nname = "B"\nclearance = { pin_hole = 3.0 }'
     )
     assert error.problems[0].startswith("case A: clearance.bearing")
     assert error.problems[1].startswith("case B: clearance.pin_hole = 3 mm: must be at most 2 mm")

@@ -225,6 +225,8 @@ def test_light_torque_is_that_of_the_drive(vary):
 
 def test_cases_of_different_shape_are_refused(vary):
     other = vary(pin_shaft={"number_of_pins": 6})
-    with pytest.raises(DriveError, match=r"case B: has 14 wheel pins, 11 rollers and 6 shaft pins: must be 14, 11 and 8"):
+    with pytest.raises(
+        DriveError, match=r"case B: has 14 wheel pins, 11 rollers and 6 shaft pins: must be 14, 11 and 8"
+    ):
         check_common_shape({"A": vary(), "B": other})
     check_common_shape({"A": vary(), "C": vary()})

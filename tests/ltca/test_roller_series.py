@@ -23,7 +23,9 @@ class PowerLaw:
 
     def load_and_stiffness(self, approach, effective_radius):
         pressed = np.maximum(approach, 0.0) + 0.0 * effective_radius
-        slope = np.where(pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0)
+        slope = np.where(
+            pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0
+        )
         return self.factor * pressed**self.exponent, slope
 
     def energy(self, approach, effective_radius):
@@ -33,15 +35,15 @@ class PowerLaw:
 
 def power_laws(rollers):
     radius = np.full(rollers, 4.0)
-    return RollerLaws(inner=PowerLaw(8e5, 10.0 / 9.0), outer=PowerLaw(1.1e6, 1.3), inner_radius=radius, outer_radius=radius)
+    return RollerLaws(
+        inner=PowerLaw(8e5, 10.0 / 9.0), outer=PowerLaw(1.1e6, 1.3), inner_radius=radius, outer_radius=radius
+    )
 
 
 def rays(rng, positions=5, rollers=9, clearance=0.0, roller_errors=0.0):
     angles = rng.uniform(0.0, 2.0 * np.pi, (positions, 1)) + 2.0 * np.pi * np.arange(rollers) / rollers
     radius = 5.0 + roller_errors * rng.uniform(-1.0, 1.0, rollers)
-    return RollerRays(
-        direction=np.exp(1j * angles), outermost=19.5 + radius, bore_play=29.5 + 0.5 * clearance - radius
-    )
+    return RollerRays(direction=np.exp(1j * angles), outermost=19.5 + radius, bore_play=29.5 + 0.5 * clearance - radius)
 
 
 def total_energy(case, laws, displacement, roller, row, place):
