@@ -8,12 +8,13 @@ U_i(δ_i(s)) + U_o(δ_o(s, d)) over s.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.contact_law import LoadLaw
 from ltca.errors import ConvergenceError
-from ltca.line_contact import LineContactLaw
 from ltca.pairs import RollerRays
 
 FloatArray = NDArray[np.float64]
@@ -21,21 +22,23 @@ ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
 
+Law = TypeVar("Law", bound=LoadLaw)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RollerLaws:
+class RollerLaws(Generic[Law]):
     """Load laws of the two contacts of every roller.
 
     Attributes
     ----------
-    inner, outer : LineContactLaw
+    inner, outer : LoadLaw
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (n_BR,)
         Effective radii of curvature, mm.
     """
 
-    inner: LineContactLaw
-    outer: LineContactLaw
+    inner: Law
+    outer: Law
     inner_radius: FloatArray
     outer_radius: FloatArray
 
@@ -70,7 +73,7 @@ class RollerState:
 def balance_rollers(
     rays: RollerRays,
     displacement: ComplexArray,
-    laws: RollerLaws,
+    laws: RollerLaws[Law],
     start: FloatArray | None = None,
 ) -> RollerState:
     """Place every roller so that its two contacts balance.
@@ -130,7 +133,7 @@ def balance_rollers(
         step = imbalance / (safe * total)
         following = share - step
         # Newton within the bracket, bisection where it leaves it.
-        following = np.where((following > low) & (following < high), following, 0.5 * (low + high))
+        following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
         following = np.where(pressed & (imbalance != 0.0), following, share)
         history.append(float(np.max(np.abs(following - share), initial=0.0)))
         if history[-1] <= 1e-11:

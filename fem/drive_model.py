@@ -1,0 +1,437 @@
+"""Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a pose.
+
+Which body carries the pressure: the disc toward wheel pins, rollers and shaft pins, the inner race toward the
+rollers. Pins and rollers that share a mesh share one factorisation and one compliance, turned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem.body_mesh import BodyMesh
+from fem.condensation import CondensedBody, condense_body
+from fem.coupling import PairIntegrals, Pose, integrate_pair
+from fem.drive_mesh import DriveMeshes
+from fem.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
+from fem.expected_contacts import ExpectedContacts
+from fem.geometry import Curve, DriveShapes
+from fem.surface import PressureZone, OppositeZone
+from fem.unilateral import ContactProblem
+from ltca.drive import Drive, Material
+from ltca.placement import Placement
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+PairKind = Literal["pin", "roller_outer", "roller_inner", "hole"]
+
+# Reach of the pressure zones and of the zones opposite, in expected half-widths. A load guessed too small by a
+# factor of four doubles the half-width and still ends inside.
+PRESSURE_REACH = 2.4
+OPPOSITE_REACH = 3.6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrivePose:
+    """Places of the rigid bodies at one crank angle.
+
+    Attributes
+    ----------
+    disc_x, disc_y, disc_rotation : float
+        Displacement of the disc centre from the inner-race centre, fixed axes, mm, and rotation, rad: area
+        means.
+    wheel_angle : float
+        Deviation of the wheel from φ_C/u, rad.
+    roller_distances : array, shape (n_BR,)
+        Distance of each roller from the race centre along its cage ray, mm.
+    shaft_pin_displacements : array of complex, shape (z_PS,)
+        Displacement of each shaft pin on its spring, mm.
+    """
+
+    disc_x: float
+    disc_y: float
+    disc_rotation: float
+    wheel_angle: float
+    roller_distances: FloatArray
+    shaft_pin_displacements: ComplexArray
+
+    @property
+    def disc_displacement(self) -> complex:
+        """Displacement of the disc centre, mm."""
+        return complex(self.disc_x, self.disc_y)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundGroup:
+    """Condensed pin or roller whose mesh serves several bodies.
+
+    Attributes
+    ----------
+    body : BodyMesh
+        The mesh in the frame in which it was condensed.
+    condensed : CondensedBody
+        Unit loads are nodal forces of the zones, one zone after the other.
+    zones : tuple of OppositeZone
+        One for a pin; outer and inner for a roller.
+    """
+
+    body: BodyMesh
+    condensed: CondensedBody
+    zones: tuple[OppositeZone, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactPair:
+    """One candidate contact.
+
+    Attributes
+    ----------
+    kind : {"pin", "roller_outer", "roller_inner", "hole"}
+        What meets what.
+    index : int
+        Number of the pin, roller or hole.
+    zone : PressureZone
+        Side that carries the pressure.
+    unknowns : slice
+        Its pressure unknowns among all of the drive.
+    radius : float
+        Radius of the circle opposite, mm.
+    group : int
+        Its `RoundGroup`, −1 for a rigid circle.
+    turn : float
+        Rotation of the group's mesh to this body, rad.
+    expected_half_width : float
+        mm.
+    expected_load : float
+        N.
+    """
+
+    kind: PairKind
+    index: int
+    zone: PressureZone
+    unknowns: slice
+    radius: float
+    group: int
+    turn: float
+    expected_half_width: float
+    expected_load: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveModel:
+    """Condensed drive at one crank angle; the meshes and factors serve every load and pose near by.
+
+    Attributes
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    shapes : DriveShapes
+        Exact shapes.
+    meshes : DriveMeshes
+        Their meshes.
+    contacts : ExpectedContacts
+        For which they were graded.
+    disc, race : CondensedBody
+        Unit loads are the pressure unknowns on them.
+    groups : tuple of RoundGroup
+        Pins and rollers.
+    pairs : tuple of ContactPair
+        All candidate contacts, those on the disc first.
+    placement : Placement
+        Nominal places of the parts.
+    """
+
+    drive: Drive
+    crank_angle: float
+    shapes: DriveShapes
+    meshes: DriveMeshes
+    contacts: ExpectedContacts
+    disc: CondensedBody
+    race: CondensedBody
+    groups: tuple[RoundGroup, ...]
+    pairs: tuple[ContactPair, ...]
+    placement: Placement
+
+    @property
+    def unknown_count(self) -> int:
+        """Number of pressure unknowns."""
+        return self.pairs[-1].unknowns.stop
+
+    @property
+    def rollers(self) -> tuple[int, ...]:
+        """Rollers with candidate contacts, in the order of their motions."""
+        return tuple(pair.index for pair in self.pairs if pair.kind == "roller_outer")
+
+    @property
+    def race_centre(self) -> complex:
+        """Centre of inner race and cage, mm."""
+        return complex(self.placement.race_centre(np.asarray(self.crank_angle)))
+
+    @property
+    def roller_rays(self) -> ComplexArray:
+        """Unit vectors of the cage rays."""
+        return np.asarray(np.exp(1j * self.placement.roller_angles(np.asarray(self.crank_angle))))
+
+    def disc_pose(self, pose: DrivePose) -> Pose:
+        """Return the disc's frame."""
+        return Pose(centre=self.race_centre + pose.disc_displacement, rotation=pose.disc_rotation)
+
+    def circle_centre(self, kind: PairKind, index: int, pose: DrivePose) -> complex:
+        """Return the centre of a pin, roller or shaft pin in the fixed frame, mm."""
+        place = self.placement
+        if kind == "pin":
+            turn = self.crank_angle / place.reduction_ratio + pose.wheel_angle
+            return complex(place.wheel_pin_centres[index] * np.exp(1j * turn))
+        if kind == "hole":
+            return complex(place.shaft_pin_centres[index] + pose.shaft_pin_displacements[index])
+        return self.race_centre + complex(pose.roller_distances[index] * self.roller_rays[index])
+
+    def integrate(self, pair: ContactPair, pose: DrivePose) -> PairIntegrals:
+        """Integrate one pair at a pose."""
+        carrier = Pose(centre=self.race_centre) if pair.kind == "roller_inner" else self.disc_pose(pose)
+        circle = Pose(centre=self.circle_centre(pair.kind, pair.index, pose), rotation=pair.turn)
+        opposite = None
+        if pair.group >= 0:
+            opposite = self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+        return integrate_pair(pair.zone, carrier, circle, pair.radius, opposite)
+
+    def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
+        """Return a pose with rollers midway between race and bore and shaft pins unloaded.
+
+        Parameters
+        ----------
+        start : tuple of four floats, optional
+            Disc x, y (mm), disc rotation, wheel angle (rad); those the meshes were graded for by default.
+        """
+        contacts, place = self.contacts, self.placement
+        x, y, rotation, wheel = start or (
+            contacts.disc_x,
+            contacts.disc_y,
+            contacts.disc_rotation,
+            contacts.wheel_angle,
+        )
+        toward = (complex(x, y) * self.roller_rays.conjugate()).real
+        outer = place.bore_radius - place.roller_radii + toward
+        inner = place.inner_race_radius + place.roller_radii
+        return DrivePose(
+            disc_x=x,
+            disc_y=y,
+            disc_rotation=rotation,
+            wheel_angle=wheel,
+            roller_distances=0.5 * (outer + inner),
+            shaft_pin_displacements=np.zeros(len(place.hole_radii), dtype=complex),
+        )
+
+    def start_active(self) -> NDArray[np.bool_]:
+        """Return the pressure unknowns under the expected pressures."""
+        active = np.zeros(self.unknown_count, dtype=bool)
+        for pair in self.pairs:
+            if pair.expected_load > 0.0:
+                arc = pair.zone.arc[1:-1]
+                middle = 0.5 * pair.zone.arc[-1]
+                active[pair.unknowns] = np.abs(arc - middle) < 0.8 * pair.expected_half_width
+        return active
+
+    def contact_problem(
+        self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float
+    ) -> ContactProblem:
+        """Return the condensed contact problem linearised about a pose.
+
+        Motions: disc x, y (mm), rotation (rad), wheel rotation (rad), then each candidate roller along its ray.
+        """
+        count, rollers = self.unknown_count, self.rollers
+        compliance = np.zeros((count, count))
+        on_disc = self.disc.compliance.shape[0]
+        compliance[:on_disc, :on_disc] = self.disc.compliance
+        compliance[on_disc:, on_disc:] = self.race.compliance
+        motions = np.zeros((count, 4 + len(rollers)))
+        gap = np.zeros(count)
+        centre = self.disc_pose(pose).centre
+        spring = self.drive.pin_shaft.stiffness
+        by_roller: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
+        for pair, integral in zip(self.pairs, integrals, strict=True):
+            own = pair.unknowns
+            gap[own] = integral.gap
+            fx, fy, moment = integral.force
+            if pair.kind != "roller_inner":
+                motions[own, 0], motions[own, 1] = -fx, -fy
+                motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
+            if pair.kind == "pin":
+                motions[own, 3] = moment
+                loads = integral.opposite_loads
+                compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
+            elif pair.kind == "hole":
+                moved = pose.shaft_pin_displacements[pair.index]
+                gap[own] -= fx * moved.real + fy * moved.imag
+                compliance[own, own] += (np.outer(fx, fx) + np.outer(fy, fy)) / spring
+            else:
+                ray = self.roller_rays[pair.index]
+                motions[own, 4 + rollers.index(pair.index)] = fx * ray.real + fy * ray.imag
+                by_roller.setdefault(pair.index, []).append((pair, integral))
+        for ends in by_roller.values():
+            (outer, outer_integral), (inner, inner_integral) = ends
+            own = np.r_[outer.unknowns, inner.unknowns]
+            split = outer_integral.opposite_loads.shape[0]
+            compliance_round = self.groups[outer.group].condensed.compliance
+            loads = np.zeros((compliance_round.shape[0], len(own)))
+            width = outer_integral.gap.size
+            loads[:split, :width] = outer_integral.opposite_loads
+            loads[split:, width:] = inner_integral.opposite_loads
+            compliance[np.ix_(own, own)] += loads.T @ compliance_round @ loads
+        external = np.zeros(4 + len(rollers))
+        external[3] = -wheel_moment
+        return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)
+
+
+def condense_drive(
+    drive: Drive,
+    shapes: DriveShapes,
+    contacts: ExpectedContacts,
+    meshes: DriveMeshes,
+    *,
+    state: PlaneState = "strain",
+) -> DriveModel:
+    """Assemble, factorise and condense all bodies.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    shapes : DriveShapes
+        Its shapes.
+    contacts : ExpectedContacts
+        Expected contacts; those with a half-width become candidates.
+    meshes : DriveMeshes
+        Meshes graded for them.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+
+    Returns
+    -------
+    DriveModel
+        Ready for any load and pose near the expected one.
+
+    Raises
+    ------
+    MeshError
+        When a boundary is missing or too coarse for a contact zone.
+    """
+    thickness, materials = drive.disc.thickness, drive.materials
+    groups: list[RoundGroup] = []
+    pairs: list[ContactPair] = []
+    place = Placement.of_drive(drive)
+
+    def condense_round(
+        bodies: tuple[BodyMesh, ...],
+        directions: tuple[FloatArray, ...],
+        widths: tuple[FloatArray, ...],
+        material: Material,
+        core: bool,
+    ) -> dict[int, tuple[int, float]]:
+        """Return group and turn of every candidate body."""
+        found: dict[int, tuple[int, float]] = {}
+        shared: dict[int, list[int]] = {}
+        for index, body in enumerate(bodies):
+            if widths[0][index] > 0.0:
+                shared.setdefault(id(body.mesh.t), []).append(index)
+        for members in shared.values():
+            body = bodies[members[0]]
+            radius = float(np.abs(body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]).max())
+            zones = []
+            for direction, width in zip(directions, widths, strict=True):
+                place_on = radius * np.exp(1j * direction[members[0]])
+                reach = OPPOSITE_REACH * float(width[members].max())
+                zones.append(OppositeZone.on_circle(body, "surface", complex(place_on), reach))
+            loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
+            stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+            fixed = unknowns_of_boundary(body, "core") if core else None
+            condensed = condense_body(body, stiffness, loads, fixed=fixed)
+            groups.append(RoundGroup(body=body, condensed=condensed, zones=tuple(zones)))
+            for index in members:
+                turn = float(directions[0][index] - directions[0][members[0]])
+                found[index] = (len(groups) - 1, turn)
+        return found
+
+    pin_groups = condense_round(
+        meshes.wheel_pins, (contacts.pins.direction,), (contacts.pins.half_width,), materials.wheel_pin, True
+    )
+    outer, inner = contacts.rollers_outer, contacts.rollers_inner
+    roller_groups = condense_round(
+        meshes.rollers,
+        (outer.direction, inner.direction),
+        (outer.half_width, inner.half_width),
+        materials.roller,
+        False,
+    )
+
+    def add_pairs(
+        kind: PairKind,
+        body: BodyMesh,
+        curves: tuple[Curve, ...],
+        points: ComplexArray,
+        width: FloatArray,
+        load: FloatArray,
+        radii: FloatArray,
+        found: dict[int, tuple[int, float]],
+    ) -> None:
+        for index in np.flatnonzero(width > 0.0).tolist():
+            reach = PRESSURE_REACH * float(width[index])
+            curve = curves[index] if len(curves) > 1 else curves[0]
+            zone = PressureZone.on_boundary(body, curve, complex(points[index]), reach, thickness=thickness)
+            first = pairs[-1].unknowns.stop if pairs else 0
+            group, turn = found.get(index, (-1, 0.0))
+            pairs.append(
+                ContactPair(
+                    kind=kind,
+                    index=index,
+                    zone=zone,
+                    unknowns=slice(first, first + zone.unknown_count),
+                    radius=float(radii[index]),
+                    group=group,
+                    turn=turn,
+                    expected_half_width=float(width[index]),
+                    expected_load=float(load[index]),
+                )
+            )
+
+    disc, race = meshes.disc, meshes.inner_race
+    flank, bore, holes = shapes.disc.flank, shapes.disc.bore, shapes.disc.holes
+    pins = contacts.pins
+    add_pairs("pin", disc, (flank,), contacts.flank_points, pins.half_width, pins.load, place.wheel_pin_radii, pin_groups)
+    add_pairs("hole", disc, holes, contacts.hole_points, contacts.holes.half_width, contacts.holes.load, place.shaft_pin_radii, {})
+    add_pairs("roller_outer", disc, (bore,), contacts.bore_points, outer.half_width, outer.load, place.roller_radii, roller_groups)
+    split = len(pairs)
+    add_pairs(
+        "roller_inner",
+        race,
+        (shapes.inner_race.curves[0],),
+        contacts.race_points,
+        inner.half_width,
+        inner.load,
+        place.roller_radii,
+        roller_groups,
+    )
+
+    def condense_carrier(body: BodyMesh, own: list[ContactPair], material: Material, free: bool) -> CondensedBody:
+        stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+        loads = sp.hstack([pair.zone.load_shapes(body.unknowns) for pair in own], format="csc")
+        return condense_body(body, stiffness, loads, fixed=None if free else unknowns_of_boundary(body, "inner"))
+
+    return DriveModel(
+        drive=drive,
+        crank_angle=contacts.crank_angle,
+        shapes=shapes,
+        meshes=meshes,
+        contacts=contacts,
+        disc=condense_carrier(disc, pairs[:split], materials.disc, True),
+        race=condense_carrier(race, pairs[split:], materials.inner_race, False),
+        groups=tuple(groups),
+        pairs=tuple(pairs),
+        placement=place,
+    )

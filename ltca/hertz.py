@@ -1,0 +1,241 @@
+"""Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical point contact.
+
+Sources: K. L. Johnson, *Contact Mechanics* (1985), sections 4.2 (lines and ellipses), 5.6 (bodies with a datum);
+E. McEwen, Phil. Mag. 40 (1949) 454 (stresses); G. Lundberg, Forsch. Ing.-Wes. 10 (1939) 201 (finite strip).
+Loads of line contacts are per unit length [N/mm]; E* is the contact modulus, ρ the effective radius.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+Array = NDArray[np.float64]
+
+
+def contact_modulus(
+    young_modulus_1: float, poisson_ratio_1: float, young_modulus_2: float, poisson_ratio_2: float
+) -> float:
+    """E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2) [MPa].
+
+    Examples
+    --------
+    >>> round(contact_modulus(206e3, 0.3, 206e3, 0.3))
+    113187
+    """
+    first = (1.0 - poisson_ratio_1**2) / young_modulus_1
+    second = (1.0 - poisson_ratio_2**2) / young_modulus_2
+    return 1.0 / (first + second)
+
+
+def effective_radius(radius_1: float, radius_2: float) -> float:
+    """1/(1/r1 + 1/r2) [mm]; a concave surface has a negative radius, a flat one an infinite one."""
+    return 1.0 / (1.0 / radius_1 + 1.0 / radius_2)
+
+
+def line_half_width(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
+    """Half-width b = √(4 q ρ/(π E*)) [mm] (Johnson Eq. 4.43)."""
+    q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
+    return np.asarray(np.sqrt(4.0 * q * radius / (np.pi * contact_modulus)))
+
+
+def line_peak_pressure(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
+    """Peak pressure p0 = √(q E*/(π ρ)) [MPa] (Johnson Eq. 4.45)."""
+    q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
+    return np.asarray(np.sqrt(q * contact_modulus / (np.pi * radius)))
+
+
+def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
+    """Load per length q = π E* b²/(4ρ) [N/mm]."""
+    b, radius = np.asarray(half_width, dtype=float), np.asarray(effective_radius, dtype=float)
+    return np.asarray(np.pi * contact_modulus * b**2 / (4.0 * radius))
+
+
+def half_plane_approach(
+    line_load: ArrayLike, half_width: ArrayLike, depth: ArrayLike, young_modulus: float, poisson_ratio: float
+) -> Array:
+    """Approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane [mm].
+
+    δ = q (1−ν²)/(π E) (2 ln(2d/b) − ν/(1−ν)), plane strain (Johnson section 5.6).
+    """
+    q, b, d = (np.asarray(value, dtype=float) for value in (line_load, half_width, depth))
+    compliance = (1.0 - poisson_ratio**2) / (np.pi * young_modulus)
+    return np.asarray(q * compliance * (2.0 * np.log(2.0 * d / b) - poisson_ratio / (1.0 - poisson_ratio)))
+
+
+def cylinder_approach(
+    line_load: ArrayLike, half_width: ArrayLike, radius: ArrayLike, young_modulus: float, poisson_ratio: float
+) -> Array:
+    """Approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them [mm].
+
+    δ = q (1−ν²)/(π E) (2 ln(4R/b) − 1), plane strain (Johnson section 5.6, Eq. 5.57). The compression of the
+    diameter is the sum of both sides with their own half-widths (Eq. 5.58).
+    """
+    q, b, r = (np.asarray(value, dtype=float) for value in (line_load, half_width, radius))
+    return np.asarray(q * (1.0 - poisson_ratio**2) / (np.pi * young_modulus) * (2.0 * np.log(4.0 * r / b) - 1.0))
+
+
+def strip_approach(
+    line_load: ArrayLike, half_width: ArrayLike, length: ArrayLike, contact_modulus: float
+) -> tuple[Array, Array]:
+    """Approach of two half-spaces over a long strip with Hertz pressure across and even load along it [mm].
+
+    At mid-length δ = q/(π E*) (2 ln(2L/b) + 1) (Lundberg's 1.1932 + ln(L/b), twice); averaged over the length
+    δ = q/(π E*) (2 ln(4L/b) − 1). A real contact evens the approach out and lies between the two; the mean is
+    an upper bound of the approach at given load since the even load is only one of the admissible ones.
+
+    Returns
+    -------
+    mid, mean : ndarray
+        Approach at mid-length and its mean over the length.
+    """
+    q, b, strip = (np.asarray(value, dtype=float) for value in (line_load, half_width, length))
+    scale = q / (np.pi * contact_modulus)
+    mid = scale * (2.0 * np.log(2.0 * strip / b) + 1.0)
+    mean = scale * (2.0 * np.log(4.0 * strip / b) - 1.0)
+    return np.asarray(mid), np.asarray(mean)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlaneStress2D:
+    """Stresses in the plane of a line contact [MPa], compression negative.
+
+    Attributes
+    ----------
+    across, depthwise, shear : ndarray
+        σx along the surface, σz into the body, τxz.
+    """
+
+    across: Array
+    depthwise: Array
+    shear: Array
+
+    @property
+    def max_shear(self) -> Array:
+        """Largest shear stress in the plane [MPa]."""
+        return np.asarray(np.hypot(0.5 * (self.across - self.depthwise), self.shear))
+
+
+def line_contact_stress(x: ArrayLike, depth: ArrayLike, half_width: float, peak_pressure: float) -> PlaneStress2D:
+    """Stresses below a Hertz line contact in closed form (McEwen; Johnson Eq. 4.49).
+
+    Parameters
+    ----------
+    x, depth : array_like
+        Place along the surface and depth ≥ 0 [mm].
+    half_width : float
+        b [mm].
+    peak_pressure : float
+        p0 [MPa].
+
+    Examples
+    --------
+    The largest shear stress is 0.300 p0 at a depth of 0.786 b:
+
+    >>> float(line_contact_stress(0.0, 0.786, 1.0, 1.0).max_shear.round(3))
+    0.3
+    """
+    across, z = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(depth, dtype=float))
+    b = half_width
+    s = b**2 - across**2 + z**2
+    root = np.hypot(s, 2.0 * across * z)
+    # m² = ½(root + s), n² = ½(root − s), m n = |x| z: take the larger from the sum, the smaller by division.
+    large = np.sqrt(0.5 * (root + np.abs(s)))
+    safe = np.where(large > 0.0, large, 1.0)
+    small = np.where(large > 0.0, np.abs(across) * z / safe, 0.0)
+    m = np.where(s >= 0.0, large, small)
+    n = np.where(s >= 0.0, small, large) * np.sign(across)
+    both = m**2 + n**2
+    ratio = np.where(both > 0.0, (z**2 + n**2) / np.where(both > 0.0, both, 1.0), 1.0)
+    shear_ratio = np.where(both > 0.0, (m**2 - z**2) / np.where(both > 0.0, both, 1.0), 0.0)
+    scale = -peak_pressure / b
+    return PlaneStress2D(
+        across=scale * (m * (1.0 + ratio) - 2.0 * z),
+        depthwise=scale * m * (1.0 - ratio),
+        shear=scale * n * shear_ratio,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PointContact:
+    """Hertz contact over an ellipse.
+
+    Attributes
+    ----------
+    load : float
+        Normal load [N].
+    approach : float
+        Approach [mm].
+    half_axis_long, half_axis_short : float
+        Half axes of the contact ellipse [mm].
+    peak_pressure : float
+        Pressure at the centre [MPa].
+    """
+
+    load: float
+    approach: float
+    half_axis_long: float
+    half_axis_short: float
+    peak_pressure: float
+
+    @property
+    def energy(self) -> float:
+        """∫ F dδ = 2/5 F δ [N·mm], since F grows like δ^1.5."""
+        return 0.4 * self.load * self.approach
+
+
+def solve_point_contact(
+    approach: float, radius_small: float, radius_large: float, contact_modulus: float
+) -> PointContact:
+    """Elliptical Hertz contact of separation x²/(2 R_small) + y²/(2 R_large) at given approach.
+
+    Johnson Eq. 4.26: with p0 = 3F/(2πab), e² = 1 − b²/a²,
+    A = p0 b (K−E)/(E* e² a²), B = p0 b ((a²/b²)E − K)/(E* e² a²), δ = p0 b K/E*, A = 1/(2 R_large), B = 1/(2 R_small).
+
+    Parameters
+    ----------
+    approach : float
+        δ [mm], positive.
+    radius_small, radius_large : float
+        Principal relative radii [mm], radius_small ≤ radius_large.
+    contact_modulus : float
+        E* [MPa].
+
+    Raises
+    ------
+    ValueError
+        If the radii are not positive and in order.
+    """
+    if not 0.0 < radius_small <= radius_large:
+        raise ValueError(f"need 0 < radius_small <= radius_large, got {radius_small} and {radius_large}")
+    if radius_large / radius_small < 1.0 + 1e-9:
+        side = float(np.sqrt(approach * radius_small))
+        peak = 2.0 * contact_modulus * side / (np.pi * radius_small)
+        load = 2.0 / 3.0 * peak * np.pi * side**2
+        return PointContact(load=load, approach=approach, half_axis_long=side, half_axis_short=side, peak_pressure=peak)
+
+    def curvature_mismatch(log_ratio: float) -> float:
+        square = np.exp(-2.0 * log_ratio)
+        first, second = ellipk(1.0 - square), ellipe(1.0 - square)
+        return float(np.log((second / square - first) / (first - second)) - np.log(radius_large / radius_small))
+
+    # a/b lies between (R_large/R_small)^½ and R_large/R_small.
+    log_radii = float(np.log(radius_large / radius_small))
+    log_ratio = brentq(curvature_mismatch, 0.3 * log_radii, 1.1 * log_radii, xtol=1e-14)
+    ratio = float(np.exp(-log_ratio))
+    parameter = 1.0 - ratio**2
+    first, second = float(ellipk(parameter)), float(ellipe(parameter))
+    long = float(np.sqrt(2.0 * radius_large * approach * (first - second) / (first * parameter)))
+    short = long * ratio
+    peak = approach * contact_modulus / (short * first)
+    return PointContact(
+        load=2.0 / 3.0 * np.pi * long * short * peak,
+        approach=approach,
+        half_axis_long=long,
+        half_axis_short=short,
+        peak_pressure=peak,
+    )

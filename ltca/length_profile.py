@@ -1,0 +1,121 @@
+"""Profiles of rollers and pins along their length: what crowning and relief take away from the cylinder.
+
+Each profile is symmetric about mid-width and gives the relief z(y) ≥ 0 [mm] and the half-length within which the
+undeformed bodies overlap at a given approach (no contact can reach beyond it).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+class LengthProfile(Protocol):
+    """What the contact needs to know of a profile along the width; hashable, since tables are cached by it."""
+
+    def __hash__(self) -> int:
+        """Hash of the parameters."""
+
+    @property
+    def length(self) -> float:
+        """Length of the contact line [mm]."""
+
+    def relief(self, y: ArrayLike) -> Array:
+        """z(y) [mm] at the distance y from mid-width; even in y."""
+
+    def overlap_half_length(self, approach: float) -> float:
+        """Largest |y| ≤ length/2 with z(y) < approach [mm]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CircularCrown:
+    """Barrel of a large radius along the length: z = y²/(2 R).
+
+    Parameters
+    ----------
+    length : float
+        Length [mm].
+    crown_radius : float
+        R [mm].
+    """
+
+    length: float
+    crown_radius: float
+
+    def relief(self, y: ArrayLike) -> Array:
+        """z(y) [mm]."""
+        return np.asarray(np.asarray(y, dtype=float) ** 2 / (2.0 * self.crown_radius))
+
+    def overlap_half_length(self, approach: float) -> float:
+        """√(2 R δ), at most half the length [mm]."""
+        return min(0.5 * self.length, float(np.sqrt(2.0 * self.crown_radius * approach)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LogarithmicRelief:
+    """Logarithmic profile of ISO/TS 16281: z = amplitude · D · ln(1/(1 − (2y/L)²)).
+
+    Parameters
+    ----------
+    length : float
+        Effective length L [mm].
+    diameter : float
+        Diameter D of the roller [mm].
+    amplitude : float
+        0.00035 in ISO/TS 16281 (rollers no longer than 2.5 D).
+    """
+
+    length: float
+    diameter: float
+    amplitude: float = 0.00035
+
+    def relief(self, y: ArrayLike) -> Array:
+        """z(y) [mm]; infinite at and beyond the ends."""
+        square = (2.0 * np.asarray(y, dtype=float) / self.length) ** 2
+        inside = square < 1.0
+        depth = -self.amplitude * self.diameter * np.log1p(-np.where(inside, square, 0.0))
+        return np.where(inside, depth, np.inf)
+
+    def overlap_half_length(self, approach: float) -> float:
+        """L/2 √(1 − exp(−δ/(amplitude D))) [mm]."""
+        fraction = -np.expm1(-approach / (self.amplitude * self.diameter))
+        return 0.5 * self.length * float(np.sqrt(fraction))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EndRelief:
+    """Cylinder with a parabolic drop at each end: z = depth · ((|y| − y0)/relief_length)² beyond y0.
+
+    Parameters
+    ----------
+    length : float
+        Whole length [mm].
+    relief_length : float
+        Length of the relieved part at each end [mm], at most half the length.
+    depth : float
+        Drop at the very end [mm].
+    """
+
+    length: float
+    relief_length: float
+    depth: float
+
+    @property
+    def straight_half_length(self) -> float:
+        """Half the length left cylindrical, y0 [mm]."""
+        return 0.5 * self.length - self.relief_length
+
+    def relief(self, y: ArrayLike) -> Array:
+        """z(y) [mm]."""
+        beyond = np.maximum(np.abs(np.asarray(y, dtype=float)) - self.straight_half_length, 0.0)
+        return np.asarray(self.depth * (beyond / self.relief_length) ** 2)
+
+    def overlap_half_length(self, approach: float) -> float:
+        """y0 + relief_length √(δ/depth), at most half the length [mm]."""
+        reach = self.straight_half_length + self.relief_length * float(np.sqrt(approach / self.depth))
+        return min(0.5 * self.length, reach)
