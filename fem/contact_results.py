@@ -200,7 +200,7 @@ def summarise_contacts(model: DriveModel, solution: PoseSolution) -> ContactResu
 
 def _detail(pair: ContactPair, pressure: FloatArray, load: float, largest: float) -> PairResult:
     arc = pair.zone.arc
-    full = np.concatenate([[0.0], pressure, [0.0]])
+    full = pair.zone.at_vertices(pressure)
     total, centre, square = pressure_moments(arc, full)
     if total <= 0.0:
         return PairResult(load=0.0, share=0.0, peak_pressure=0.0, half_width=0.0, middle=0.0, largest_edge=0.0)

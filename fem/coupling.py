@@ -149,8 +149,7 @@ def integrate_pair(
         edge_opposite, shapes = opposite.shapes_at(_coordinates(partner, opposite_pose, radius, opposite))
         push = normals * local
     for vertex, hat in ((edge, 1.0 - xi), (edge + 1, xi)):
-        inner = (vertex >= 1) & (vertex <= count)
-        column = vertex[inner] - 1
+        inner, column = zone.unknowns_at(vertex)
         share = (area * hat)[inner]
         for total, value in zip(sums, (gap, np.ones_like(gap), normals.real, normals.imag, moment), strict=True):
             total += np.bincount(column, weights=share * value[inner], minlength=count)

@@ -157,7 +157,7 @@ def _pressure_on(model: DriveModel, pressure: FloatArray, nodes: int, race: bool
     field = np.zeros(nodes)
     for pair in model.pairs:
         if (pair.kind == "roller_inner") == race:
-            full = vertex_means(pair.zone.arc, np.concatenate([[0.0], pressure[pair.unknowns], [0.0]]))
+            full = vertex_means(pair.zone.arc, pair.zone.at_vertices(pressure[pair.unknowns]))
             field[pair.zone.nodes[:, 0]] = full[:-1]
             field[pair.zone.nodes[:, 1]] = 0.5 * (full[:-1] + full[1:])
     return field

@@ -136,7 +136,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         pose = _carrier_pose(model, solution, pair)
         arc = pair.zone.arc
         vertices = np.append(pair.zone.places[:, 0], pair.zone.places[-1, 2])
-        pressure = vertex_means(arc, np.concatenate([[0.0], solution.state.contact.pressure[pair.unknowns], [0.0]]))
+        pressure = vertex_means(arc, pair.zone.at_vertices(solution.state.contact.pressure[pair.unknowns]))
         exact, normal = pair.zone.exact(vertices)
         places, into = pose.place(exact), -pose.turn(normal)
         middle = complex(np.interp(detail.middle, arc, places.real), np.interp(detail.middle, arc, places.imag))

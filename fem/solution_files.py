@@ -122,7 +122,7 @@ def _pressure_profiles(solution: FullSolution) -> dict[str, tuple[Any, str, str]
             kinds.append(np.full(len(arc), pair.kind))
             indices.append(np.full(len(arc), pair.index))
             places.append(arc - detail.middle)
-            own = np.concatenate([[0.0], solution.state.contact.pressure[pair.unknowns], [0.0]])
+            own = pair.zone.at_vertices(solution.state.contact.pressure[pair.unknowns])
             values.append(vertex_means(arc, own))
     return {
         "pressure_contact": (np.concatenate(kinds).astype(str), "1", "kind of the contact of each sample"),

@@ -81,7 +81,7 @@ def run_of_edges(body: BodyMesh, boundary: str, place: complex, reach: float) ->
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PressureZone:
-    """Zone whose surface carries the contact pressure: piecewise linear, zero at both ends.
+    """Zone whose surface carries the contact pressure, piecewise linear.
 
     Attributes
     ----------
@@ -93,21 +93,32 @@ class PressureZone:
         The exact boundary; gaps and normals are taken from it.
     thickness : float
         mm.
+    loaded_ends : bool
+        Whether the end vertices carry pressure, too (bodies that touch up to their corners); else it is zero there.
     """
 
     nodes: IntArray
     places: ComplexArray
     curve: Curve
     thickness: float
+    loaded_ends: bool = False
 
     @classmethod
     def on_boundary(
-        cls, body: BodyMesh, curve: Curve, place: complex, reach: float, *, thickness: float
+        cls,
+        body: BodyMesh,
+        curve: Curve,
+        place: complex,
+        reach: float,
+        *,
+        thickness: float,
+        loaded_ends: bool = False,
     ) -> PressureZone:
         """Return the zone of a mesh within `reach` (mm) of a place; see `run_of_edges` for the errors."""
         nodes = run_of_edges(body, curve.name, place, reach)
         x, y = body.mesh.doflocs
-        return cls(nodes=nodes, places=x[nodes] + 1j * y[nodes], curve=curve, thickness=thickness)
+        places = x[nodes] + 1j * y[nodes]
+        return cls(nodes=nodes, places=places, curve=curve, thickness=thickness, loaded_ends=loaded_ends)
 
     @property
     def edge_count(self) -> int:
@@ -116,8 +127,18 @@ class PressureZone:
 
     @property
     def unknown_count(self) -> int:
-        """Number of pressure unknowns: the inner vertices."""
-        return len(self.nodes) - 1
+        """Number of pressure unknowns: the inner vertices, or all."""
+        return len(self.nodes) + (1 if self.loaded_ends else -1)
+
+    def unknowns_at(self, vertex: IntArray) -> tuple[NDArray[np.bool_], IntArray]:
+        """Return which of the vertices carry an unknown, and its number for those."""
+        unknown = vertex if self.loaded_ends else vertex - 1
+        carries = (unknown >= 0) & (unknown < self.unknown_count)
+        return carries, unknown[carries]
+
+    def at_vertices(self, pressure: FloatArray) -> FloatArray:
+        """Return the pressure at all vertices, ends included, MPa."""
+        return pressure if self.loaded_ends else np.concatenate([[0.0], pressure, [0.0]])
 
     @property
     def arc(self) -> FloatArray:
@@ -158,12 +179,12 @@ class PressureZone:
         shapes = quadratic_shapes(xi)
         rows, columns, values = [], [], []
         for vertex, hat in ((edges, 1.0 - xi), (edges + 1, xi)):
-            inner = (vertex >= 1) & (vertex <= self.unknown_count)
+            inner, unknown = self.unknowns_at(vertex)
             for local in range(3):
                 amount = (force * hat * shapes[local])[inner]
                 node = self.nodes[edges, local][inner]
                 rows += [2 * node, 2 * node + 1]
-                columns += [vertex[inner] - 1] * 2
+                columns += [unknown] * 2
                 values += [amount.real, amount.imag]
         matrix = sp.coo_matrix(
             (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),

@@ -100,9 +100,10 @@ def press_together(
         compliance=compliance, gap=integrals.gap, motions=along[:, None], external=np.array([load])
     )
     arc = zone.arc
-    start = np.abs(arc[1:-1] - 0.5 * arc[-1]) < 0.8 * expected_half_width
+    vertices = arc if zone.loaded_ends else arc[1:-1]
+    start = np.abs(vertices - 0.5 * arc[-1]) < 0.8 * expected_half_width
     solution = solve_unilateral_contact(problem, start)
-    pressure = np.concatenate([[0.0], solution.pressure, [0.0]])
+    pressure = zone.at_vertices(solution.pressure)
     force = integrals.force @ solution.pressure
     half_width = 2.0 * float(np.sqrt(pressure_moments(arc, pressure)[2]))
     return TwoBodyContact(
