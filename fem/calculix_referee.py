@@ -185,6 +185,8 @@ def compare_with_calculix(solution: FullSolution, folder: Path, program: str) ->
             f"{detail.peak_pressure:>10.1f}{peak:>10.1f}{rise}"
         )
     arcseconds = np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0
-    lines.append(f"wheel angle: {solution.pose.wheel_angle:.7f} rad, ccx {answer.wheel_angle:.7f} rad ({arcseconds:+.3f}\")")
+    lines.append(
+        f'wheel angle: {solution.pose.wheel_angle:.7f} rad, ccx {answer.wheel_angle:.7f} rad ({arcseconds:+.3f}")'
+    )
     lines.append(f"seconds: {solution.seconds['total']:.1f}, ccx {answer.seconds:.1f}")
     return lines

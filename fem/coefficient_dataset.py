@@ -104,7 +104,9 @@ def derive_coefficients(
     coarse = derive(COARSER * size, ", twice the size")
     fine = derive(size, "")
     disc, pin, roller, race = fine
-    convergence = {"disc": _difference(*(project_rigid_motions(d[0].approach, d[0].resultants) for d in (fine, coarse)))}
+    convergence = {
+        "disc": _difference(*(project_rigid_motions(d[0].approach, d[0].resultants) for d in (fine, coarse)))
+    }
     for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
         convergence[name] = _difference(own.approach, other.approach)
     dataset = _label(places, disc, pin, roller, race)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.surface import GAUSS_POINTS, GAUSS_WEIGHTS, PressureZone, OppositeZone
+from fem.surface import GAUSS_POINTS, GAUSS_WEIGHTS, OppositeZone, PressureZone
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -89,9 +89,7 @@ def gap_to_opposite(points: ComplexArray, normals: ComplexArray, pose: Pose, rad
     """
     if np.isinf(radius):
         outward = 1j * np.exp(1j * pose.rotation)
-        return np.asarray(
-            ((pose.centre - points) * np.conj(outward)).real / (normals * np.conj(outward)).real
-        )
+        return np.asarray(((pose.centre - points) * np.conj(outward)).real / (normals * np.conj(outward)).real)
     away = (pose.centre - points) * normals.conjugate()
     reach = radius**2 - away.imag**2
     return np.where(reach > 0.0, away.real - np.sqrt(np.maximum(reach, 0.0)), NO_PARTNER)

@@ -20,7 +20,7 @@ from fem.drive_mesh import DriveMeshes
 from fem.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
 from fem.expected_contacts import ExpectedContacts
 from fem.geometry import Curve, DriveShapes
-from fem.surface import PressureZone, OppositeZone
+from fem.surface import OppositeZone, PressureZone
 from fem.unilateral import ContactProblem
 from ltca.drive import Drive, Material
 from ltca.placement import Placement
@@ -238,9 +238,7 @@ class DriveModel:
                 active[pair.unknowns] = np.abs(arc - middle) < 0.8 * pair.expected_half_width
         return active
 
-    def contact_problem(
-        self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float
-    ) -> ContactProblem:
+    def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
         """Return the condensed contact problem linearised about a pose.
 
         Motions: disc x, y (mm), rotation (rad), wheel rotation (rad), then each candidate roller along its ray.
@@ -403,9 +401,29 @@ def condense_drive(
     disc, race = meshes.disc, meshes.inner_race
     flank, bore, holes = shapes.disc.flank, shapes.disc.bore, shapes.disc.holes
     pins = contacts.pins
-    add_pairs("pin", disc, (flank,), contacts.flank_points, pins.half_width, pins.load, place.wheel_pin_radii, pin_groups)
-    add_pairs("hole", disc, holes, contacts.hole_points, contacts.holes.half_width, contacts.holes.load, place.shaft_pin_radii, {})
-    add_pairs("roller_outer", disc, (bore,), contacts.bore_points, outer.half_width, outer.load, place.roller_radii, roller_groups)
+    add_pairs(
+        "pin", disc, (flank,), contacts.flank_points, pins.half_width, pins.load, place.wheel_pin_radii, pin_groups
+    )
+    add_pairs(
+        "hole",
+        disc,
+        holes,
+        contacts.hole_points,
+        contacts.holes.half_width,
+        contacts.holes.load,
+        place.shaft_pin_radii,
+        {},
+    )
+    add_pairs(
+        "roller_outer",
+        disc,
+        (bore,),
+        contacts.bore_points,
+        outer.half_width,
+        outer.load,
+        place.roller_radii,
+        roller_groups,
+    )
     split = len(pairs)
     add_pairs(
         "roller_inner",

@@ -49,7 +49,11 @@ def boundary_motion_loads(body: BodyMesh, boundary: str, centre: complex = 0j) -
     length = np.abs(places @ quadratic_slopes(GAUSS_POINTS)) * GAUSS_WEIGHTS
     lever = points - centre
     columns = []
-    for mode_x, mode_y in ((np.ones_like(length), np.zeros_like(length)), (np.zeros_like(length), np.ones_like(length)), (-lever.imag, lever.real)):
+    for mode_x, mode_y in (
+        (np.ones_like(length), np.zeros_like(length)),
+        (np.zeros_like(length), np.ones_like(length)),
+        (-lever.imag, lever.real),
+    ):
         load = np.zeros(body.unknowns)
         np.add.at(load, 2 * nodes, (length * mode_x) @ shapes.T)
         np.add.at(load, 2 * nodes + 1, (length * mode_y) @ shapes.T)

@@ -125,7 +125,10 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
     for candidate in order.tolist():
         # A roller's two contacts carry the same load: one of them is enough.
         pair = model.pairs[candidate]
-        twin = any(model.pairs[k].index == pair.index and {model.pairs[k].kind, pair.kind} == {"roller_outer", "roller_inner"} for k in chosen)
+        twin = any(
+            model.pairs[k].index == pair.index and {model.pairs[k].kind, pair.kind} == {"roller_outer", "roller_inner"}
+            for k in chosen
+        )
         if details[candidate].load > 0.0 and not twin:
             chosen.append(candidate)
         if len(chosen) == 3:
@@ -145,9 +148,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         diagram = places + height * pressure * into
         teeth = np.column_stack([places[on], diagram[on]])
         half_side = ZOOM_HALF_WIDTHS * detail.half_width
-        near = [
-            field for field in fields if float(np.min(np.abs(field.places - middle))) < half_side
-        ]
+        near = [field for field in fields if float(np.min(np.abs(field.places - middle))) < half_side]
         limit = 0.65 * detail.peak_pressure
         panels.append(
             Panel(
@@ -157,9 +158,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
                 ),
                 centre=middle,
                 half_side=half_side,
-                patches=tuple(
-                    _patch(field, field.places + field.elastic, field.stress.von_mises) for field in near
-                ),
+                patches=tuple(_patch(field, field.places + field.elastic, field.stress.von_mises) for field in near),
                 lines=(
                     *(Lines(points=_edges(field), colour="#404040", width=0.8) for field in near),
                     Lines(points=teeth, colour="#ffffff", width=1.5),

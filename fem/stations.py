@@ -68,7 +68,11 @@ class DiscStations:
             raise MeshError(f"stations {scale:g}: must be greater than 0 (a multiple of the default number)")
         width = patch_half_width(shape)
         lobes = round(shape.flank.profile.reduction_ratio) - 1
-        numbers = [round(FLANK_PER_LOBE * scale) * lobes, round(BORE * scale), *[round(PER_HOLE * scale)] * len(shape.holes)]
+        numbers = [
+            round(FLANK_PER_LOBE * scale) * lobes,
+            round(BORE * scale),
+            *[round(PER_HOLE * scale)] * len(shape.holes),
+        ]
         parameters = []
         for curve, number in zip(shape.curves, numbers, strict=True):
             if number < 8:

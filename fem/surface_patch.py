@@ -178,7 +178,9 @@ def _divide_patches(
     nodes, weights = GAUSS
     phis, steps, owners = [], [], []
     # Two turns of vertices, so that a patch over the first vertex finds those on both sides of it.
-    vertices = np.concatenate([boundary.start[:-1] - boundary.length, boundary.start[:-1], boundary.start + boundary.length])
+    vertices = np.concatenate(
+        [boundary.start[:-1] - boundary.length, boundary.start[:-1], boundary.start + boundary.length]
+    )
     for index, (place, half) in enumerate(zip(middle.tolist(), width.tolist(), strict=True)):
         first, last = np.searchsorted(vertices, [place - half, place + half])
         ends = np.concatenate([[-1.0], (vertices[first:last] - place) / half, [1.0]])

@@ -24,13 +24,26 @@ POSITION_VARIABLES = {
     "bearing_radial": "N", "bearing_tangential": "N", "transmission_error": "rad", "transmission_error_light": "rad",
     "disc_radial": "mm", "disc_tangential": "mm", "disc_rotation": "rad", "equilibrium_residual": "N",
 }  # fmt: skip
-SUMMARY_KEYS = """
-backlash_disc_arcmin backlash_wheel_arcmin mean_bearing_load_N mean_radial_bearing_load_N
-mean_tangential_bearing_load_N ptp_tangential_bearing_load_N max_pin_load_N max_pin_pressure_mid_MPa
-max_roller_load_N max_roller_pressure_mid_MPa max_pin_shaft_load_N pin_shaft_loaded_range_deg mean_loaded_pins
-mean_loaded_rollers mean_loaded_pin_shaft_pins ptp_transmission_error_arcsec ptp_transmission_error_light_arcsec
-max_equilibrium_residual_N
-""".split()
+SUMMARY_KEYS = [
+    "backlash_disc_arcmin",
+    "backlash_wheel_arcmin",
+    "mean_bearing_load_N",
+    "mean_radial_bearing_load_N",
+    "mean_tangential_bearing_load_N",
+    "ptp_tangential_bearing_load_N",
+    "max_pin_load_N",
+    "max_pin_pressure_mid_MPa",
+    "max_roller_load_N",
+    "max_roller_pressure_mid_MPa",
+    "max_pin_shaft_load_N",
+    "pin_shaft_loaded_range_deg",
+    "mean_loaded_pins",
+    "mean_loaded_rollers",
+    "mean_loaded_pin_shaft_pins",
+    "ptp_transmission_error_arcsec",
+    "ptp_transmission_error_light_arcsec",
+    "max_equilibrium_residual_N",
+]
 
 ANGLES = np.array([0.1, 1.3, -4.0, 25.0, 3.3])
 
