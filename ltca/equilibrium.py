@@ -28,8 +28,9 @@ ROUND_OFF_BOUND = 1e-5
 """Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 
 ITERATIONS = 200
-STEP_BOUND = 0.05
-"""Largest step, mm: long against elastic approaches (µm), short against the radius of a flank (mm)."""
+STEP_BOUND = 1e-3
+"""Largest step as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches (µm), short
+against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter."""
 LINE_TRIALS = 12
 SLOPE_LEFT = 0.3
 """A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
@@ -147,6 +148,9 @@ class _Search:
         gradient = response.force.copy()
         gradient[:, 3] -= self.moment[rows]
         gradient /= self.lever
+        if np.isnan(gradient).any():
+            row = rows[np.isnan(gradient).any(axis=1)][0]
+            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
         tangent = response.tangent / (self.lever[:, None] * self.lever)
         return response, gradient, tangent
 
@@ -167,7 +171,7 @@ class _Search:
             if active.size == 0:
                 return self.finish(iterations, known)
             iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active])
+            step, slope = _damped_step(tangent, gradient, damping[active], STEP_BOUND * self.lever[3])
             taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
             self.pose[active] = taken
             residual[active] = np.max(np.abs(gradient), axis=1)
@@ -231,7 +235,9 @@ class _Search:
         )
 
 
-def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _damped_step(
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: float
+) -> tuple[FloatArray, FloatArray]:
     """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
 
     With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
@@ -244,5 +250,5 @@ def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray)
     values, modes = np.linalg.eigh(tangent)
     along = np.einsum("bij,bi->bj", modes, gradient)
     floor = np.maximum(damping, 1e-15) * stiffness
-    step = np.clip(-along / (np.abs(values) + floor[:, None]), -STEP_BOUND, STEP_BOUND)
+    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound, bound)
     return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)

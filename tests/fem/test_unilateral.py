@@ -63,9 +63,7 @@ def test_start_does_not_matter():
 
 
 def test_nothing_in_contact_is_an_error():
-    problem = ContactProblem(
-        compliance=np.eye(2), gap=np.ones(2), motions=np.zeros((2, 1)), external=np.array([0.0])
-    )
+    problem = ContactProblem(compliance=np.eye(2), gap=np.ones(2), motions=np.zeros((2, 1)), external=np.array([0.0]))
     with pytest.raises(ConvergenceError, match="no contact is left"):
         solve_unilateral_contact(problem, np.array([True, False]))
 
