@@ -22,6 +22,8 @@ RACE_ANGLES = 96
 # Half-width of the patches against the smallest radius of curvature and the narrowest wall: what a patch of that
 # width feels of the curvature is then 0.3 (b/R)², below 0.1 % of the unit 2(1 − ν²)/(πEt) of the near field.
 PATCH_SHARE = 0.05
+# Neighbouring patches keep apart, however many stations there are.
+SPACING_SHARE = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,14 +123,15 @@ def patch_half_width(shape: Shape) -> float:
     return PATCH_SHARE * min(smallest_radius(curves), shape.narrowest_wall)
 
 
-def nominal_shape(drive: Drive) -> Drive:
-    """Return the drive without clearances and errors of single parts, to which its coefficients belong.
+def nominal_shape(drive: Drive, *, keep_clearance: bool = False) -> Drive:
+    """Return the drive without errors of single parts and, unless kept, without clearances.
 
-    One file then serves all clearance cases of a drive (`Drive.shape_fingerprint`), whichever case derived it.
+    One set of coefficients then serves all clearance cases of a drive (`Drive.shape_fingerprint`), whichever of
+    them it was derived for.
     """
     return replace(
         drive,
-        clearance=Clearance(),
+        clearance=drive.clearance if keep_clearance else Clearance(),
         pin_wheel=replace(drive.pin_wheel, pin_errors=PlacementErrors()),
         disc=replace(drive.disc, hole_errors=PlacementErrors()),
         pin_shaft=replace(drive.pin_shaft, pin_errors=PlacementErrors()),
