@@ -26,7 +26,8 @@ class MemoryLimitError(MeshError):
         self.unknowns = unknowns
         self.needed = needed
         self.available = available
+        rounded = int(float(f"{unknowns:.3g}"))
         super().__init__(
-            f"{what} would have about {unknowns:,} unknowns and need about {needed / 1e9:.3g} GB of memory, "
+            f"{what} would have about {rounded:,} unknowns and need about {needed / 1e9:.3g} GB of memory, "
             f"but {available / 1e9:.3g} GB are available: use larger elements"
         )

@@ -128,7 +128,7 @@ def balance_rollers(
         step = imbalance / (safe * total)
         following = share - step
         # Newton within the bracket, bisection where it leaves it.
-        following = np.where((following > low) & (following < high), following, 0.5 * (low + high))
+        following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
         following = np.where(pressed & (imbalance != 0.0), following, share)
         history.append(float(np.max(np.abs(following - share), initial=0.0)))
         if history[-1] <= 1e-11:

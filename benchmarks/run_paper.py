@@ -1,6 +1,6 @@
 """Where the time of ``cyclo run paper`` goes, positions per second, and how cost grows with positions.
 
-    python benchmarks/ltca.py
+    python benchmarks/run_paper.py
 
 Times are wall seconds on whatever machine this runs; compare ratios.
 """
@@ -39,7 +39,7 @@ def main() -> None:
     print("\nwhere it goes, warm process")
     start = time.perf_counter()
     import ltca.loaded_analysis
-    import ltca.results  # noqa: F401
+    import ltca.results
     from ltca.drive_file import load_drive
     from ltca.line_contact import line_contact_table
 
