@@ -87,7 +87,8 @@ class _Deck:
         offset = self.next_node - 1
         self.lines.append("*NODE, NSET=NALL")
         self.lines += [
-            f"{offset + k},{x:.14g},{y:.14g},0." for k, (x, y) in enumerate(zip(places.real, places.imag, strict=True), 1)
+            f"{offset + k},{x:.14g},{y:.14g},0."
+            for k, (x, y) in enumerate(zip(places.real, places.imag, strict=True), 1)
         ]
         self.next_node += len(places)
         return offset
@@ -169,9 +170,7 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
     add_body("RACE", meshes.inner_race, Pose(centre=model.race_centre), materials.inner_race)
     own = solution.state.contact.pressure
     carrying = {pair.index for pair in model.pairs if pair.kind == "roller_outer" and np.any(own[pair.unknowns] > 0.0)}
-    pairs = [
-        pair for pair in model.pairs if pair.kind in ("pin", "hole") or pair.index in carrying
-    ]
+    pairs = [pair for pair in model.pairs if pair.kind in ("pin", "hole") or pair.index in carrying]
     for pair in pairs:
         if pair.kind in ("pin", "roller_outer"):
             # The mesh in the frame of its group, whose zones are known, turned to this body.
@@ -188,7 +187,16 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
         edge = float(np.abs(pair.zone.places[:, 2] - pair.zone.places[:, 0]).min())
         faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
         if pair.kind == "hole":
-            opposite = _add_rigid_arc(deck, pair, model.disc_pose(pose), model.circle_centre("hole", pair.index, pose), drive.pin_shaft.stiffness, thickness, springs, complex(pose.shaft_pin_displacements[pair.index]))
+            opposite = _add_rigid_arc(
+                deck,
+                pair,
+                model.disc_pose(pose),
+                model.circle_centre("hole", pair.index, pose),
+                drive.pin_shaft.stiffness,
+                thickness,
+                springs,
+                complex(pose.shaft_pin_displacements[pair.index]),
+            )
         else:
             body, _, first, _ = placed[f"{pair.kind[:6]}_{pair.index}".upper()]
             zone: OppositeZone = model.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
@@ -279,7 +287,7 @@ def _add_rigid_arc(
     # Corners ccw: inner first, outer first, outer last, inner last (angles grow).
     material = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
     elements = deck.add_elements("CPE8", f"RIGID_{pair.index}", offset + nodes, material, thickness)
-    reference = deck.add_nodes(np.array([centre]))+ 1
+    reference = deck.add_nodes(np.array([centre])) + 1
     for node in range(len(places)):
         deck.equate([(offset + node, 1, 1.0), (reference, 1, -1.0)])
         deck.equate([(offset + node, 2, 1.0), (reference, 2, -1.0)])

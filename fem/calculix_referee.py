@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import time
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -144,7 +145,7 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
 
 def _with_following(text: str) -> list[tuple[str, str]]:
     lines = [line for line in text.splitlines() if line.strip()]
-    return list(zip(lines, lines[1:], strict=False))
+    return list(pairwise(lines))
 
 
 def compare_with_calculix(solution: FullSolution, folder: Path, program: str) -> list[str]:
@@ -185,6 +186,8 @@ def compare_with_calculix(solution: FullSolution, folder: Path, program: str) ->
             f"{detail.peak_pressure:>10.1f}{peak:>10.1f}{rise}"
         )
     arcseconds = np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0
-    lines.append(f"wheel angle: {solution.pose.wheel_angle:.7f} rad, ccx {answer.wheel_angle:.7f} rad ({arcseconds:+.3f}\")")
+    lines.append(
+        f'wheel angle: {solution.pose.wheel_angle:.7f} rad, ccx {answer.wheel_angle:.7f} rad ({arcseconds:+.3f}")'
+    )
     lines.append(f"seconds: {solution.seconds['total']:.1f}, ccx {answer.seconds:.1f}")
     return lines

@@ -95,7 +95,10 @@ def assemble_stiffness(
     curved = curved_elements(body)
     # Curved elements cost twice as many points; they lie along the boundary only.
     total: sp.csc_matrix | None = None
-    for elements, order in ((np.flatnonzero(~curved), STRAIGHT_QUADRATURE), (np.flatnonzero(curved), CURVED_QUADRATURE)):
+    for elements, order in (
+        (np.flatnonzero(~curved), STRAIGHT_QUADRATURE),
+        (np.flatnonzero(curved), CURVED_QUADRATURE),
+    ):
         if len(elements):
             part = form.assemble(Basis(body.mesh, element, intorder=order, elements=elements))
             total = part.tocsc() if total is None else total + part.tocsc()

@@ -59,9 +59,7 @@ class BodyField:
     def placed_mesh(self) -> BodyMesh:
         """The mesh at that place."""
         nodes = self.places
-        return BodyMesh(
-            name=self.body.name, mesh=replace(self.body.mesh, doflocs=np.vstack([nodes.real, nodes.imag]))
-        )
+        return BodyMesh(name=self.body.name, mesh=replace(self.body.mesh, doflocs=np.vstack([nodes.real, nodes.imag])))
 
     @property
     def placed(self) -> PlacedBody:

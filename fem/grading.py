@@ -146,7 +146,11 @@ def grade_contacts(
         ),
         flank_points=profile.flank(gaps.flank_parameters),
         rollers_outer=group(
-            rollers, gaps.rollers, radius * bore / (bore - radius), contact_modulus(materials.disc, materials.roller), rays
+            rollers,
+            gaps.rollers,
+            radius * bore / (bore - radius),
+            contact_modulus(materials.disc, materials.roller),
+            rays,
         ),
         rollers_inner=group(
             rollers,

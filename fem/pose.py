@@ -168,4 +168,3 @@ def _move(
         shaft_pin_displacements=pins,
     )
     return moved, increment
-

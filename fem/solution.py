@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from fem.contact_results import ContactResults, summarise_contacts
 from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
-from fem.drive_model import DriveModel, DrivePose, condense_drive
+from fem.drive_condensation import condense_drive
+from fem.drive_model import DriveModel, DrivePose
 from fem.elasticity import PlaneState
 from fem.errors import MeshError
 from fem.expected_contacts import ExpectedContacts, expect_contacts
@@ -231,7 +232,10 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) ->
         name = f"{pair.kind.replace('_', ' ')} {pair.index}"
         if own[0] > 0.0 or own[-1] > 0.0:
             return f"the pressure of {name} reaches the end of its zone"
-        if detail.share > FINE_SHARE and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH:
+        if (
+            detail.share > FINE_SHARE
+            and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH
+        ):
             return (
                 f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
                 f"not {ELEMENTS_PER_HALF_WIDTH / scale:.3g}"
@@ -241,9 +245,7 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) ->
 
 def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
     pose, place = solution.pose, model.placement
-    gaps = measure_gaps(
-        model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle
-    )
+    gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
     elastic = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
     moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
     nodes = model.meshes.disc.mesh.doflocs[0] + 1j * model.meshes.disc.mesh.doflocs[1]

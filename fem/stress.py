@@ -95,13 +95,13 @@ def recover_stress(
     order = body.order
     basis = Basis(body.mesh, ElementVector(ElementTriP2() if order == 2 else ElementTriP1()), quadrature=SAMPLES)
     gradient = np.asarray(basis.interpolate(displacement).grad)
-    sampled = stress_of_strain(
-        gradient[0, 0], gradient[1, 1], 0.5 * (gradient[0, 1] + gradient[1, 0]), material, state
-    )
+    sampled = stress_of_strain(gradient[0, 0], gradient[1, 1], 0.5 * (gradient[0, 1] + gradient[1, 0]), material, state)
     x, y = SAMPLES[0]
     corners = np.array([[0, 1, 0, 0.5, 0.5, 0.0], [0, 0, 1, 0.0, 0.5, 0.5]])[:, : 6 if order == 2 else 3]
     # Linear through three samples: values at nodes = [1 ξ η]_nodes [1 ξ η]_samples⁻¹ samples.
-    spread = np.column_stack([np.ones(corners.shape[1]), corners.T]) @ np.linalg.inv(np.column_stack([np.ones(3), x, y]))
+    spread = np.column_stack([np.ones(corners.shape[1]), corners.T]) @ np.linalg.inv(
+        np.column_stack([np.ones(3), x, y])
+    )
     nodes = element_nodes(body)
     weight = np.repeat(np.abs(np.asarray(basis.dx)).sum(axis=1)[:, None], nodes.shape[1], axis=1).ravel()
     total = np.bincount(nodes.ravel(), weights=weight, minlength=body.node_count)

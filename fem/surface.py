@@ -22,7 +22,10 @@ ComplexArray = NDArray[np.complex128]
 
 # Products of a quadratic and a linear shape function, a normal that turns by less than 0.1 rad along the edge and
 # a square-root length element: five points integrate them to round-off.
-GAUSS_POINTS, GAUSS_WEIGHTS = (0.5 * (np.polynomial.legendre.leggauss(5)[0] + 1.0), 0.5 * np.polynomial.legendre.leggauss(5)[1])
+GAUSS_POINTS, GAUSS_WEIGHTS = (
+    0.5 * (np.polynomial.legendre.leggauss(5)[0] + 1.0),
+    0.5 * np.polynomial.legendre.leggauss(5)[1],
+)
 
 
 def quadratic_shapes(xi: FloatArray) -> FloatArray:

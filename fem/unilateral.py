@@ -82,9 +82,7 @@ class ContactSolution:
     iterations: int
 
 
-def solve_unilateral_contact(
-    problem: ContactProblem, start: BoolArray, *, limit: int = 120
-) -> ContactSolution:
+def solve_unilateral_contact(problem: ContactProblem, start: BoolArray, *, limit: int = 120) -> ContactSolution:
     """Solve the contact problem by a primal–dual active set.
 
     Parameters
@@ -201,9 +199,7 @@ def _pushed_one_way(problem: ContactProblem, active: BoolArray) -> BoolArray:
     return idle
 
 
-def _rest_idle(
-    problem: ContactProblem, active: BoolArray, pressure: FloatArray, motion: FloatArray
-) -> FloatArray:
+def _rest_idle(problem: ContactProblem, active: BoolArray, pressure: FloatArray, motion: FloatArray) -> FloatArray:
     """Place bodies that no contact holds midway between their neighbours, so that they touch only if squeezed."""
     placed = motion.copy()
     for index, column in enumerate(problem.motions.T):

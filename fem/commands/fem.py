@@ -125,18 +125,33 @@ def _print_contacts(solution: FullSolution) -> None:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
     rows = (
         ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
-        ("roller outer", contacts.roller_load_outer, contacts.roller_pressure_max_outer, contacts.roller_half_width_outer),
-        ("roller inner", contacts.roller_load_inner, contacts.roller_pressure_max_inner, contacts.roller_half_width_inner),
+        (
+            "roller outer",
+            contacts.roller_load_outer,
+            contacts.roller_pressure_max_outer,
+            contacts.roller_half_width_outer,
+        ),
+        (
+            "roller inner",
+            contacts.roller_load_inner,
+            contacts.roller_pressure_max_inner,
+            contacts.roller_half_width_inner,
+        ),
         ("shaft pin", contacts.pin_shaft_load, contacts.hole_pressure_max, contacts.hole_half_width),
     )
     print(f"{'contact':<16}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
     for name, load, peak, width in rows:
         for index in range(len(load)):
             if load[index] > 0.0:
-                print(f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}")
+                print(
+                    f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}"
+                )
     radial, tangential = bearing_components(contacts, solution.model.crank_angle)
     print(f"bearing force on the disc: radial {radial:.1f} N, tangential {tangential:.1f} N")
-    print(f"wheel angle {solution.pose.wheel_angle:.6g} rad; largest unbalanced force {contacts.equilibrium_residual:.1e} N")
+    print(
+        f"wheel angle {solution.pose.wheel_angle:.6g} rad; "
+        f"largest unbalanced force {contacts.equilibrium_residual:.1e} N"
+    )
     print(f"{solution.unknowns:,} unknowns, {solution.pose_iterations} pose iterations, {seconds['total']:.1f} s")
 
 

@@ -53,9 +53,17 @@ def kirsch_displacement(x, y, radius, far):
     r, theta = np.hypot(x, y), np.arctan2(y, x)
     a, factor = radius, far * radius / (8.0 * SHEAR)
     ux = r / a * (KAPPA + 1.0) * np.cos(theta)
-    ux = ux + 2.0 * a / r * ((1.0 + KAPPA) * np.cos(theta) + np.cos(3.0 * theta)) - 2.0 * (a / r) ** 3 * np.cos(3 * theta)
+    ux = (
+        ux
+        + 2.0 * a / r * ((1.0 + KAPPA) * np.cos(theta) + np.cos(3.0 * theta))
+        - 2.0 * (a / r) ** 3 * np.cos(3 * theta)
+    )
     uy = r / a * (KAPPA - 3.0) * np.sin(theta)
-    uy = uy + 2.0 * a / r * ((1.0 - KAPPA) * np.sin(theta) + np.sin(3.0 * theta)) - 2.0 * (a / r) ** 3 * np.sin(3 * theta)
+    uy = (
+        uy
+        + 2.0 * a / r * ((1.0 - KAPPA) * np.sin(theta) + np.sin(3.0 * theta))
+        - 2.0 * (a / r) ** 3 * np.sin(3 * theta)
+    )
     return np.stack([factor * ux, factor * uy])
 
 
@@ -82,7 +90,9 @@ def test_lame_ring():
     errors = []
     for size in (2.0, 1.0, 0.5):
         body = mesh_ring(shape, coarse_size=size)
-        u = solve_free(body, traction_load(body, "inner", lambda x, n: (-100.0 * n[0], -100.0 * n[1]), thickness=THICKNESS))
+        u = solve_free(
+            body, traction_load(body, "inner", lambda x, n: (-100.0 * n[0], -100.0 * n[1]), thickness=THICKNESS)
+        )
         errors.append(relative_error(body, u, displacement))
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
     assert errors[0] < 5e-3
@@ -105,7 +115,9 @@ def test_recovered_stress_converges():
     errors = []
     for size in (2.0, 1.0, 0.5):
         body = mesh_ring(shape, coarse_size=size)
-        u = solve_free(body, traction_load(body, "inner", lambda x, n: (-100.0 * n[0], -100.0 * n[1]), thickness=THICKNESS))
+        u = solve_free(
+            body, traction_load(body, "inner", lambda x, n: (-100.0 * n[0], -100.0 * n[1]), thickness=THICKNESS)
+        )
         stress = recover_stress(body, u, STEEL)
         radial, hoop = stresses(np.hypot(*body.mesh.doflocs))
         von_mises = np.sqrt(

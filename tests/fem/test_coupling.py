@@ -62,9 +62,10 @@ def test_both_sides_feel_the_same_force_on_one_line(pair):
     assert on_roller == pytest.approx(complex(force[0], force[1]), rel=1e-12)
     places = roller.mesh.doflocs[0, opposite.nodes] + 1j * roller.mesh.doflocs[1, opposite.nodes]
     local = nodal[0::2] + 1j * nodal[1::2]
-    about = np.sum((places.conjugate() * local).imag) + (
-        (pose.centre * np.exp(-1j * pose.rotation)).conjugate() * local.sum()
-    ).imag
+    about = (
+        np.sum((places.conjugate() * local).imag)
+        + ((pose.centre * np.exp(-1j * pose.rotation)).conjugate() * local.sum()).imag
+    )
     assert about == pytest.approx(force[2], abs=1e-7 * abs(on_roller))
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from fem.element_size import Refinement
 from fem.elasticity import (
     area_loads,
     assemble_stiffness,
@@ -12,6 +11,7 @@ from fem.elasticity import (
     traction_load,
     unknowns_of_boundary,
 )
+from fem.element_size import Refinement
 from fem.errors import MeshError
 from fem.geometry import RingShape
 from fem.meshing import mesh_ring

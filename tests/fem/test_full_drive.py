@@ -130,9 +130,7 @@ def test_too_fine_is_refused_with_the_number():
 def test_nothing_that_can_carry_is_one_error():
     """A disc too small to reach the pins never meets them: the wheel would turn for ever."""
     loose = drive()
-    loose = dataclasses.replace(
-        loose, disc=dataclasses.replace(loose.disc, shifting_offset=-12.0)
-    )
+    loose = dataclasses.replace(loose, disc=dataclasses.replace(loose.disc, shifting_offset=-12.0))
     with pytest.raises(ConvergenceError):
         solve_drive(loose, 0.5, scale=3.0)
 

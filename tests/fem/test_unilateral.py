@@ -76,9 +76,7 @@ def test_interior_point_finds_the_set(seed):
 
 def test_load_no_pressure_can_balance_is_an_error():
     """Contact can only push: a load that would need a pull has no answer."""
-    problem = ContactProblem(
-        compliance=np.eye(2), gap=np.ones(2), motions=np.ones((2, 1)), external=np.array([-1.0])
-    )
+    problem = ContactProblem(compliance=np.eye(2), gap=np.ones(2), motions=np.ones((2, 1)), external=np.array([-1.0]))
     with pytest.raises(ConvergenceError, match="balance the load"):
         solve_unilateral_contact(problem, np.array([True, False]))
 
