@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.contact_results import ContactResults, summarise_contacts
-from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
 from fem.drive_condensation import condense_drive
+from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
 from fem.drive_model import DriveModel, DrivePose
 from fem.elasticity import PlaneState
 from fem.errors import MeshError
