@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from ltca.drive import Drive, contact_modulus
 from ltca.errors import ConvergenceError, DriveError
@@ -214,6 +214,10 @@ class _System:
         self.load[3] = wheel_moment / wheel_lever
         self.displacement = np.zeros(4 + self.rollers)
         self.cells = cells
+        # Some ten elastic approaches. A longer step comes from too few carrying cells: followed in parts, it meets
+        # the cells that will carry before the disc has left the others.
+        modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
+        self.step_bound = abs(self.load[3]) / (0.1 * modulus * drive.disc.thickness)
 
         parts, bearing = drive.materials, drive.crank_bearing
         flank = geometry.flank(angle, self.start)
@@ -273,8 +277,8 @@ class _System:
         """Solve with the present grids; return the number of factorisations."""
         history: list[float] = []
         for count in range(1, FACTORISATIONS + 1):
-            self._factor_and_solve()
-            changes = sum(patch.exchange(self.displacement) for patch in self.patches.values())
+            floating = not self._factor_and_solve()
+            changes = int(floating) + sum(patch.exchange(self.displacement) for patch in self.patches.values())
             opening = self.hole_carrying != (self.hole_approach + self.hole_direction @ self.displacement > 0.0)
             self.hole_carrying = self.hole_carrying ^ opening
             changes += int(opening.sum())
@@ -283,7 +287,8 @@ class _System:
                 return count
         raise ConvergenceError("the carrying cells do not settle; changes in the last rounds", history)
 
-    def _factor_and_solve(self) -> None:
+    def _factor_and_solve(self) -> bool:
+        """Move to the solution of the carrying cells, as far as the step bound goes; return whether it was reached."""
         patches = list(self.patches.values())
         blocks = [patch.influence[np.ix_(patch.carrying, patch.carrying)] for patch in patches]
         coupling = np.vstack([np.outer(patch.weights[patch.carrying], patch.direction) for patch in patches])
@@ -297,16 +302,25 @@ class _System:
         idle = np.zeros(self.load.size, dtype=bool)
         idle[4:] = np.abs(coupling[:, 4:]).sum(axis=0) == 0.0
         springs += np.diag(np.where(idle, self.hole_stiffness, 0.0))
-        matrix = sparse.bmat(
-            [[sparse.block_diag(blocks), sparse.csr_array(-coupling)], [sparse.csr_array(-coupling.T), -springs]],
-            format="csc",
-        )
-        solved = splu(matrix).solve(np.concatenate((*indentation, preload - self.load)))
+        right = np.concatenate((*indentation, preload - self.load))
+        held = True
+        try:
+            solved = _factor(blocks, coupling, springs).solve(right)
+        except RuntimeError:
+            # Too few cells are left to hold the disc: a soft ground tells where it goes and which cells it meets.
+            held = False
+            ground = 1e-3 * self.hole_stiffness * np.eye(self.load.size)
+            solved = _factor(blocks, coupling, springs + ground).solve(right)
         ends = np.cumsum([int(patch.carrying.sum()) for patch in patches])
-        *pressures, self.displacement = np.split(solved, ends)
-        for patch, pressure in zip(patches, pressures, strict=True):
-            patch.pressure = np.zeros(patch.carrying.size)
-            patch.pressure[patch.carrying] = pressure
+        *pressures, displacement = np.split(solved, ends)
+        step = displacement - self.displacement
+        fraction = min(1.0, self.step_bound / max(float(np.max(np.abs(step))), 1e-300))
+        self.displacement = self.displacement + fraction * step
+        for patch, part in zip(patches, pressures, strict=True):
+            pressure = np.zeros(patch.carrying.size)
+            pressure[patch.carrying] = part
+            patch.pressure = patch.pressure + fraction * (pressure - patch.pressure)
+        return held and fraction == 1.0
 
     def refit_grids(self) -> float:
         """Lay the grids over the half-widths found; return the largest relative change of a loaded contact."""
@@ -343,3 +357,12 @@ class _System:
             factorisations=factorisations,
             residual=float(np.max(np.abs(unbalanced))),
         )
+
+
+def _factor(blocks: list[FloatArray], coupling: FloatArray, springs: FloatArray) -> SuperLU:
+    """LU of the matrix of Eq. 30; RuntimeError when it is singular."""
+    matrix = sparse.bmat(
+        [[sparse.block_diag(blocks), sparse.csr_array(-coupling)], [sparse.csr_array(-coupling.T), -springs]],
+        format="csc",
+    )
+    return splu(matrix)

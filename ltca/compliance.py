@@ -12,17 +12,16 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.contact_grid import ContactKind, ContactKinds
+from ltca.contact_law import ContactLaw
 from ltca.drive import Drive, contact_modulus
-from ltca.line_contact import LineContactLaw
+from ltca.end_pressure import largest_pressure_ratio
+from ltca.generator_profile import law_for_profile
 from ltca.pairs import ContactGeometry, FlankMotion, PairMotion
 from ltca.roller_series import RollerLaws, RollerState, balance_rollers
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
-
-def law_for_profile(profile, *, length, radius, contact_modulus, effective_radii):  # TEMPORARY
-    return LineContactLaw(length, contact_modulus)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +42,8 @@ class Response:
         Balanced rollers.
     pin_load, hole_load : array, shape (positions, pairs)
         N.
+    memory : array of object, shape (positions,)
+        What a model wants to find again at the next pose of each position; None where it wants nothing.
     """
 
     force: FloatArray
@@ -52,6 +53,38 @@ class Response:
     rollers: RollerState
     pin_load: FloatArray
     hole_load: FloatArray
+    memory: NDArray[np.object_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KindPressures:
+    """Pressures and half-widths of all pairs of one kind, zero where open.
+
+    Attributes
+    ----------
+    mid : array, shape (positions, pairs)
+        Largest pressure at mid-width, MPa.
+    largest : array, shape (positions, pairs)
+        Largest pressure anywhere, MPa: at unrelieved ends it is singular and depends on the end cell.
+    half_width : array, shape (positions, pairs)
+        Contact half-width at mid-width, mm.
+    end_cell : float
+        Length of the end cell behind `largest`, mm.
+    """
+
+    mid: FloatArray
+    largest: FloatArray
+    half_width: FloatArray
+    end_cell: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactPressures:
+    """Pressures of wheel pins and flank, rollers in the bore (outer) and on the inner race (inner)."""
+
+    pins: KindPressures
+    outer: KindPressures
+    inner: KindPressures
 
 
 class ComplianceModel(Protocol):
@@ -66,6 +99,10 @@ class ComplianceModel(Protocol):
         """Return the contact forces at the poses of a batch of positions."""
         ...
 
+    def pressures(self, response: Response) -> ContactPressures:
+        """Return the pressures behind a response of this model."""
+        ...
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
@@ -77,19 +114,28 @@ class Start:
         Contact parameters on the flank, rad.
     share : array, shape (positions, n_BR)
         Shares of `ltca.roller_series`.
+    memory : array of object, shape (positions,)
+        Memory of the model, see `Response`.
     """
 
     parameter: FloatArray
     share: FloatArray
+    memory: NDArray[np.object_]
 
     @classmethod
     def after(cls, response: Response) -> Start:
         """Return the start that a response gives for the next pose."""
-        return cls(parameter=response.flank.parameter, share=response.rollers.share)
+        return cls(parameter=response.flank.parameter, share=response.rollers.share, memory=response.memory)
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
-        return Start(parameter=self.parameter[rows], share=self.share[rows])
+        return Start(parameter=self.parameter[rows], share=self.share[rows], memory=self.memory[rows])
+
+    def replaced(self, rows: NDArray[np.intp] | NDArray[np.bool_], other: Start) -> Start:
+        """Return a copy with some positions taken from another start, given for just these."""
+        fresh = Start(parameter=self.parameter.copy(), share=self.share.copy(), memory=self.memory.copy())
+        fresh.parameter[rows], fresh.share[rows], fresh.memory[rows] = other.parameter, other.share, other.memory
+        return fresh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,18 +146,21 @@ class HalfSpaceCompliance:
     ----------
     geometry : ContactGeometry
         The contact geometry of the drive.
-    pin_law : LineContactLaw
+    pin_law : ContactLaw
         Law of wheel pin and flank.
     roller_laws : RollerLaws
         Laws of the rollers.
     hole_stiffness : float
         k_PS, N/mm.
+    kinds : ContactKinds
+        The contacts as grids see them, for what no table holds.
     """
 
     geometry: ContactGeometry
-    pin_law: LineContactLaw
-    roller_laws: RollerLaws
+    pin_law: ContactLaw
+    roller_laws: RollerLaws[ContactLaw]
     hole_stiffness: float
+    kinds: ContactKinds
 
     @classmethod
     def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
@@ -150,6 +199,7 @@ class HalfSpaceCompliance:
                 outer_radius=outer_radius,
             ),
             hole_stiffness=drive.pin_shaft.stiffness,
+            kinds=ContactKinds.of_drive(drive),
         )
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
@@ -178,26 +228,74 @@ class HalfSpaceCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
-        hole_load = self.hole_stiffness * np.maximum(holes.approach, 0.0)
-        hole_stiffness = np.where(holes.approach > 0.0, self.hole_stiffness, 0.0)
+        hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
         rollers = balance_rollers(
             self.geometry.rollers(crank_angle),
             pose[:, 0] + 1j * pose[:, 1],
             self.roller_laws,
             None if start is None else start.share,
         )
-        force = resultant(flank, pin_load, holes, hole_load, rollers)
-        tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
-        tangent[:, :2, :2] += rollers.tangent.sum(axis=1)
-        return Response(
-            force=force,
-            tangent=tangent,
-            flank=flank,
-            holes=holes,
-            rollers=rollers,
-            pin_load=pin_load,
-            hole_load=hole_load,
+        return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers)
+
+    def pressures(self, response: Response) -> ContactPressures:
+        """Return the pressures at mid-width from the laws."""
+        flank, rollers, laws, kinds = response.flank, response.rollers, self.roller_laws, self.kinds
+        return ContactPressures(
+            pins=_read_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
+            outer=_read_law(laws.outer, kinds.outer, rollers.outer_approach, laws.outer_radius),
+            inner=_read_law(laws.inner, kinds.inner, rollers.inner_approach, laws.inner_radius),
         )
+
+
+def _read_law(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
+    mid = law.mid_pressure(approach, radius)
+    return KindPressures(
+        mid=mid,
+        largest=mid * largest_pressure_ratio(kind, approach, radius),
+        half_width=law.half_width(approach, radius),
+        end_cell=kind.end_cell,
+    )
+
+
+def assemble_response(
+    flank: FlankMotion,
+    pin_load: FloatArray,
+    pin_stiffness: FloatArray,
+    holes: PairMotion,
+    hole_load: FloatArray,
+    hole_stiffness: FloatArray,
+    rollers: RollerState,
+    memory: NDArray[np.object_] | None = None,
+) -> Response:
+    """Put the loads of uncoupled pairs together: generalised force and tangent.
+
+    Parameters
+    ----------
+    flank, holes, rollers : FlankMotion, PairMotion, RollerState
+        Kinematics of the pairs, balanced rollers.
+    pin_load, pin_stiffness, hole_load, hole_stiffness : array, shape (positions, pairs)
+        N and N/mm.
+    memory : array of object, shape (positions,), optional
+        See `Response`.
+    """
+    force = resultant(flank, pin_load, holes, hole_load, rollers)
+    tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
+    tangent[:, :2, :2] += rollers.tangent.sum(axis=1)
+    return Response(
+        force=force,
+        tangent=tangent,
+        flank=flank,
+        holes=holes,
+        rollers=rollers,
+        pin_load=pin_load,
+        hole_load=hole_load,
+        memory=np.full(force.shape[0], None, dtype=object) if memory is None else memory,
+    )
+
+
+def spring_load_and_stiffness(approach: FloatArray, stiffness: float) -> tuple[FloatArray, FloatArray]:
+    """Return the load of unilateral springs and its derivative, N and N/mm (Eq. 77)."""
+    return stiffness * np.maximum(approach, 0.0), np.where(approach > 0.0, stiffness, 0.0)
 
 
 def resultant(

@@ -2,8 +2,9 @@ r"""Equilibrium of the floating disc at held crank angles (Eq. 43–44, 70–72,
 
 The pose q minimises Π(q) = Σ U_i(δ_i(q)) − T_load · wheel_angle. Its gradient is the residual, its Hessian the
 4×4 tangent. Before first contact the disc floats and the tangent is singular, so Newton's step is damped
-(Levenberg–Marquardt) and its length bounded; a step is taken when Π does not rise again along it, which the
-residual at its end tells.
+(Levenberg–Marquardt) and its length bounded. Π is convex but for the small geometric part, and stiff where contacts
+open and close: along each step the slope of Π is brought down by a bracketed secant before the step is taken, so Π
+falls in every iteration and no cycle is possible between contacts that take turns.
 """
 
 from __future__ import annotations
@@ -20,12 +21,19 @@ from ltca.tooth_contact import WHEEL_ANGLE, first_contact
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9
-"""Largest residual accepted, as a part of the load T/(e z_P); round-off of 1e-14 mm times the stiffness of a
-pair is about 1e-11 of a full load and 1e-9 of a hundredth of it."""
+"""Largest residual accepted, as a part of the load T/(e z_P)."""
+ROUND_OFF = 4.0 * np.finfo(float).eps
+"""Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
+ROUND_OFF_BOUND = 1e-5
+"""Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 
 ITERATIONS = 200
 STEP_BOUND = 0.05
-"""Largest step, mm: long against elastic approaches (µm), short against the radius of a flank (mm)."""
+"""Largest first step of a mode, mm: long against elastic approaches (µm), short against the radius of a flank (mm).
+It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
+LINE_TRIALS = 12
+SLOPE_LEFT = 0.3
+"""A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,9 +109,19 @@ def solve_equilibrium(
         sense = np.where(moment < 0.0, -1, 1)
         for value in np.unique(sense):
             rows = sense == value
-            start[rows, WHEEL_ANGLE], _ = first_contact(model.geometry, angle[rows], WHEEL_ANGLE, int(value))
+            start[rows, WHEEL_ANGLE] = _take_up(model, angle[rows], int(value))
     search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
     return search.run()
+
+
+def _take_up(model: ComplianceModel, angle: FloatArray, sense: int) -> FloatArray:
+    """Wheel angles at first contact; zero where pins interfere so that turning the wheel alone cannot find it."""
+    try:
+        return first_contact(model.geometry, angle, WHEEL_ANGLE, sense)[0]
+    except ConvergenceError:
+        if angle.size == 1:
+            return np.zeros(1)
+        return np.concatenate([_take_up(model, part, sense) for part in np.array_split(angle, 2)])
 
 
 class _Search:
@@ -120,6 +138,7 @@ class _Search:
     ) -> None:
         self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
         self.pose = pose
+        self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
         self.history: list[FloatArray] = []
 
     def evaluate(
@@ -137,44 +156,28 @@ class _Search:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        damping = np.full(count, 1e-6)
+        damping, bound = np.full(count, 1e-6), np.full(count, STEP_BOUND)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
-        start = Start.after(response)
+        start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
         for _ in range(ITERATIONS):
             self.history.append(residual.copy())
-            going = residual[active] > TOLERANCE * self.load[active]
+            # A residual that is no number does not balance either.
+            going = ~(residual[active] <= self.accepted(active, tangent))
             active, start = active[going], start.take(going)
             gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
-                return self.finish(iterations)
+                return self.finish(iterations, known)
             iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active])
-            trial = self.pose[active] + step / self.lever
-            response, new_gradient, new_tangent = self.evaluate(active, trial, start)
-            # The slope of Π at the end of the step: a step far past the minimum is shortened by the secant.
-            end_slope = np.einsum("bi,bi->b", new_gradient, step)
-            overshoot = end_slope > 0.9 * np.abs(slope)
-            moved = ~overshoot
-            new_residual = np.max(np.abs(new_gradient), axis=1)
-            damping[active] = np.where(overshoot, damping[active] * 10.0, damping[active] * 0.1).clip(1e-12, 1e3)
-            if np.any(overshoot):
-                back = active[overshoot]
-                fraction = np.clip(-slope[overshoot] / (end_slope - slope)[overshoot], 0.02, 0.5)
-                shorter = self.pose[back] + fraction[:, None] * step[overshoot] / self.lever
-                start_back = start.take(overshoot)
-                _, gradient_back, tangent_back = self.evaluate(back, shorter, start_back)
-                trial[overshoot] = shorter
-                new_gradient[overshoot], new_tangent[overshoot] = gradient_back, tangent_back
-                new_residual[overshoot] = np.max(np.abs(gradient_back), axis=1)
-            self.pose[active] = trial
-            residual[active] = new_residual
-            gradient, tangent = new_gradient, new_tangent
-            after = Start.after(response)
-            start = Start(
-                parameter=np.where(moved[:, None], after.parameter, start.parameter),
-                share=np.where(moved[:, None], after.share, start.share),
-            )
+            step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
+            taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
+            self.pose[active] = taken
+            residual[active] = np.max(np.abs(gradient), axis=1)
+            bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
+            bound[active] = bound[active].clip(1e-3 * STEP_BOUND, max(STEP_BOUND, 0.1 * self.smallest_pin))
+            damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
+            damping[active] = damping[active].clip(1e-12, 1e3)
+            known = known.replaced(active, start)
         worst = int(np.argmax(residual / self.load))
         raise ConvergenceError(
             f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {count}, "
@@ -183,8 +186,45 @@ class _Search:
             [float(values[worst]) for values in self.history],
         )
 
-    def finish(self, iterations: NDArray[np.intp]) -> Equilibrium:
-        response, gradient, _ = self.evaluate(np.arange(self.angle.size), self.pose, None)
+    def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
+        """Return the largest residual that counts as balance, N."""
+        size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
+        round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
+        load = self.load[rows]
+        return np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load))
+
+    def walk(
+        self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Start, FloatArray]:
+        """Walk along the steps until Π stops falling: poses, gradients, tangents, starts there, parts of the steps."""
+        low, high = np.zeros(rows.size), np.ones(rows.size)
+        low_slope, high_slope = slope.copy(), np.zeros(rows.size)
+        fraction = np.ones(rows.size)
+        pose = self.pose[rows] + step / self.lever
+        response, gradient, tangent = self.evaluate(rows, pose, start)
+        start = Start.after(response)
+        # Longer than the minimum: round-off of the slope must not send a step back.
+        noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
+        end = np.einsum("bi,bi->b", gradient, step)
+        for _ in range(LINE_TRIALS):
+            far = end > SLOPE_LEFT * np.abs(slope) + noise
+            if not np.any(far):
+                break
+            high[far], high_slope[far] = fraction[far], end[far]
+            back = np.nonzero(far)[0]
+            width = high[back] - low[back]
+            place = -low_slope[back] / (high_slope[back] - low_slope[back])
+            fraction[back] = low[back] + width * place.clip(0.05, 0.9)
+            pose[back] = self.pose[rows[back]] + fraction[back, None] * step[back] / self.lever
+            response, gradient[back], tangent[back] = self.evaluate(rows[back], pose[back], start.take(back))
+            start = start.replaced(back, Start.after(response))
+            end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
+            near = back[end[back] < 0.0]
+            low[near], low_slope[near] = fraction[near], end[near]
+        return pose, gradient, tangent, start, fraction
+
+    def finish(self, iterations: NDArray[np.intp], start: Start) -> Equilibrium:
+        response, gradient, _ = self.evaluate(np.arange(self.angle.size), self.pose, start)
         return Equilibrium(
             crank_angle=self.angle,
             wheel_moment=np.array(self.moment),
@@ -195,16 +235,20 @@ class _Search:
         )
 
 
-def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return −(H + μ tr(H)/4)⁻¹ g, its length bounded, and the slope g·step."""
-    stiffness = np.trace(tangent, axis1=1, axis2=2) / 4.0
+def _damped_step(
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
+
+    With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
+    downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
+    direction still corrects the others.
+    """
+    stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / 4.0
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
     stiffness = np.where(stiffness > 0.0, stiffness, 1.0)
-    damped = tangent + (damping * stiffness)[:, None, None] * np.eye(4)
-    step = -np.linalg.solve(damped, gradient[..., None])[..., 0]
-    uphill = np.einsum("bi,bi->b", gradient, step) >= 0.0
-    if np.any(uphill):  # an indefinite tangent (strong geometric part): steepest descent instead
-        step[uphill] = -gradient[uphill] / stiffness[uphill, None]
-    length = np.max(np.abs(step), axis=1)
-    step *= np.minimum(1.0, STEP_BOUND / np.maximum(length, 1e-300))[:, None]
-    return np.asarray(step), np.asarray(np.einsum("bi,bi->b", gradient, step))
+    values, modes = np.linalg.eigh(tangent)
+    along = np.einsum("bij,bi->bj", modes, gradient)
+    floor = np.maximum(damping, 1e-15) * stiffness
+    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound[:, None], bound[:, None])
+    return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)

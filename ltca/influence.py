@@ -73,19 +73,21 @@ def love_displacement(
             size = np.abs(edge)
             safe = np.where(size > 0.0, size, 1.0)
             upper, lower = (far + half_far) / safe, (far - half_far) / safe
-            total += sign * np.where(size > 0.0, edge * _inverse_sinh_difference(upper, lower), 0.0)
+            total += sign * np.where(
+                size > 0.0, edge * _inverse_sinh_difference(upper, lower, 2.0 * half_far / safe), 0.0
+            )
     return total
 
 
-def _inverse_sinh_difference(upper: Array, lower: Array) -> Array:
-    """asinh(upper) − asinh(lower) for upper ≥ lower without cancellation when both are large or close."""
+def _inverse_sinh_difference(upper: Array, lower: Array, difference: Array) -> Array:
+    """asinh(upper) − asinh(lower), upper − lower given exactly: no cancellation when both are large or close."""
     root_upper, root_lower = np.hypot(1.0, upper), np.hypot(1.0, lower)
     same_side = upper * lower > 0.0
     # asinh u − asinh v = asinh(u √(1+v²) − v √(1+u²)); on the same side u²−v² over the sum avoids the difference.
     total = upper * root_lower + lower * root_upper
     argument = np.where(
         same_side,
-        (upper - lower) * (upper + lower) / np.where(same_side, total, 1.0),
+        difference * (upper + lower) / np.where(same_side, total, 1.0),
         upper * root_lower - lower * root_upper,
     )
     return np.asarray(np.arcsinh(argument))
@@ -161,7 +163,30 @@ def _far_mean(lag: Array, width: float, distance: Array, receive: Array, send: A
     return np.asarray((weights @ (np.sqrt(inverse_square) * series)) * receive * send)
 
 
-def lagged_influence(cell_width: float, lag_count: int, y_edges: Array, *, mirrored: bool) -> Array:
+def _lagged_block(lags: Array, width: float, y_edges: Array, sign: float, shift: float) -> Array:
+    """Fourfold integrals per width² between cells at y and their images at ``sign·y + shift``; (lags, n, n)."""
+    lengths = np.diff(y_edges)
+    centres = 0.5 * (y_edges[1:] + y_edges[:-1])
+    potential = _mean_line_potential(lags, width, y_edges[:, None] - sign * y_edges[None, :] - shift)
+    block = sign * (potential[:, 1:, :-1] - potential[:, 1:, 1:] - potential[:, :-1, :-1] + potential[:, :-1, 1:])
+    distance = np.broadcast_to(centres[:, None] - sign * centres[None, :] - shift, block.shape)
+    gap = np.maximum(np.abs(distance) - 0.5 * (lengths[:, None] + lengths[None, :]), lags[:, None, None] - width)
+    longest = np.maximum(lengths[:, None], lengths[None, :])
+    far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * width)
+    m, i, j = np.nonzero(far)
+    block[far] = _far_mean(lags[m], width, distance[far], lengths[i], lengths[j])
+    return np.asarray(block)
+
+
+def lagged_influence(
+    cell_width: float,
+    lag_count: int,
+    y_edges: Array,
+    *,
+    mirrored: bool,
+    end_plane: float = 0.0,
+    end_factor: float = 0.0,
+) -> Array:
     """Fourfold integrals of 1/r between cells of a tensor grid with uniform x cells, by lag in x.
 
     Parameters
@@ -174,6 +199,8 @@ def lagged_influence(cell_width: float, lag_count: int, y_edges: Array, *, mirro
         Ascending edges of the y cells [mm].
     mirrored : bool
         Add the images of the cells in the plane y = 0 (then ``y_edges`` must start at 0).
+    end_plane, end_factor : float
+        Add the images in the planes y = ±``end_plane`` [mm], times ``end_factor`` (see `ltca.free_end`).
 
     Returns
     -------
@@ -181,28 +208,23 @@ def lagged_influence(cell_width: float, lag_count: int, y_edges: Array, *, mirro
         ∫∫ 1/r dA_i dA_j [mm³], symmetric in the last two axes.
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
-    lengths = np.diff(y_edges)
-    centres = 0.5 * (y_edges[1:] + y_edges[:-1])
-    count = lengths.size
-    total = np.zeros((lag_count, count, count))
+    total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
     for sign in (1.0, -1.0) if mirrored else (1.0,):
-        edge_distance = y_edges[:, None] - sign * y_edges[None, :]
-        potential = _mean_line_potential(lags, cell_width, edge_distance)
-        block = sign * (potential[:, 1:, :-1] - potential[:, 1:, 1:] - potential[:, :-1, :-1] + potential[:, :-1, 1:])
-        distance = np.broadcast_to(centres[:, None] - sign * centres[None, :], block.shape)
-        gap = np.maximum(
-            np.abs(distance) - 0.5 * (lengths[:, None] + lengths[None, :]), lags[:, None, None] - cell_width
-        )
-        longest = np.maximum(lengths[:, None], lengths[None, :])
-        far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * cell_width)
-        m, i, j = np.nonzero(far)
-        block[far] = _far_mean(lags[m], cell_width, distance[far], lengths[i], lengths[j])
-        total += block
+        total += _lagged_block(lags, cell_width, y_edges, sign, 0.0)
+        if end_factor != 0.0:
+            for shift in (2.0 * end_plane, -2.0 * end_plane):
+                total += end_factor * _lagged_block(lags, cell_width, y_edges, -sign, shift)
     return np.asarray(0.5 * cell_width**2 * (total + total.transpose(0, 2, 1)))
 
 
 def assemble_influence_matrix(
-    x_edges: Array, y_edges: Array, *, symmetric_x: bool = False, symmetric_y: bool = False
+    x_edges: Array,
+    y_edges: Array,
+    *,
+    symmetric_x: bool = False,
+    symmetric_y: bool = False,
+    end_plane: float = 0.0,
+    end_factor: float = 0.0,
 ) -> Array:
     """Area-weighted influence matrix of a tensor grid, cells ordered x-major.
 
@@ -217,6 +239,8 @@ def assemble_influence_matrix(
         Ascending edges along the width [mm]; any spacing.
     symmetric_x, symmetric_y : bool
         Whether the grid is the positive half of a symmetric one.
+    end_plane, end_factor : float
+        Images in the free ends at y = ±``end_plane`` [mm], see `ltca.free_end`; none by default.
 
     Returns
     -------
@@ -234,7 +258,14 @@ def assemble_influence_matrix(
         raise ValueError("the x edges of an influence grid must be uniform")
     if (symmetric_x and abs(x_edges[0]) > 1e-9 * width) or (symmetric_y and abs(y_edges[0]) > 1e-9 * y_edges[-1]):
         raise ValueError("the edges of a symmetric direction must start at 0")
-    lags = lagged_influence(width, 2 * count if symmetric_x else count, y_edges, mirrored=symmetric_y)
+    lags = lagged_influence(
+        width,
+        2 * count if symmetric_x else count,
+        y_edges,
+        mirrored=symmetric_y,
+        end_plane=end_plane,
+        end_factor=end_factor,
+    )
     ny = y_edges.size - 1
     index = np.arange(count)
     matrix = np.empty((count, ny, count, ny))

@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 
 
 class LengthProfile(Protocol):
-    """What the contact needs to know of a profile along the width."""
+    """What the contact needs to know of a profile along the width; hashable, since tables are cached by it."""
+
+    def __hash__(self) -> int:
+        """Hash of the parameters."""
 
     @property
     def length(self) -> float:

@@ -85,10 +85,11 @@ def line_contact_table(
         row[1] = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
         row[2] = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
     energy, pressure, half_width_ratio = rows.T
+    # A slender contact has δ = q/(π E*) (ln 1/δ + …), so δ E* L/F → −X/π, b² = 4 F ρ/(π E* L) and p = E* b/(2ρ).
     return LineContactTable(
-        inverse_energy=SlendernessCurve.through(places, 1.0 / energy),
-        inverse_square_pressure=SlendernessCurve.through(places, pressure**-2),
-        inverse_square_half_width=SlendernessCurve.through(places, half_width_ratio**-2),
+        inverse_energy=SlendernessCurve.through(places, 1.0 / energy, 2.0 / np.pi),
+        inverse_square_pressure=SlendernessCurve.through(places, pressure**-2, 1.0),
+        inverse_square_half_width=SlendernessCurve.through(places, half_width_ratio**-2, 0.25),
     )
 
 

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import HalfSpaceCompliance
+from ltca.coefficients import InfluenceCoefficients
+from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance
+from ltca.coupled_compliance import CoupledCompliance
 from ltca.drive import Drive
 from ltca.equilibrium import Equilibrium, solve_equilibrium
 from ltca.errors import DriveError
+from ltca.grid_compliance import GridCompliance
+from ltca.paper_method import solve_paper_equilibrium
 
 FloatArray = NDArray[np.float64]
+
+Method = Literal["tables", "direct", "paper"]
+Contacts = Literal["tables", "grids"]
+Compliance = Literal["half-space", "fe", "hybrid"]
+
+PAPER_START = 0.95
+"""Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
 
 HALF_WIDTH_BOUND = 0.3
 """Largest contact half-width as a part of the smallest radius in contact: beyond it the bodies are no half-spaces
@@ -29,34 +41,47 @@ class LoadedAnalysis:
         What was analysed.
     torque : float
         Output torque, N·mm.
+    method : Method
+        How equilibrium was found.
+    contacts : Contacts
+        What gave the loads.
+    compliance : Compliance
+        How the bodies yield.
     full, light : Equilibrium
         At that torque and at the light torque.
-    pin_pressure_mid, pin_half_width : array, shape (positions, z_P)
-        MPa, mm.
-    roller_pressure_mid_outer, roller_pressure_mid_inner : array, shape (positions, n_BR)
-        MPa.
-    roller_half_width_outer, roller_half_width_inner : array, shape (positions, n_BR)
-        mm.
+    model : ComplianceModel
+        The compliance behind both.
+    pressures : ContactPressures
+        Pressures and half-widths at that torque.
     bearing_radial, bearing_tangential : array, shape (positions,)
         Bearing force on the disc along the eccentricity and 90° ahead, N.
     """
 
     drive: Drive
     torque: float
+    method: Method
+    contacts: Contacts
+    compliance: Compliance
     full: Equilibrium
     light: Equilibrium
-    pin_pressure_mid: FloatArray
-    pin_half_width: FloatArray
-    roller_pressure_mid_outer: FloatArray
-    roller_pressure_mid_inner: FloatArray
-    roller_half_width_outer: FloatArray
-    roller_half_width_inner: FloatArray
+    model: ComplianceModel
+    pressures: ContactPressures
     bearing_radial: FloatArray
     bearing_tangential: FloatArray
 
 
-def analyse(drive: Drive, crank_angle: FloatArray, torque: float | None = None) -> LoadedAnalysis:
-    """Analyse a drive with half-space compliance.
+def analyse(
+    drive: Drive,
+    crank_angle: FloatArray,
+    torque: float | None = None,
+    *,
+    method: Method = "tables",
+    contacts: Contacts | None = None,
+    compliance: Compliance = "half-space",
+    coefficients: InfluenceCoefficients | None = None,
+    hole_near_field: bool = True,
+) -> LoadedAnalysis:
+    """Analyse a drive.
 
     Parameters
     ----------
@@ -66,6 +91,19 @@ def analyse(drive: Drive, crank_angle: FloatArray, torque: float | None = None) 
         φ_C, rad.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
+    method : {"tables", "direct", "paper"}
+        ``tables``: equilibrium on tabulated laws; ``direct``: contact grids solved inside every iteration;
+        ``paper``: the paper's iteration with held wheel (`ltca.paper_method`), started from our solution at 95 % of
+        the torque. ``direct`` starts from the solution on tables.
+    contacts : {"tables", "grids"}, optional
+        What the paper's iteration runs on, tables by default; the other methods have their own.
+    compliance : {"half-space", "fe", "hybrid"}
+        ``half-space``: contacts do not feel each other (the paper); ``fe``: plane strain, coefficients from finite
+        elements; ``hybrid``: half-space of finite length at the contact, finite elements for the bodies.
+    coefficients : InfluenceCoefficients, optional
+        Of this drive; what ``fe`` and ``hybrid`` need (`ltca.coefficients.load_coefficients`).
+    hole_near_field : bool
+        Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``).
 
     Returns
     -------
@@ -77,7 +115,8 @@ def analyse(drive: Drive, crank_angle: FloatArray, torque: float | None = None) 
     ConvergenceError
         When a position does not balance.
     DriveError
-        When the torque cannot be carried: a half-width beyond 0.3 of the smallest radius.
+        When the torque cannot be carried: a half-width beyond 0.3 of the smallest radius; when method and contacts
+        contradict each other; when coefficients are missing.
 
     Examples
     --------
@@ -88,28 +127,53 @@ def analyse(drive: Drive, crank_angle: FloatArray, torque: float | None = None) 
     6740 N
     """
     torque = drive.load.torque if torque is None else torque
-    model = HalfSpaceCompliance.of_drive(drive)
-    full = solve_equilibrium(model, crank_angle, drive.wheel_moment(torque))
-    light = solve_equilibrium(model, crank_angle, drive.wheel_moment(drive.load.light_torque), full.pose)
-    contacts = full.response
-    laws, rollers, flank = model.roller_laws, contacts.rollers, contacts.flank
+    used = _contacts_of(method, contacts)
+    laws = HalfSpaceCompliance.of_drive(drive)
+    model: ComplianceModel = laws if used == "tables" else GridCompliance.of_drive(drive)
+    if compliance != "half-space":
+        if method != "tables":
+            raise DriveError([f"method = {method}: runs on half-space compliance only, not on {compliance}"])
+        if coefficients is None:
+            raise DriveError([f"compliance = {compliance}: needs the influence coefficients of the drive"])
+        model = CoupledCompliance.of_drive(drive, coefficients, compliance, hole_near_field=hole_near_field)
+
+    def solve(moment: float, start: FloatArray | None) -> Equilibrium:
+        if method == "tables" and compliance == "half-space":
+            return solve_equilibrium(laws, crank_angle, moment, start)
+        if method in ("tables", "direct"):
+            near = solve_equilibrium(laws, crank_angle, moment, start)
+            return solve_equilibrium(model, crank_angle, moment, near.pose)
+        near = solve_equilibrium(laws, crank_angle, PAPER_START * moment, start)
+        return solve_paper_equilibrium(model, crank_angle, moment, near.pose)
+
+    full = solve(drive.wheel_moment(torque), None)
+    light = solve(drive.wheel_moment(drive.load.light_torque), full.pose)
+    rollers = full.response.rollers
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1) * np.exp(-1j * full.crank_angle)
     analysis = LoadedAnalysis(
         drive=drive,
         torque=torque,
+        method=method,
+        contacts=used,
+        compliance=compliance,
         full=full,
         light=light,
-        pin_pressure_mid=model.pin_law.mid_pressure(flank.approach, flank.effective_radius),
-        pin_half_width=model.pin_law.half_width(flank.approach, flank.effective_radius),
-        roller_pressure_mid_outer=laws.outer.mid_pressure(rollers.outer_approach, laws.outer_radius),
-        roller_pressure_mid_inner=laws.inner.mid_pressure(rollers.inner_approach, laws.inner_radius),
-        roller_half_width_outer=laws.outer.half_width(rollers.outer_approach, laws.outer_radius),
-        roller_half_width_inner=laws.inner.half_width(rollers.inner_approach, laws.inner_radius),
+        model=model,
+        pressures=model.pressures(full.response),
         bearing_radial=push.real,
         bearing_tangential=push.imag,
     )
     _check_half_widths(analysis)
     return analysis
+
+
+def _contacts_of(method: Method, contacts: Contacts | None) -> Contacts:
+    if method == "paper":
+        return contacts or "tables"
+    own: Contacts = "grids" if method == "direct" else "tables"
+    if contacts not in (None, own):
+        raise DriveError([f"contacts = {contacts}: method {method} runs on {own}; only method paper runs on either"])
+    return own
 
 
 def _check_half_widths(analysis: LoadedAnalysis) -> None:
@@ -120,9 +184,9 @@ def _check_half_widths(analysis: LoadedAnalysis) -> None:
     flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
     roller = drive.crank_bearing.roller_radius
     found: list[tuple[str, FloatArray, FloatArray | float]] = [
-        ("wheel pin", analysis.pin_half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
-        ("roller on the bore", analysis.roller_half_width_outer, roller),
-        ("roller on the inner race", analysis.roller_half_width_inner, roller),
+        ("wheel pin", analysis.pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
+        ("roller on the bore", analysis.pressures.outer.half_width, roller),
+        ("roller on the inner race", analysis.pressures.inner.half_width, roller),
     ]
     problems = []
     for name, half_width, radius in found:

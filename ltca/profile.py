@@ -100,12 +100,14 @@ class FlankProfile:
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
     def nearest_parameter(
-        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 50
+        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 100
     ) -> FloatArray:
         """Return θ of the flank point whose normal passes through a point.
 
-        Newton's method on Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth. The root next
-        to the start is found; for points about a pin radius away from the flank that is the nearest one.
+        Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
+        settle soon, kept between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g
+        vanishes and Newton's method alone creeps or runs away. The minimum next to the start is found; for points
+        about a pin radius away from the flank that is the nearest one.
 
         Parameters
         ----------
@@ -130,15 +132,20 @@ class FlankProfile:
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
         bound = 0.4 * np.pi / self.reduction_ratio
+        low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
         history: list[float] = []
-        for _ in range(limit):
+        for iteration in range(limit):
             c, tangent, second = self.locus(theta)
             away = c - point
             speed = (tangent * tangent.conjugate()).real
+            value = (tangent.conjugate() * away).real
             slope = speed + (second.conjugate() * away).real
-            # Far inside a centre of curvature the slope turns negative: then step as steepest descent does.
-            slope = np.where(slope > 0.1 * speed, slope, speed)
-            step = np.clip((tangent.conjugate() * away).real / slope, -bound, bound)
+            # Inside a centre of curvature the slope is negative: then step as steepest descent does.
+            step = np.clip(value / np.where(slope > 1e-3 * speed, slope, speed), -bound, bound)
+            if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
+                low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
+                outside = ((theta - step < low) | (theta - step > high)) & np.isfinite(high - low)
+                step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta -= step
             history.append(float(np.max(np.abs(step), initial=0.0)))
             # Convergence is quadratic: a step of 1e-8 leaves an error below round-off.

@@ -17,6 +17,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.errors import CycloError
 from ltca.length_profile import LengthProfile
 from ltca.patch import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
@@ -77,12 +78,18 @@ def solve_profiled_patch(
     )
 
 
+class RadiusRangeError(CycloError):
+    """A profiled law was asked for an effective radius its table was not built for."""
+
+
 @dataclass(frozen=True, slots=True)
 class ProfiledTable:
     """Piece coefficients over X for every radius node.
 
     Attributes
     ----------
+    smallest_radius, largest_radius : float
+        Range of effective radii served [mm].
     start, spacing : float
         First knot in X and distance of the knots.
     log_radii : ndarray, shape (r,)
@@ -91,6 +98,8 @@ class ProfiledTable:
         m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) of the mid-width values.
     """
 
+    smallest_radius: float
+    largest_radius: float
     start: float
     spacing: float
     log_radii: Array
@@ -160,6 +169,8 @@ def profiled_table(
     exponent = np.array([quintic_hermite_pieces(rows[0], rows[3] * spacing) for rows in values])
     pieces = np.array([[quintic_spline_pieces(curve) for curve in rows[1:3]] for rows in values])
     return ProfiledTable(
+        smallest_radius=smallest_radius,
+        largest_radius=largest_radius,
         start=float(places[0]),
         spacing=spacing,
         log_radii=log_radii,
@@ -186,7 +197,7 @@ class ProfiledLineContactLaw:
     """Load, stiffness, energy, pressure and half-width of profiled cylinders.
 
     The methods are those of `ltca.line_contact.LineContactLaw`. Radii outside the range the table was built for
-    are refused.
+    are refused (`RadiusRangeError`).
 
     Parameters
     ----------
@@ -240,6 +251,14 @@ class ProfiledLineContactLaw:
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
         )
+        nodes = self.table
+        if radius.size and (
+            radius.min() < nodes.smallest_radius * (1.0 - 1e-9) or radius.max() > nodes.largest_radius * (1.0 + 1e-9)
+        ):
+            raise RadiusRangeError(
+                f"the profiled contact table holds effective radii from {nodes.smallest_radius:g} to "
+                f"{nodes.largest_radius:g} mm, asked for {radius.min():g} to {radius.max():g} mm"
+            )
         closed = delta > 0.0
         place = np.log(np.where(closed, delta * radius / self.profile.length**2, 1e-4))
         return np.where(closed, delta, 0.0), place, radius, closed

@@ -36,6 +36,13 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "pin_pressure_mid": ("pin", "MPa", "largest pressure of wheel pin and flank at mid-width"),
     "roller_pressure_mid_outer": ("roller", "MPa", "largest pressure of roller and bore at mid-width"),
     "roller_pressure_mid_inner": ("roller", "MPa", "largest pressure of roller and inner race at mid-width"),
+    "pin_pressure_max": ("pin", "MPa", "largest pressure of wheel pin and flank anywhere, end cell in attrs"),
+    "roller_pressure_max_outer": ("roller", "MPa", "largest pressure of roller and bore anywhere, end cell in attrs"),
+    "roller_pressure_max_inner": (
+        "roller",
+        "MPa",
+        "largest pressure of roller and inner race anywhere, end cell in attrs",
+    ),
     "pin_half_width": ("pin", "mm", "contact half-width of wheel pin and flank at mid-width"),
     "roller_half_width_outer": ("roller", "mm", "contact half-width of roller and bore at mid-width"),
     "roller_half_width_inner": ("roller", "mm", "contact half-width of roller and inner race at mid-width"),
@@ -59,7 +66,7 @@ def position_angles(positions: int) -> FloatArray:
 
 def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
     full = analysis.full
-    contacts = full.response
+    contacts, pressures = full.response, analysis.pressures
     displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * full.crank_angle)
     return {
         "pin_load": contacts.pin_load,
@@ -70,12 +77,15 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "roller_approach_outer": contacts.rollers.outer_approach,
         "roller_approach_inner": contacts.rollers.inner_approach,
         "pin_shaft_approach": contacts.holes.approach,
-        "pin_pressure_mid": analysis.pin_pressure_mid,
-        "roller_pressure_mid_outer": analysis.roller_pressure_mid_outer,
-        "roller_pressure_mid_inner": analysis.roller_pressure_mid_inner,
-        "pin_half_width": analysis.pin_half_width,
-        "roller_half_width_outer": analysis.roller_half_width_outer,
-        "roller_half_width_inner": analysis.roller_half_width_inner,
+        "pin_pressure_mid": pressures.pins.mid,
+        "roller_pressure_mid_outer": pressures.outer.mid,
+        "roller_pressure_mid_inner": pressures.inner.mid,
+        "pin_pressure_max": pressures.pins.largest,
+        "roller_pressure_max_outer": pressures.outer.largest,
+        "roller_pressure_max_inner": pressures.inner.largest,
+        "pin_half_width": pressures.pins.half_width,
+        "roller_half_width_outer": pressures.outer.half_width,
+        "roller_half_width_inner": pressures.inner.half_width,
         "pin_contact_parameter": np.mod(contacts.flank.parameter, 2.0 * np.pi),
         "bearing_radial": analysis.bearing_radial,
         "bearing_tangential": analysis.bearing_tangential,
@@ -145,13 +155,22 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis]) -> xr
         },
         attrs={
             "drive": drive_name,
-            "compliance": "half-space",
+            "compliance": first.compliance,
+            "method": first.method,
+            "contacts": first.contacts,
             "cage_speed": ContactGeometry.of_drive(first.drive).placement.cage_speed,
             "torque_N_mm": [analysis.torque for analysis in analyses.values()],
             "driving_sign": [analysis.drive.driving_sign for analysis in analyses.values()],
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
         },
     )
+    # At unrelieved ends the largest pressure is singular: it is that of an end cell of this length.
+    for name, kind in (
+        ("pin_pressure_max", first.pressures.pins),
+        ("roller_pressure_max_outer", first.pressures.outer),
+        ("roller_pressure_max_inner", first.pressures.inner),
+    ):
+        dataset[name].attrs["end_cell_mm"] = kind.end_cell
     return dataset
 
 
@@ -176,7 +195,9 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float]:
         load > LOADED_FRACTION * np.max(load)
         for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
     )
-    roller_pressure = np.maximum(analysis.roller_pressure_mid_outer, analysis.roller_pressure_mid_inner)
+    pressures = analysis.pressures
+    roller_mid = max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))
+    roller_largest = max(np.max(pressures.outer.largest), np.max(pressures.inner.largest))
     values = {
         "backlash_disc_arcmin": np.mean(backlash(geometry, angle, DISC_ROTATION)) * ARCMIN,
         "backlash_wheel_arcmin": np.mean(backlash(geometry, angle, WHEEL_ANGLE)) * ARCMIN,
@@ -185,9 +206,13 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float]:
         "mean_tangential_bearing_load_N": np.mean(tangential),
         "ptp_tangential_bearing_load_N": np.ptp(tangential),
         "max_pin_load_N": np.max(contacts.pin_load),
-        "max_pin_pressure_mid_MPa": np.max(analysis.pin_pressure_mid),
+        "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
+        "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
         "max_roller_load_N": np.max(contacts.rollers.outer_load),
-        "max_roller_pressure_mid_MPa": np.max(roller_pressure),
+        "max_roller_pressure_mid_MPa": roller_mid,
+        "max_roller_pressure_max_MPa": roller_largest,
+        "pin_end_cell_mm": pressures.pins.end_cell,
+        "roller_end_cell_mm": pressures.outer.end_cell,
         "max_pin_shaft_load_N": np.max(contacts.hole_load),
         "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes),
         "mean_loaded_pins": np.mean(pins.sum(axis=1)),

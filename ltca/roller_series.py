@@ -8,12 +8,13 @@ U_i(δ_i(s)) + U_o(δ_o(s, d)) over s.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.contact_law import LoadLaw
 from ltca.errors import ConvergenceError
-from ltca.line_contact import LineContactLaw
 from ltca.pairs import RollerRays
 
 FloatArray = NDArray[np.float64]
@@ -21,21 +22,23 @@ ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
 
+Law = TypeVar("Law", bound=LoadLaw)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RollerLaws:
+class RollerLaws(Generic[Law]):
     """Load laws of the two contacts of every roller.
 
     Attributes
     ----------
-    inner, outer : LineContactLaw
+    inner, outer : LoadLaw
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (n_BR,)
         Effective radii of curvature, mm.
     """
 
-    inner: LineContactLaw
-    outer: LineContactLaw
+    inner: Law
+    outer: Law
     inner_radius: FloatArray
     outer_radius: FloatArray
 
@@ -70,7 +73,7 @@ class RollerState:
 def balance_rollers(
     rays: RollerRays,
     displacement: ComplexArray,
-    laws: RollerLaws,
+    laws: RollerLaws[Law],
     start: FloatArray | None = None,
 ) -> RollerState:
     """Place every roller so that its two contacts balance.
@@ -94,7 +97,7 @@ def balance_rollers(
     Raises
     ------
     ConvergenceError
-        When a roller does not settle (a law that is not monotone).
+        When a law gives no number or a roller does not settle.
     """
     direction = rays.direction
     lowest = rays.touching_distance(displacement)
@@ -122,6 +125,8 @@ def balance_rollers(
         bend = outer_load * (1.0 - cosine**2) / length
         stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
         imbalance = np.where(pressed, inner_load - outer_load * cosine, 0.0)
+        if np.isnan(imbalance).any():  # bisection would settle on it all the same
+            raise ConvergenceError("rollers do not balance between the races: a load is not a number", history)
         low = np.where(imbalance < 0.0, share, low)
         high = np.where(imbalance > 0.0, share, high)
         safe = np.where(pressed & (stiffness > 0.0), stiffness, 1.0)

@@ -81,8 +81,9 @@ def quintic_spline_pieces(values: Array) -> Array:
 def quintic_hermite_pieces(values: Array, slopes: Array) -> Array:
     """Piece coefficients of the quintic spline with given values and slopes at uniform knots.
 
-    Three times continuously differentiable; the fourth derivative is continuous at the knots next to the ends. Twice
-    the data of `quintic_spline_pieces` per knot: for curves that bend within few knots.
+    Three times continuously differentiable; straight (no curvature) at the first knot, and the fourth derivative is
+    continuous at the last knot but one. Twice the data of `quintic_spline_pieces` per knot: for curves that bend
+    within few knots.
 
     Parameters
     ----------
@@ -113,13 +114,14 @@ def quintic_hermite_pieces(values: Array, slopes: Array) -> Array:
     system[inner, inner] = 18.0
     system[inner, inner + 1] = -3.0
     right[inner] = 60.0 * (rise[1:] - rise[:-1]) + 24.0 * (before[:-1] - after[1:])
+    system[0, 0] = 1.0
     # Fourth derivative: start −360 Δ + 192 y0' + 168 y1' + 36 y0'' − 24 y1'',
-    # end 360 Δ − 168 y0' − 192 y1' − 24 y0'' + 36 y1''.
-    for row, knot in ((0, 1), (count - 1, count - 2)):
-        system[row, knot - 1 : knot + 2] += (-24.0, 0.0, 24.0)
-        left_end = 360.0 * rise[knot - 1] - 168.0 * before[knot - 1] - 192.0 * after[knot - 1]
-        right_start = -360.0 * rise[knot] + 192.0 * before[knot] + 168.0 * after[knot]
-        right[row] = right_start - left_end
+    # end 360 Δ − 168 y0' − 192 y1' − 24 y0'' + 36 y1''; equal at the last knot but one.
+    knot = count - 2
+    system[-1, knot - 1 : knot + 2] = (-24.0, 0.0, 24.0)
+    left_end = 360.0 * rise[knot - 1] - 168.0 * before[knot - 1] - 192.0 * after[knot - 1]
+    right_start = -360.0 * rise[knot] + 192.0 * before[knot] + 168.0 * after[knot]
+    right[-1] = right_start - left_end
     bends = np.linalg.solve(system, right)
     first, last = bends[:-1], bends[1:]
     return np.array(
@@ -139,8 +141,9 @@ class SlendernessCurve:
     """Smooth curve over X = ln(ρδ/L²) with a sound continuation on both sides.
 
     Toward X → −∞ (very long or light contacts) it goes on as ``a + b t + c ln(1 + t/T)``, the form the
-    logarithmic approach of slender contacts has; toward X → ∞ as the exponential of an almost linear function.
-    Both continue value, slope and curvature; the curve must be positive.
+    logarithmic approach of slender contacts has, with the limiting slope b known and T from the curvature; toward
+    X → ∞ as the exponential of an almost linear function. Both continue value, slope and curvature; the curve must
+    be positive.
 
     Parameters
     ----------
@@ -148,16 +151,19 @@ class SlendernessCurve:
         First knot and distance of the knots.
     coefficients : ndarray, shape (6, pieces)
         Powers 0 … 5 of the local coordinate 0 … 1.
+    light_slope : float
+        Limit of −d/dX for X → −∞.
     """
 
     start: float
     spacing: float
     coefficients: Array
+    light_slope: float
 
     @classmethod
-    def through(cls, nodes: Array, values: Array) -> SlendernessCurve:
+    def through(cls, nodes: Array, values: Array, light_slope: float) -> SlendernessCurve:
         """Curve through positive values at uniform nodes."""
-        return cls(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values))
+        return cls(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values), light_slope)
 
     def value(self, x: Array) -> Array:
         """Value at ``x``, any shape."""
@@ -198,9 +204,10 @@ class SlendernessCurve:
         if low.any():
             value, first, second = c[0, 0], c[1, 0] / h, 2.0 * c[2, 0] / h**2
             t = self.start - x[low]
-            reach = abs(self.start)
+            slope = self.light_slope
+            # value'(t) = slope + bend/reach and value''(t) = −bend/reach² at t = 0
+            reach = (slope + first) / second
             bend = -second * reach**2
-            slope = -first - bend / reach
             inverse = 1.0 / (reach + t)
             parts = (
                 value + slope * t + bend * np.log1p(t / reach),

@@ -1,0 +1,34 @@
+"""What the mechanics needs of a load–approach law, whoever provides it: a table, a grid, a finite-element fit."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class LoadLaw(Protocol):
+    """Load of contacts pressed together."""
+
+    def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Return load [N] and its derivative by the approach [N/mm]; zeros where the approach is not positive."""
+        ...
+
+
+class ContactLaw(LoadLaw, Protocol):
+    """A law that knows its energy and its pressure at mid-width as well."""
+
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return ∫ F dδ, N·mm."""
+        ...
+
+    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return the largest pressure at mid-width, MPa."""
+        ...
+
+    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return the contact half-width at mid-width, mm."""
+        ...
