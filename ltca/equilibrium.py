@@ -118,7 +118,8 @@ def solve_equilibrium(
 def _take_up(model: ComplianceModel, angle: FloatArray, sense: int) -> FloatArray:
     """Wheel angles at first contact; zero where pins interfere so that turning the wheel alone cannot find it."""
     try:
-        return first_contact(model.geometry, angle, WHEEL_ANGLE, sense)[0]
+        turned = first_contact(model.geometry, angle, WHEEL_ANGLE, sense)[0]
+        return np.where(np.abs(turned) < np.pi / model.geometry.placement.reduction_ratio, turned, 0.0)
     except ConvergenceError:
         if angle.size == 1:
             return np.zeros(1)
@@ -177,6 +178,7 @@ class _Search:
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
             taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
             self.pose[active] = taken
+            self.refuse_slip(active, residual)
             residual[active] = np.max(np.abs(gradient), axis=1)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
             bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
@@ -190,6 +192,20 @@ class _Search:
             f"{self.load[worst]:.4g} N",
             [float(values[worst]) for values in self.history],
         )
+
+    def refuse_slip(self, rows: NDArray[np.intp], residual: FloatArray) -> None:
+        """Stop where wheel or disc has turned by half a pin pitch: the teeth have slipped, other pins would carry."""
+        turned = np.max(np.abs(self.pose[rows][:, 2:]), axis=1)
+        pitch = np.pi / self.model.geometry.placement.reduction_ratio
+        if np.max(turned) > pitch:
+            worst = rows[int(np.argmax(turned))]
+            self.history.append(residual.copy())
+            raise ConvergenceError(
+                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): the "
+                f"teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
+                f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
+                [float(values[worst]) for values in self.history],
+            )
 
     def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
