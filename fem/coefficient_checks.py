@@ -167,7 +167,9 @@ def _check_closed_forms(dataset: xr.Dataset) -> tuple[Check, ...]:
         "tenth, some per cent of ln 2 at worst"
     )
     return (
-        Check(name="near field, disc, worst station", value=_farthest(slopes), lowest=0.96, highest=1.04, reason=reason),
+        Check(
+            name="near field, disc, worst station", value=_farthest(slopes), lowest=0.96, highest=1.04, reason=reason
+        ),
         Check(
             name="near field, pin, roller, race",
             value=_farthest(np.array(round_slopes)),

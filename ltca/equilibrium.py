@@ -201,8 +201,8 @@ class _Search:
             worst = rows[int(np.argmax(turned))]
             self.history.append(residual.copy())
             raise ConvergenceError(
-                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): the "
-                f"teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
+                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): "
+                f"the teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
                 f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
                 [float(values[worst]) for values in self.history],
             )
