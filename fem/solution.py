@@ -232,7 +232,8 @@ def solve_drive(
                 seconds=watch.seconds,
             )
         say(f"meshes graded anew ({grading}): {complaint}")
-    raise ConvergenceError(f"meshes do not fit the contacts after {LARGEST_GRADINGS} gradings: {complaint}")
+    hint = "; use smaller elements" if scale > COARSE_SCALE else ""
+    raise ConvergenceError(f"meshes do not fit the contacts after {LARGEST_GRADINGS} gradings: {complaint}{hint}")
 
 
 def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
