@@ -17,6 +17,27 @@ drive_mesh             meshes of all bodies of a drive
 mesh_file              ``.msh`` and ``.vtu``
 offscreen              whether pyvista can render here
 mesh_picture           picture of a drive's mesh
+elasticity             stiffness, rigid modes, distributed loads, energy
+condensation           one factorisation: compliance of all loads of a body
+surface                zones that carry pressure, zones opposite
+coupling               mortar integrals of a pair: exact gaps, one line of action
+unilateral             pressures that never pull: active set, interior point
+two_bodies             two bodies pressed together
+shaft_pins             elastic shaft pins, an option
+drive_model            bodies and pairs of a drive, its contact problem at a pose
+drive_condensation     the model from meshes
+pose                   iteration of the loaded pose
+grading                contacts to grade meshes for, from a solution
+contact_results        loads, peak pressures, half-widths, forces on the disc
+solution               full solution: coarse, graded, checked
+stress                 recovery of nodal stresses
+fields                 displacement and stress of all bodies, motion of the bore
+solution_files         ``summary.json``, ``fem.nc``, ``.vtu``
+scene                  flat scenes by pyvista or matplotlib
+pictures               von Mises, contacts, deformed shape
+calculix               deck of the same problem for CalculiX
+calculix_referee       its answer beside ours
+reference_fields       regenerates the fields of the regression test
 fixtures               regenerates ``meshes/``
 commands               what the package adds to ``cyclo``
 =====================  ==================================================================================

@@ -98,6 +98,7 @@ def grade_contacts(
     *,
     margin: float,
     smallest_share: float,
+    elastic_shaft_pins: bool = False,
 ) -> ExpectedContacts:
     """Return the contacts to grade meshes for.
 
@@ -111,6 +112,8 @@ def grade_contacts(
         A contact without load whose gap is below this becomes a candidate, mm.
     smallest_share : float
         Candidates get elements for at least this share of the largest load of their kind.
+    elastic_shaft_pins : bool
+        Whether the shaft pins yield, too.
 
     Returns
     -------
@@ -135,6 +138,9 @@ def grade_contacts(
     hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
     flank_effective = profile.effective_radius(gaps.flank_parameters, place.wheel_pin_radii)
     pins, rollers, holes = loads
+    hole_modulus = 1.0 / materials.disc.plane_strain_compliance
+    if elastic_shaft_pins:
+        hole_modulus = contact_modulus(materials.disc, materials.shaft_pin)
     return ExpectedContacts(
         crank_angle=float(crank_angle),
         disc_x=displacement.real,
@@ -161,9 +167,7 @@ def grade_contacts(
         ),
         bore_points=_bore_points(displacement, place, rays) * turn_back,
         race_points=race * rays,
-        holes=group(
-            holes, gaps.holes, hole_effective, 1.0 / materials.disc.plane_strain_compliance, gaps.hole_directions
-        ),
+        holes=group(holes, gaps.holes, hole_effective, hole_modulus, gaps.hole_directions),
         hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
     )
 

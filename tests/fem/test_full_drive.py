@@ -86,6 +86,11 @@ def test_further_load_uses_the_same_factors(coarse):
     assert more.model is coarse.model
     _, tangential = bearing_components(more.contacts, 0.5)
     assert tangential == pytest.approx(1.1 * TANGENTIAL, rel=1.5e-3)
+
+
+@pytest.mark.slow
+def test_further_load_is_that_of_fresh_meshes(coarse):
+    more = solve_load(coarse, 1.1 * 377_300.0)
     fresh = solve_drive(drive(), 0.5, torque=1.1 * 377_300.0, scale=3.0)
     for name, _ in CONTACT_KINDS:
         first, second = getattr(more.contacts, name), getattr(fresh.contacts, name)
@@ -110,6 +115,7 @@ def test_displacements_carry_the_contact(coarse):
             assert disc.stress.von_mises[near].max() == pytest.approx(0.557 * detail.peak_pressure, rel=0.1)
 
 
+@pytest.mark.slow
 def test_reverse_drive_mirrors_forward():
     """result(φ, cw) is the mirror image of result(−φ, ccw)."""
     forward = drive()
@@ -166,3 +172,47 @@ def test_default_start_pose_does_not_matter(default):
     for name, _ in CONTACT_KINDS:
         first, second = getattr(default.contacts, name), getattr(again.contacts, name)
         assert np.max(np.abs(first - second)) < 1e-3 * first.max()
+
+
+@pytest.mark.slow
+def test_rigid_body_limit_comes_near_the_half_space_drive():
+    """Disc and race 1000 times as stiff, pins and rollers half: every E* unchanged, only local yielding left.
+
+    What stays different: the half-space laws are those of the finite width (a line contact's approach depends on the
+    width), the FE pins end at a rigid core of 2 mm and the rollers at their other contact. That changes
+    approaches by about a fifth, and pins that share a load by gaps of some micrometres feel it most.
+    """
+    from ltca.drive import Material
+    from ltca.loaded_analysis import analyse
+
+    steel = drive()
+    soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
+    materials = dataclasses.replace(steel.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
+    contacts = solve_drive(dataclasses.replace(steel, materials=materials), 0.5, scale=3.0).contacts
+    elastic = solve_drive(steel, 0.5, scale=3.0).contacts
+    half_space = analyse(steel, np.array([0.5]), None).full.response
+    for name, limit, theirs in (
+        ("pin_load", 0.15, half_space.pin_load[0]),
+        ("roller_load_outer", 0.05, half_space.rollers.outer_load[0]),
+        ("pin_shaft_load", 0.02, half_space.hole_load[0]),
+    ):
+        away = np.max(np.abs(getattr(contacts, name) - theirs)) / theirs.max()
+        flexible = np.max(np.abs(getattr(elastic, name) - theirs)) / theirs.max()
+        assert away < limit, name
+        assert away < 0.5 * flexible, name
+
+
+@pytest.mark.slow
+def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
+    """Disc and pin alike: E* is half that of a rigid pin, so at one load b grows and p0 falls by √2 (Hertz)."""
+    yielding = solve_drive(drive(), 0.5, scale=3.0, elastic_shaft_pins=True)
+    check_balance(yielding)
+    rigid, soft = coarse.contacts, yielding.contacts
+    on = rigid.pin_shaft_load > 0.0
+    loads = np.sqrt(soft.pin_shaft_load[on] / rigid.pin_shaft_load[on])
+    # Three elements for each half-width: half-widths good to 2 %, pressures to 3 %.
+    np.testing.assert_allclose(soft.hole_half_width[on] / rigid.hole_half_width[on], np.sqrt(2.0) * loads, rtol=0.03)
+    # The pins give way locally by some micrometres, so the wheel turns back further.
+    assert yielding.pose.wheel_angle < coarse.pose.wheel_angle
+    kinds = [field.kind for field in recover_fields(yielding.model, yielding.state)]
+    assert kinds.count("shaft_pin") == 8
