@@ -64,28 +64,21 @@ class DiscStations:
         Raises
         ------
         MeshError
-            When a boundary would get fewer than eight stations, or so many that their patches overlap.
+            When the scale is out of bounds.
         """
-        if not (np.isfinite(scale) and scale > 0.0):
-            raise MeshError(f"stations {scale:g}: must be greater than 0 (a multiple of the default number)")
+        if not (np.isfinite(scale) and 0.5 <= scale <= 8.0):
+            raise MeshError(
+                f"stations {scale:g}: must be at least 0.5 and at most 8 (a multiple of the default number)"
+            )
         width = patch_half_width(shape)
         lobes = round(shape.flank.profile.reduction_ratio) - 1
-        numbers = [
-            round(FLANK_PER_LOBE * scale) * lobes,
-            round(BORE * scale),
-            *[round(PER_HOLE * scale)] * len(shape.holes),
-        ]
+        numbers = [round(FLANK_PER_LOBE * scale) * lobes, round(BORE * scale)]
+        numbers += [round(PER_HOLE * scale)] * len(shape.holes)
         parameters = []
         for curve, number in zip(shape.curves, numbers, strict=True):
-            if number < 8:
-                raise MeshError(f"{number} stations on {curve.name}: at least 8 are needed; use more stations")
             uniform = 2.0 * np.pi * np.arange(number) / number
             spacing = float(np.abs(np.diff(curve.points(np.append(uniform, 2.0 * np.pi)))).min())
-            if spacing <= 2.0 * width:
-                raise MeshError(
-                    f"stations {scale:g}: {number} stations on {curve.name} stand {spacing:.3g} mm apart and their "
-                    f"patches of half-width {width:.3g} mm overlap; use fewer stations"
-                )
+            width = min(width, SPACING_SHARE * spacing)
             parameters.append(uniform)
         return cls(
             boundary=np.repeat(np.arange(len(numbers)), numbers),
