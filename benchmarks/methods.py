@@ -34,7 +34,9 @@ def main() -> None:
     cases = load_drive("paper").cases
     angles = position_angles(arguments.positions)
     few = angles[:: arguments.every]
-    solve_equilibrium(HalfSpaceCompliance.of_drive(cases["CS-1"]), few, cases["CS-1"].wheel_moment())  # builds the table
+    solve_equilibrium(
+        HalfSpaceCompliance.of_drive(cases["CS-1"]), few, cases["CS-1"].wheel_moment()
+    )  # builds the table
     print("case   tables  direct  cold start   ratios        largest difference, % of the largest")
     print("       ms/pos  ms/pos      ms/pos                 load     mid pressure   of either start")
     for name, drive in cases.items():

@@ -61,7 +61,11 @@ def main() -> None:
                 for reason, count in Counter(reason for reason in found.failure if reason).items():
                     print(f"        {count:4d} x {reason}")
                 places = np.degrees(angles[failed])
-                print("        at φ_C [°]: " + ", ".join(f"{value:.0f}" for value in places[:18]) + (" …" if places.size > 18 else ""))
+                print(
+                    "        at φ_C [°]: "
+                    + ", ".join(f"{value:.0f}" for value in places[:18])
+                    + (" …" if places.size > 18 else "")
+                )
 
 
 if __name__ == "__main__":

@@ -67,9 +67,7 @@ def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
     rollers = max(3, round(_between(6.0, float(fitting), next(u))))
     holes = round(_between(3.0, 16.0, next(u)))
     hole_circle = 0.5 * (bore + root) * _between(0.97, 1.03, next(u))
-    hole_room = 0.93 * min(
-        hole_circle - bore, root - hole_circle, hole_circle * float(np.sin(np.pi / holes))
-    )
+    hole_room = 0.93 * min(hole_circle - bore, root - hole_circle, hole_circle * float(np.sin(np.pi / holes)))
     if hole_room < 1.3 * eccentricity:
         return None
     hole_radius = _between(1.3 * eccentricity, hole_room, next(u))

@@ -12,9 +12,7 @@ from ltca.equilibrium_check import find_imbalance
 from ltca.errors import ConvergenceError
 from ltca.random_drives import COORDINATES, random_drive
 
-POINTS = st.lists(
-    st.floats(min_value=0.0, max_value=1.0, allow_nan=False), min_size=COORDINATES, max_size=COORDINATES
-)
+POINTS = st.lists(st.floats(min_value=0.0, max_value=1.0, allow_nan=False), min_size=COORDINATES, max_size=COORDINATES)
 
 
 def outcome(point):
