@@ -195,8 +195,8 @@ class _Search:
             worst = rows[int(np.argmax(turned))]
             self.history.append(residual.copy())
             raise ConvergenceError(
-                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): the "
-                f"teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
+                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): "
+                f"the teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
                 f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
                 [float(values[worst]) for values in self.history],
             )
@@ -206,7 +206,7 @@ class _Search:
         size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
         round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
         load = self.load[rows]
-        return np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load))
+        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
