@@ -212,7 +212,7 @@ class _Search:
         size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
         round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
         load = self.load[rows]
-        return np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load))
+        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start

@@ -170,8 +170,13 @@ def find_imbalance(
     value = potential.at(pose + moves / lever)
     pairs = value[1:33].reshape(4, 2, 4)
     slope = np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps)
-    # Round-off of Π: of the stored energy and of T·angle, and of the search along the rays.
-    noise = 1e-11 * (abs(moment * pose[3]) + abs(value[0]) + load * scale)
+    # Round-off of Π: of the stored energy and of T·angle, of the search along the rays, and of approaches (parts of
+    # the pin circle radius) under the forces of preloaded pins.
+    size = 4.0 * np.finfo(float).eps * drive.pin_wheel.pin_circle_radius
+    forces = float(
+        contacts.pin_load[position].sum() + contacts.hole_load[position].sum() + rollers.outer_load[position].sum()
+    )
+    noise = 1e-11 * (abs(moment * pose[3]) + abs(value[0]) + load * scale) + size * forces
     best = int(np.argmin(slope - noise / steps))
     if slope[best] > 1e-3 * load + noise / steps[best]:
         problems.append(f"slope of the potential {slope[best]:.3g} N against a load of {load:.3g} N")
