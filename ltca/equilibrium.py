@@ -143,7 +143,8 @@ class _Search:
         residual = np.max(np.abs(gradient), axis=1)
         for _ in range(ITERATIONS):
             self.history.append(residual.copy())
-            going = residual[active] > TOLERANCE * self.load[active]
+            # A residual that is no number does not balance either.
+            going = ~(residual[active] <= TOLERANCE * self.load[active])
             active, start = active[going], start.take(going)
             gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
