@@ -312,7 +312,4 @@ def resultant(
 
 def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:
     scaled = stiffness[..., None] * motion.gradient
-    tangent = np.matmul(motion.gradient.swapaxes(1, 2), scaled)
-    positions, pairs = load.shape
-    bend = np.matmul(load[:, None, :], motion.curvature.reshape(positions, pairs, 16))
-    return np.asarray(tangent + bend.reshape(positions, 4, 4))
+    return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))

@@ -7,25 +7,58 @@ at the distance :math:`r_P + \Delta r_P`, of the trochoid that a pin centre desc
 
 so flank and trochoid share their normals, and the distance of a pin from the flank is the distance of its
 centre from the trochoid. A root of the flank lies at θ = 0.
+
+A real flank departs from it by δ(θ) along that normal and its centre by the runout from the bore. With a
+deviation it is a curve of its own, F = c − (offset − δ) n: everything below is then asked of F itself.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive import Drive
 from ltca.errors import ConvergenceError
+from ltca.profile_deviation import ProfileDeviation
+from ltca.unit_circle import integer_power, small_turn, unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
+class Curve(NamedTuple):
+    """Points of a curve with two derivatives by θ: complex, mm, mm/rad, mm/rad²."""
+
+    point: ComplexArray
+    tangent: ComplexArray
+    second: ComplexArray
+
+    @property
+    def normal(self) -> ComplexArray:
+        """Unit normal out of the disc."""
+        return -1j * self.tangent / np.abs(self.tangent)
+
+    @property
+    def curvature(self) -> FloatArray:
+        """1/mm, positive where the disc is convex."""
+        return np.asarray((self.tangent.conjugate() * self.second).imag / np.abs(self.tangent) ** 3)
+
+
+class NearestPoint(NamedTuple):
+    """Where the normal of the flank passes through a point: θ and the curve of `FlankProfile.contact_curve` there."""
+
+    parameter: FloatArray
+    curve: Curve
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankProfile:
-    """Flank of the disc.
+    """Flank of the disc, or flanks of a batch of discs.
+
+    Numbers of a batch are arrays of shape (positions, 1): axis 0 of every parameter is then the position.
 
     Attributes
     ----------
@@ -34,28 +67,37 @@ class FlankProfile:
     eccentricity : float
         e of the generating motion, mm.
     reduction_ratio : float
-        u = z_P/Δz, the frequency of the trochoid.
+        u = z_P/Δz, the frequency of the trochoid, a whole number.
     offset : float
         r_P + Δr_P, distance of the flank from the trochoid, mm.
+    centre : complex
+        Centre of the flank in the frame of the disc, whose origin is the centre of the bore, mm.
+    deviation : ProfileDeviation or None
+        Departure from the design along its normal.
     """
 
-    generating_radius: float
-    eccentricity: float
+    generating_radius: float | FloatArray
+    eccentricity: float | FloatArray
     reduction_ratio: float
-    offset: float
+    offset: float | FloatArray
+    centre: complex | ComplexArray = 0.0
+    deviation: ProfileDeviation | None = None
 
     @classmethod
     def of_drive(cls, drive: Drive) -> FlankProfile:
         """Return the flank of a drive's disc."""
+        runout = drive.disc.runout
         return cls(
             generating_radius=drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset,
             eccentricity=drive.crank.eccentricity,
             reduction_ratio=drive.reduction_ratio,
             offset=drive.pin_wheel.pin_radius + drive.disc.equidistant_offset,
+            centre=runout.amount * complex(unit(runout.angle)),
+            deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
 
-    def locus(self, parameter: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Return the trochoid and its first two derivatives by the parameter θ.
+    def locus(self, parameter: FloatArray) -> Curve:
+        """Return the design trochoid about its own centre, and its first two derivatives by the parameter θ.
 
         Parameters
         ----------
@@ -67,33 +109,80 @@ class FlankProfile:
         c, dc, ddc : arrays of complex, same shape
             mm, mm/rad, mm/rad².
         """
+        return self._locus(unit(parameter))
+
+    def _locus(self, direction: ComplexArray) -> Curve:
         u = self.reduction_ratio
-        circle = self.generating_radius * np.exp(1j * np.asarray(parameter))
-        crank = self.eccentricity * np.exp(1j * u * np.asarray(parameter))
-        return circle - crank, 1j * (circle - u * crank), u * u * crank - circle
+        circle = self.generating_radius * direction
+        crank = self.eccentricity * integer_power(direction, round(u))
+        return Curve(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
+
+    @property
+    def contact_offset(self) -> float | FloatArray:
+        """Distance of the actual flank from `contact_curve`, mm."""
+        return self.offset if self.deviation is None else 0.0
+
+    def contact_curve(self, direction: ComplexArray) -> Curve:
+        """Return a curve whose inward parallel at `contact_offset` is the actual flank: nearest points are common.
+
+        Parameters
+        ----------
+        direction : array of complex
+            e^{iθ}.
+
+        Returns
+        -------
+        Curve
+            The trochoid; with a deviation the flank itself.
+        """
+        c, dc, ddc = self._locus(direction)
+        if self.deviation is None:
+            return Curve(c + self.centre, dc, ddc)
+        # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
+        u = self.reduction_ratio
+        circle = self.generating_radius * direction
+        dddc = 1j * (u**3 * (circle - c) - circle)
+        speed = np.abs(dc)
+        t = dc / speed
+        n = -1j * t
+        square = speed * speed
+        w = (dc.conjugate() * ddc).imag / square
+        ds = (dc.conjugate() * ddc).real / speed
+        dw = (dc.conjugate() * dddc).imag / square - 2.0 * w * ds / speed
+        delta, slope, bend = self.deviation.value_and_derivatives(direction)
+        d = self.offset - delta
+        along = speed - d * w
+        return Curve(
+            c - d * n + self.centre,
+            along * t + slope * n,
+            (ds + 2.0 * slope * w - d * dw) * t + (bend - w * along) * n,
+        )
 
     def normal(self, parameter: FloatArray) -> ComplexArray:
-        """Return the unit normal out of the disc at θ: e^{i(θ+ψ)} of Eq. 1."""
-        _, tangent, _ = self.locus(parameter)
-        return -1j * tangent / np.abs(tangent)
+        """Return the unit normal out of the disc at θ: e^{i(θ+ψ)} of Eq. 1 for a flank as designed."""
+        return self.contact_curve(unit(parameter)).normal
 
     def flank(self, parameter: FloatArray) -> ComplexArray:
         """Return the points r_C(θ) of the flank (Eq. 1), mm."""
-        point, tangent, _ = self.locus(parameter)
-        return point + 1j * self.offset * tangent / np.abs(tangent)
+        curve = self.contact_curve(unit(parameter))
+        return np.asarray(curve.point - self.contact_offset * curve.normal)
+
+    def flank_tangent(self, parameter: FloatArray) -> ComplexArray:
+        """Return dr_C/dθ of the flank, mm/rad."""
+        curve = self.contact_curve(unit(parameter))
+        return np.asarray(curve.tangent * (1.0 - self.contact_offset * curve.curvature))
 
     def locus_curvature(self, parameter: FloatArray) -> FloatArray:
-        """Return the curvature of the trochoid at θ, 1/mm, positive where the disc is convex."""
-        _, tangent, second = self.locus(parameter)
-        return np.asarray((tangent.conjugate() * second).imag / np.abs(tangent) ** 3)
+        """Return the curvature of the design trochoid at θ, 1/mm, positive where the disc is convex."""
+        return self.locus(parameter).curvature
 
     def curvature(self, parameter: FloatArray) -> FloatArray:
         """Return the curvature of the flank at θ, 1/mm, positive where the disc is convex.
 
         Parallel curves share centres of curvature: ρ_flank = ρ_trochoid − offset.
         """
-        curvature = self.locus_curvature(parameter)
-        return curvature / (1.0 - self.offset * curvature)
+        curvature = self.contact_curve(unit(parameter)).curvature
+        return np.asarray(curvature / (1.0 - self.contact_offset * curvature))
 
     def effective_radius(self, parameter: FloatArray, pin_radius: FloatArray | float) -> FloatArray:
         """Return the effective radius of curvature of flank and pin: 1/ρ = 1/r_pin + κ_flank, mm."""
@@ -102,7 +191,13 @@ class FlankProfile:
     def nearest_parameter(
         self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 50
     ) -> FloatArray:
-        """Return θ of the flank point whose normal passes through a point.
+        """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
+        return self.nearest_point(point, start, tolerance=tolerance, limit=limit).parameter
+
+    def nearest_point(
+        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 50
+    ) -> NearestPoint:
+        """Find the flank point whose normal passes through a point.
 
         Newton's method on Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth. The root next
         to the start is found; for points about a pin radius away from the flank that is the nearest one.
@@ -120,8 +215,8 @@ class FlankProfile:
 
         Returns
         -------
-        array of float
-            θ, rad, near the start (not reduced to one turn).
+        NearestPoint
+            θ in rad, near the start (not reduced to one turn), and the contact curve there.
 
         Raises
         ------
@@ -129,35 +224,37 @@ class FlankProfile:
             When a point does not settle; the history holds the largest steps.
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
+        direction = unit(theta)
         bound = 0.4 * np.pi / self.reduction_ratio
         history: list[float] = []
         for _ in range(limit):
-            c, tangent, second = self.locus(theta)
-            away = c - point
-            speed = (tangent * tangent.conjugate()).real
-            slope = speed + (second.conjugate() * away).real
+            curve = self.contact_curve(direction)
+            away = curve.point - point
+            tangent = curve.tangent
+            speed = tangent.real**2 + tangent.imag**2
+            slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
             # Far inside a centre of curvature the slope turns negative: then step as steepest descent does.
             slope = np.where(slope > 0.1 * speed, slope, speed)
-            step = np.clip((tangent.conjugate() * away).real / slope, -bound, bound)
+            step = np.clip((tangent.real * away.real + tangent.imag * away.imag) / slope, -bound, bound)
             theta -= step
+            direction = direction * small_turn(-step)
             history.append(float(np.max(np.abs(step), initial=0.0)))
             # Convergence is quadratic: a step of 1e-8 leaves an error below round-off.
             if history[-1] <= max(tolerance, 1e-8) and (len(history) > 1 or history[-1] <= tolerance):
-                return theta
+                return NearestPoint(theta, self.contact_curve(direction))
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
         """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""
-        c, tangent, _ = self.locus(parameter)
-        normal = -1j * tangent / np.abs(tangent)
-        return ((point - c) * normal.conjugate()).real + self.offset
+        curve = self.contact_curve(unit(parameter))
+        return np.asarray(((point - curve.point) * curve.normal.conjugate()).real + self.contact_offset)
 
     @property
     def root_radius(self) -> float:
-        """Smallest radius of the disc, mm (at θ = 0)."""
-        return self.generating_radius - self.eccentricity - self.offset
+        """Smallest radius of the disc as designed, mm (at θ = 0)."""
+        return float(self.generating_radius - self.eccentricity - self.offset)
 
     @property
     def tip_radius(self) -> float:
-        """Largest radius of the disc, mm (at θ = π/z_C for Δz = 1)."""
-        return self.generating_radius + self.eccentricity - self.offset
+        """Largest radius of the disc as designed, mm (at θ = π/z_C for Δz = 1)."""
+        return float(self.generating_radius + self.eccentricity - self.offset)
