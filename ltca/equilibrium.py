@@ -20,12 +20,19 @@ from ltca.tooth_contact import WHEEL_ANGLE, first_contact
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9
-"""Largest residual accepted, as a part of the load T/(e z_P); round-off of 1e-14 mm times the stiffness of a
-pair is about 1e-11 of a full load and 1e-9 of a hundredth of it."""
+"""Largest residual accepted, as a part of the load T/(e z_P)."""
+
+ROUND_OFF = float(np.finfo(float).eps)
+"""Places are known to this part of the pin circle radius; times the stiffness of the contacts it is the residual
+below which none can be told from zero (some 1e-8 N: more than 1e-9 of the load only for torques below 1 N·m)."""
 
 ITERATIONS = 200
-STEP_BOUND = 0.05
-"""Largest step, mm: long against elastic approaches (µm), short against the radius of a flank (mm)."""
+SHORTENINGS = 12
+"""Of one step, each to between a fiftieth and a half: enough to come from the largest step to a contact of 1e-5 mm."""
+
+STEP_BOUND = 1e-3
+"""Largest step as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches (µm), short
+against the radius of a flank (mm), and a part, so that the drive's size does not matter."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,33 +148,37 @@ class _Search:
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
+        reach = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
         for _ in range(ITERATIONS):
             self.history.append(residual.copy())
+            noise = ROUND_OFF * reach * np.trace(tangent, axis1=1, axis2=2)
             # A residual that is no number does not balance either.
-            going = ~(residual[active] <= TOLERANCE * self.load[active])
+            going = ~(residual[active] <= np.maximum(TOLERANCE * self.load[active], noise))
             active, start = active[going], start.take(going)
             gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
                 return self.finish(iterations, known)
             iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active])
+            step, slope = _damped_step(tangent, gradient, damping[active], STEP_BOUND * self.lever[3])
             trial = self.pose[active] + step / self.lever
             response, new_gradient, new_tangent = self.evaluate(active, trial, start)
-            # The slope of Π at the end of the step: a step far past the minimum is shortened by the secant.
+            # The slope of Π at the end of a step: where it has risen as steeply as it fell, Π may be higher than
+            # before, and the step is shortened by the secant until it has not.
             end_slope = np.einsum("bi,bi->b", new_gradient, step)
             overshoot = end_slope > 0.9 * np.abs(slope)
             moved = ~overshoot
-            new_residual = np.max(np.abs(new_gradient), axis=1)
             damping[active] = np.where(overshoot, damping[active] * 10.0, damping[active] * 0.1).clip(1e-12, 1e3)
-            if np.any(overshoot):
-                back = active[overshoot]
-                fraction = np.clip(-slope[overshoot] / (end_slope - slope)[overshoot], 0.02, 0.5)
-                shorter = self.pose[back] + fraction[:, None] * step[overshoot] / self.lever
-                start_back = start.take(overshoot)
-                _, gradient_back, tangent_back = self.evaluate(back, shorter, start_back)
-                trial[overshoot] = shorter
-                new_gradient[overshoot], new_tangent[overshoot] = gradient_back, tangent_back
-                new_residual[overshoot] = np.max(np.abs(gradient_back), axis=1)
+            back = np.flatnonzero(overshoot)
+            fraction = np.ones(active.size)
+            for _ in range(SHORTENINGS):
+                if back.size == 0:
+                    break
+                fraction[back] *= np.clip(-slope[back] / (end_slope - slope)[back], 0.02, 0.5)
+                trial[back] = self.pose[active[back]] + fraction[back, None] * step[back] / self.lever
+                _, new_gradient[back], new_tangent[back] = self.evaluate(active[back], trial[back], start.take(back))
+                end_slope[back] = np.einsum("bi,bi->b", new_gradient[back], step[back])
+                back = back[end_slope[back] > 0.9 * np.abs(slope[back])]
+            new_residual = np.max(np.abs(new_gradient), axis=1)
             self.pose[active] = trial
             residual[active] = new_residual
             gradient, tangent = new_gradient, new_tangent
@@ -193,7 +204,9 @@ class _Search:
         )
 
 
-def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _damped_step(
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: float
+) -> tuple[FloatArray, FloatArray]:
     """Return −(H + μ tr(H)/4)⁻¹ g, its length bounded, and the slope g·step."""
     stiffness = np.trace(tangent, axis1=1, axis2=2) / 4.0
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
@@ -204,5 +217,5 @@ def _damped_step(tangent: FloatArray, gradient: FloatArray, damping: FloatArray)
     if np.any(uphill):  # an indefinite tangent (strong geometric part): steepest descent instead
         step[uphill] = -gradient[uphill] / stiffness[uphill, None]
     length = np.max(np.abs(step), axis=1)
-    step *= np.minimum(1.0, STEP_BOUND / np.maximum(length, 1e-300))[:, None]
+    step *= np.minimum(1.0, bound / np.maximum(length, 1e-300))[:, None]
     return np.asarray(step), np.asarray(np.einsum("bi,bi->b", gradient, step))

@@ -4,7 +4,8 @@ Sources
 -------
 [1] T. A. Harris, M. N. Kotzalas, *Essential Concepts of Bearing Technology* (Rolling Bearing Analysis, 5th ed.),
     ch. 7: F_r = Z K_n δ_max^n J_r(ε), ε = ½(1 − P_d/(2 δ_r)), J_r(ε) = 1/(2π) ∮ [1 − (1 − cos ψ)/(2ε)]₊^n cos ψ dψ.
-    J_r for line contact (n = 10/9), table 7.1: 0.2055, 0.2286, 0.2453, 0.2568 at ε = 0.3, 0.4, 0.5, 0.6, and
+    J_r for line contact, table 7.1: 0.2055, 0.2286, 0.2453, 0.2568 at ε = 0.3, 0.4, 0.5, 0.6 (the table was made
+    with n = 1.1; 10/9 gives 5e-4 less), and
     Q_max = 4.08 F_r/Z for rollers without clearance.
 """
 
@@ -97,7 +98,7 @@ def test_obliquity_is_what_is_left(vary):
 @dataclass(frozen=True)
 class PowerLaw:
     factor: float
-    exponent: float = 10.0 / 9.0
+    exponent: float = 1.1
 
     def load_and_stiffness(self, approach, effective_radius):
         pressed = np.maximum(approach, 0.0) + 0.0 * effective_radius
@@ -107,7 +108,7 @@ class PowerLaw:
 @pytest.mark.parametrize(("epsilon", "integral"), [(0.3, 0.2055), (0.4, 0.2286), (0.5, 0.2453), (0.6, 0.2568)])
 def test_load_integral_of_many_rollers(epsilon, integral):
     """[1] table 7.1, with two equal-power laws in series: K = (K_i^(−1/n) + K_o^(−1/n))^(−n)."""
-    rollers, deflection, n = 2000, 1e-3, 10.0 / 9.0
+    rollers, deflection, n = 2000, 1e-3, 1.1
     play = (1.0 - 2.0 * epsilon) * deflection  # P_d/2, negative: preload
     rays = RollerRays(
         direction=np.exp(2j * np.pi * np.arange(rollers) / rollers)[None, :],
