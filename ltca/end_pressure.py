@@ -1,8 +1,9 @@
-"""How much the largest pressure of a contact exceeds the one at mid-width.
+"""The largest pressure of a contact and how much it exceeds the one at mid-width.
 
 At the end of an unrelieved roller the half-space pressure is singular: what a grid finds there depends on its end
-cell, so the ratio is always that of one end cell (`ltca.contact_grid.ContactKind.end_cell`). For cylinders it is a
-function of L/√(ρδ) alone; profiled contacts are sampled over the approaches and radii asked for.
+cell. So the largest pressure is that of an end cell of stated size on any grid: the largest mean over a hundredth
+of the length (`ltca.contact_grid.ContactKind.end_cell`). For cylinders its ratio to mid-width is a function of
+L/√(ρδ) alone; profiled contacts are sampled over the approaches and radii asked for.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact_grid import ContactKind, GridContact
+from ltca.patch import PatchSolution
 
 FloatArray = NDArray[np.float64]
 
@@ -22,6 +24,27 @@ _APPROACHES, _RADII = 9, 3
 _LIGHTEST = 1e-2  # of the largest approach: lighter contacts take the ratio found there
 
 
+def largest_pressure(solved: PatchSolution, stretch: float) -> float:
+    """Return the largest pressure [MPa] as a mean over a stretch along the width, at least the one at mid-width.
+
+    Parameters
+    ----------
+    solved : PatchSolution
+        A patch symmetric about mid-width.
+    stretch : float
+        Length of the stretch, mm.
+    """
+    edges = solved.grid.y_edges
+    end = float(edges[-1])
+    stretch = min(stretch, end)
+    # ∫ p dy from mid-width is piecewise linear: its differences over the stretch are exact means.
+    sums = np.zeros((solved.pressure.shape[0], edges.size))
+    np.cumsum(solved.pressure * np.diff(edges), axis=1, out=sums[:, 1:])
+    starts = np.unique(np.clip(np.concatenate([edges, edges - stretch]), 0.0, end - stretch))
+    means = [(np.interp(starts + stretch, edges, row) - np.interp(starts, edges, row)) / stretch for row in sums]
+    return max(float(np.max(means)), solved.mid_pressure)
+
+
 def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
     contact = GridContact(kind)
     for _ in range(2):  # once more with the half-width that the first solution found
@@ -29,7 +52,7 @@ def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
         contact.shape(0.0, lambda x: x**2 / (2.0 * radius))
         contact.press(approach)
     solved = contact.solution(approach)
-    return max(solved.max_pressure / solved.mid_pressure, 1.0)
+    return largest_pressure(solved, kind.end_cell) / solved.mid_pressure
 
 
 @cache

@@ -22,6 +22,7 @@ from ltca.compliance import (
 )
 from ltca.contact_grid import CELLS, ContactKind, ContactKinds, GridContact
 from ltca.drive import Drive
+from ltca.end_pressure import largest_pressure
 from ltca.flank_separation import circle_departure, flank_departure
 from ltca.pairs import ContactGeometry, FlankMotion
 from ltca.roller_series import RollerLaws, RollerState, balance_rollers
@@ -173,5 +174,5 @@ def _read_grids(contacts: list[dict[int, GridContact]], approach: FloatArray, ki
     for row, pair in zip(*np.nonzero(approach > 0.0), strict=True):
         solved = contacts[row][int(pair)].solution(float(approach[row, pair]))
         mid[row, pair], half_width[row, pair] = solved.mid_pressure, solved.half_width
-        largest[row, pair] = max(solved.max_pressure, solved.mid_pressure)
+        largest[row, pair] = largest_pressure(solved, kind.end_cell)
     return KindPressures(mid=mid, largest=largest, half_width=half_width, end_cell=kind.end_cell)

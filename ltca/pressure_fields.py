@@ -19,6 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.contact_grid import ContactKind, ContactKinds, Departure, GridContact
+from ltca.end_pressure import largest_pressure
 from ltca.flank_separation import circle_departure, flank_departure
 from ltca.loaded_analysis import LoadedAnalysis
 from ltca.patch import PatchSolution
@@ -91,7 +92,7 @@ def recover_pressure(
         y_edges=y,
         pressure=pressure,
         mid=solved.mid_pressure,
-        largest=max(solved.max_pressure, solved.mid_pressure),
+        largest=largest_pressure(solved, kind.end_cell),
         half_width=solved.half_width,
         load=solved.load,
         max_shear=shear.max_shear,
