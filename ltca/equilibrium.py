@@ -9,11 +9,12 @@ residual at its end tells.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import ComplianceModel, Response, Start
+from ltca.compliance import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
 from ltca.tooth_contact import WHEEL_ANGLE, first_contact
 
@@ -64,10 +65,11 @@ class Equilibrium:
 
 
 def lever_arms(model: ComplianceModel) -> FloatArray:
-    """Return the lengths that turn the residual into forces: 1, 1, e z_C and e z_P (mm)."""
+    """Return the lengths that turn the residual into forces: 1, 1, e z_C and e z_P (mm), shape (4,) or (positions, 4)."""
     place = model.geometry.placement
     wheel = place.eccentricity * place.reduction_ratio
-    return np.array([1.0, 1.0, wheel - place.eccentricity, wheel])
+    one = np.ones_like(wheel)
+    return np.concatenate(np.atleast_1d(one, one, wheel - place.eccentricity, wheel), axis=-1)
 
 
 def solve_equilibrium(
@@ -102,13 +104,15 @@ def solve_equilibrium(
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     lever = lever_arms(model)
-    load = np.abs(moment) / lever[3]
+    load = np.abs(moment) / lever[..., 3]
     if start is None:
         start = np.zeros((angle.size, 4))
         sense = np.where(moment < 0.0, -1, 1)
         for value in np.unique(sense):
             rows = sense == value
-            start[rows, WHEEL_ANGLE], _ = first_contact(model.geometry, angle[rows], WHEEL_ANGLE, int(value))
+            start[rows, WHEEL_ANGLE], _ = first_contact(
+                model.geometry.take(rows), angle[rows], WHEEL_ANGLE, int(value)
+            )
     search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
     return search.run()
 
@@ -127,17 +131,21 @@ class _Search:
     ) -> None:
         self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
         self.pose = pose
+        self.batch = model.geometry.placement.is_batch
         self.history: list[FloatArray] = []
 
     def evaluate(
         self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None
     ) -> tuple[Response, FloatArray, FloatArray]:
         """Return the response, the scaled gradient and the scaled tangent (forces and lengths only)."""
-        response = self.model.respond(self.angle[rows], pose, start)
+        whole = not self.batch or rows.size == self.angle.size
+        lever = self.lever if whole else self.lever[rows]
+        model = self.model if whole else cast(BatchModel, self.model).take(rows)
+        response = model.respond(self.angle[rows], pose, start)
         gradient = response.force.copy()
         gradient[:, 3] -= self.moment[rows]
-        gradient /= self.lever
-        tangent = response.tangent / (self.lever[:, None] * self.lever)
+        gradient /= lever
+        tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
         return response, gradient, tangent
 
     def run(self) -> Equilibrium:
@@ -159,8 +167,9 @@ class _Search:
             if active.size == 0:
                 return self.finish(iterations, known)
             iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active], STEP_BOUND * self.lever[3])
-            trial = self.pose[active] + step / self.lever
+            lever = self.lever[active] if self.batch else self.lever
+            step, slope = _damped_step(tangent, gradient, damping[active], STEP_BOUND * lever[..., 3])
+            trial = self.pose[active] + step / lever
             response, new_gradient, new_tangent = self.evaluate(active, trial, start)
             # The slope of Π at the end of a step: where it has risen as steeply as it fell, Π may be higher than
             # before, and the step is shortened by the secant until it has not.
@@ -174,7 +183,7 @@ class _Search:
                 if back.size == 0:
                     break
                 fraction[back] *= np.clip(-slope[back] / (end_slope - slope)[back], 0.02, 0.5)
-                trial[back] = self.pose[active[back]] + fraction[back, None] * step[back] / self.lever
+                trial[back] = self.pose[active[back]] + fraction[back, None] * (step / lever)[back]
                 _, new_gradient[back], new_tangent[back] = self.evaluate(active[back], trial[back], start.take(back))
                 end_slope[back] = np.einsum("bi,bi->b", new_gradient[back], step[back])
                 back = back[end_slope[back] > 0.9 * np.abs(slope[back])]
@@ -205,7 +214,7 @@ class _Search:
 
 
 def _damped_step(
-    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: float
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return −(H + μ tr(H)/4)⁻¹ g, its length bounded, and the slope g·step."""
     stiffness = np.trace(tangent, axis1=1, axis2=2) / 4.0

@@ -8,6 +8,7 @@ Approaches are positive where the bodies are pressed together.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -147,6 +148,18 @@ class ContactGeometry:
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive."""
         return cls(placement=Placement.of_drive(drive), profile=FlankProfile.of_drive(drive))
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], positions: int) -> ContactGeometry:
+        """Return the contact geometry of a batch: every drive at the same number of positions, drive by drive."""
+        places = [Placement.of_drive(drive) for drive in drives]
+        return cls(placement=Placement.stack(places, positions), profile=FlankProfile.stack(drives, positions))
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ContactGeometry:
+        """Return the geometry of some positions: itself for one drive, these rows of a batch."""
+        if not self.placement.is_batch:
+            return self
+        return ContactGeometry(placement=self.placement.take(rows), profile=self.profile.take(rows))
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, rad.

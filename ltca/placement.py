@@ -8,7 +8,7 @@ starts at 0 and runs counter-clockwise.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,6 +107,37 @@ class Placement:
             cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
             reduction_ratio=drive.reduction_ratio,
         )
+
+    @property
+    def is_batch(self) -> bool:
+        """Whether every position has a drive of its own."""
+        return isinstance(self.eccentricity, np.ndarray)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Placement:
+        """Return the places of some positions of a batch."""
+        picked = {item.name: getattr(self, item.name) for item in fields(self)}
+        return Placement(**{name: value[rows] if np.ndim(value) else value for name, value in picked.items()})
+
+    @classmethod
+    def stack(cls, places: Sequence[Placement], positions: int) -> Placement:
+        """Return the batch of several drives, each at the same number of positions.
+
+        Parameters
+        ----------
+        places : sequence of Placement
+            One for each drive, with equal numbers of parts and equal reduction ratio.
+        positions : int
+            Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
+        """
+        stacked = {}
+        for item in fields(cls):
+            values = [getattr(place, item.name) for place in places]
+            if item.name == "reduction_ratio":
+                stacked[item.name] = values[0]
+            else:
+                rows = np.array(values)
+                stacked[item.name] = np.repeat(rows.reshape(len(places), -1), positions, axis=0)
+        return cls(**stacked)
 
     def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the centre of inner race and cage, e·e^{iφ_C} from the crank axis, in the fixed frame, mm (Eq. 47)."""

@@ -14,7 +14,8 @@ deviation it is a curve of its own, F = c − (offset − δ) n: everything belo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -94,6 +95,36 @@ class FlankProfile:
             offset=drive.pin_wheel.pin_radius + drive.disc.equidistant_offset,
             centre=runout.amount * complex(unit(runout.angle)),
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
+        )
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
+        """Return the flanks of some positions of a batch."""
+        picked = {item.name: getattr(self, item.name) for item in fields(self)}
+        picked = {name: value[rows] if np.ndim(value) else value for name, value in picked.items()}
+        if self.deviation is not None:
+            picked["deviation"] = self.deviation.take(rows)
+        return FlankProfile(**picked)
+
+    @classmethod
+    def stack(cls, drives: Sequence[Drive], positions: int) -> FlankProfile:
+        """Return the flanks of several drives of equal reduction ratio, see `ltca.placement.Placement.stack`."""
+        flanks = [(d.pin_wheel, d.disc, d.crank.eccentricity, d.disc.runout) for d in drives]
+        columns = np.array(
+            [
+                (wheel.pin_circle_radius + disc.shifting_offset, e, wheel.pin_radius + disc.equidistant_offset)
+                for wheel, disc, e, _ in flanks
+            ]
+        )
+        centres = np.array([(runout.amount, runout.angle) for *_, runout in flanks])
+        rows = np.repeat(columns, positions, axis=0)
+        centre = np.repeat(centres[:, 0] * unit(centres[:, 1]), positions)
+        return cls(
+            generating_radius=rows[:, 0:1],
+            eccentricity=rows[:, 1:2],
+            reduction_ratio=drives[0].reduction_ratio,
+            offset=rows[:, 2:3],
+            centre=centre[:, None],
+            deviation=ProfileDeviation.stack([d.disc.profile_errors for d in drives], positions),
         )
 
     def locus(self, parameter: FloatArray) -> Curve:

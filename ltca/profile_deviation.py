@@ -6,7 +6,8 @@ Harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -55,6 +56,30 @@ class ProfileDeviation:
             knots = np.array([*errors.parameter, errors.parameter[0] + 2.0 * pi])
             pieces = CubicSpline(knots, [*errors.deviation, errors.deviation[0]], bc_type="periodic").c
         return cls(orders=errors.orders, amplitudes=cosine - 1j * sine, knots=knots, pieces=pieces)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ProfileDeviation:
+        """Return the deviation of some positions of a batch."""
+        return replace(self, amplitudes=self.amplitudes[rows])
+
+    @classmethod
+    def stack(cls, errors: Sequence[ProfileErrors], positions: int) -> ProfileDeviation | None:
+        """Return the deviations of several flanks of equal orders and measured points, see `Placement.stack`."""
+        if all(item.is_zero for item in errors):
+            return None
+        orders = errors[0].orders
+        zeros = (0.0,) * len(orders)
+        amplitudes = np.array([item.cosine or zeros for item in errors]) - 1j * np.array(
+            [item.sine or zeros for item in errors]
+        )
+        measured = cls.of_errors(
+            ProfileErrors(parameter=errors[0].parameter, deviation=errors[0].deviation)
+        )
+        return cls(
+            orders=orders,
+            amplitudes=np.repeat(amplitudes, positions, axis=0),
+            knots=np.empty(0) if measured is None else measured.knots,
+            pieces=np.empty((4, 0)) if measured is None else measured.pieces,
+        )
 
     def value_and_derivatives(self, direction: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return δ, δ′ and δ″ at θ, mm by powers of rad.
