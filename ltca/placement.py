@@ -160,3 +160,8 @@ class Placement:
 def _flat(value: complex | FloatArray | ComplexArray) -> complex | FloatArray | ComplexArray:
     """A single number as it is, the column of a batch as one number for each position."""
     return value[:, 0] if isinstance(value, np.ndarray) else value
+
+
+def position_angles(positions: int) -> FloatArray:
+    """Return the crank angles of a run of N positions over one turn: 2πk/N, rad."""
+    return 2.0 * np.pi * np.arange(positions) / positions

@@ -12,7 +12,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExe
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_all_start_methods, get_context
 from typing import Any
 
 from ltca.errors import CycloError
@@ -63,19 +63,26 @@ class Engine:
             with _cluster(self.scheduler) as found:
                 yield found
         elif self.workers > 1:
-            # Fresh processes: a fork of one that has threads may hang.
-            context = get_context("spawn")
+            # Never a fork of this process, which may have threads; where there is a fork server it imports the suite and
+            # builds the tables once, and every worker starts as its copy.
+            server = "forkserver" in get_all_start_methods()
+            context = get_context("forkserver" if server else "spawn")
+            if server:
+                context.set_forkserver_preload(["ltca.studies.warm_worker"])
             pool = ProcessPoolExecutor(self.workers, mp_context=context, initializer=_calm_threads)
             try:
                 yield pool, self.workers
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
         else:
-            yield ThisProcess(), 1
+            from threadpoolctl import threadpool_limits
+
+            with threadpool_limits(1):
+                yield ThisProcess(), 1
 
 
 def _calm_threads() -> None:
-    """One thread a worker: small dense algebra on more is slower (40 times, measured)."""
+    """One thread a worker: threads of small dense algebra wait for each other (up to 40 times slower, measured)."""
     import signal
 
     from threadpoolctl import threadpool_limits

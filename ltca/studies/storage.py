@@ -142,6 +142,17 @@ class StudyFolder:
                 first += len(messages)
                 factors, values, messages = [], [], []
 
+    def failures(self, study: Study) -> list[tuple[int, str]]:
+        """Return the failed samples of the finished dataset and why."""
+        import h5netcdf
+
+        with h5netcdf.File(self.results, "r") as file:
+            if "failed_sample" not in file.variables:
+                return []
+            numbers = file.variables["failed_sample"][...].tolist()
+            reasons = file.variables["failure_message"][...]
+            return [(int(number), str(text)) for number, text in zip(numbers, reasons, strict=True)]
+
     def finish(self, study: Study) -> list[tuple[int, str]]:
         """Write dataset and table from all batches, then remove those; return failed samples and why.
 

@@ -13,7 +13,7 @@ from ltca.compliance import HalfSpaceCompliance
 from ltca.drive import Drive
 from ltca.drive_fields import with_fields
 from ltca.errors import CycloError
-from ltca.results import position_angles
+from ltca.placement import position_angles
 from ltca.studies.batch_analysis import BatchSettings, ModelBuilder, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design
 
