@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from ltca.figures import COLOURS, STYLE
 from ltca.output_files import whole_file
 from ltca.results import ARCMIN, ARCSEC
+from ltca.studies.designs import SweepDesign
 from ltca.studies.quantities import QUANTITIES
 from ltca.studies.storage import StudyFolder
 from ltca.studies.study import Study
@@ -52,7 +53,10 @@ def write_study_figures(
         The PNG of each figure when both files are written.
     """
     with mpl.rc_context(STYLE):
-        yield from _save(_distributions(folder, study, nominal), folder.path / "figures" / "distributions")
+        if isinstance(study.design, SweepDesign):
+            yield from _save(_responses(folder, study, study.design), folder.path / "figures" / "responses")
+        else:
+            yield from _save(_distributions(folder, study, nominal), folder.path / "figures" / "distributions")
         if ranking["quantities"]:
             yield from _save(_ranking(study, ranking), folder.path / "figures" / "sensitivity")
 
@@ -97,6 +101,37 @@ def _distributions(folder: StudyFolder, study: Study, nominal: Mapping[str, floa
         "(dashed: 1 % and 99 %; black: no deviations)",
         fontsize=9.5,
     )
+    return figure
+
+
+def _responses(folder: StudyFolder, study: Study, design: SweepDesign) -> Figure:
+    """Every quantity over every factor; samples alike in all other factors are joined."""
+    factors = list(design.factors)[:SHOWN]
+    rows, columns = len(study.quantities), len(factors)
+    figure = Figure(figsize=(2.6 + 2.6 * columns, 1.0 + 1.9 * rows))
+    axes = figure.subplots(rows, columns, squeeze=False, sharey="row", sharex="col")
+    numbers = design.rows(0, design.samples)
+    for row, name in enumerate(study.quantities):
+        scale, unit = shown(name)
+        values = read_quantity(folder.results, name) * scale
+        for column, factor in enumerate(factors):
+            axis = axes[row, column]
+            x = numbers[:, column]
+            if design.kind == "grid" and len(factor.levels) > 1 and design.samples <= 2000:
+                others = np.delete(numbers, column, axis=1)
+                for group in np.unique(others, axis=0):
+                    line = np.flatnonzero((others == group).all(axis=1))
+                    axis.plot(x[line], values[line], color=COLOURS[1], linewidth=0.9, marker="o", markersize=2.5)
+            else:
+                axis.plot(x, values, ".", color=COLOURS[1], markersize=3.0 if design.samples < 500 else 1.0)
+            if factor.is_text:
+                axis.set_xticks(range(len(factor.levels)), factor.levels)
+            else:
+                axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+            if row == rows - 1:
+                axis.set_xlabel(factor.path, fontsize=8.0)
+        axes[row, 0].set_ylabel(f"{QUANTITIES[name].description}{f' [{unit}]' if unit else ''}", fontsize=7.0, wrap=True)
+    figure.suptitle(f"{study.name}: {design.samples} samples × {study.positions} positions", fontsize=9.5)
     return figure
 
 
