@@ -17,7 +17,7 @@ from typing import Any
 from ltca.errors import CycloError
 
 GROUP = "cyclo.commands"
-ORDER = ("run", "show", "init", "mesh", "fem", "derive", "validate")
+ORDER = ("run", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
 USAGE_ERROR = 2
 
 
