@@ -214,6 +214,10 @@ class _System:
         self.load[3] = wheel_moment / wheel_lever
         self.displacement = np.zeros(4 + self.rollers)
         self.cells = cells
+        # Some ten elastic approaches. A longer step comes from too few carrying cells: followed in parts, it meets
+        # the cells that will carry before the disc has left the others.
+        modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
+        self.step_bound = abs(self.load[3]) / (0.1 * modulus * drive.disc.thickness)
 
         parts, bearing = drive.materials, drive.crank_bearing
         flank = geometry.flank(angle, self.start)
@@ -284,7 +288,7 @@ class _System:
         raise ConvergenceError("the carrying cells do not settle; changes in the last rounds", history)
 
     def _factor_and_solve(self) -> bool:
-        """Solve for the carrying cells; return whether they hold the disc (if not, a soft ground helped out)."""
+        """Move to the solution of the carrying cells, as far as the step bound goes; return whether it was reached."""
         patches = list(self.patches.values())
         blocks = [patch.influence[np.ix_(patch.carrying, patch.carrying)] for patch in patches]
         coupling = np.vstack([np.outer(patch.weights[patch.carrying], patch.direction) for patch in patches])
@@ -308,11 +312,15 @@ class _System:
             ground = 1e-3 * self.hole_stiffness * np.eye(self.load.size)
             solved = _factor(blocks, coupling, springs + ground).solve(right)
         ends = np.cumsum([int(patch.carrying.sum()) for patch in patches])
-        *pressures, self.displacement = np.split(solved, ends)
-        for patch, pressure in zip(patches, pressures, strict=True):
-            patch.pressure = np.zeros(patch.carrying.size)
-            patch.pressure[patch.carrying] = pressure
-        return held
+        *pressures, displacement = np.split(solved, ends)
+        step = displacement - self.displacement
+        fraction = min(1.0, self.step_bound / max(float(np.max(np.abs(step))), 1e-300))
+        self.displacement = self.displacement + fraction * step
+        for patch, part in zip(patches, pressures, strict=True):
+            pressure = np.zeros(patch.carrying.size)
+            pressure[patch.carrying] = part
+            patch.pressure = patch.pressure + fraction * (pressure - patch.pressure)
+        return held and fraction == 1.0
 
     def refit_grids(self) -> float:
         """Lay the grids over the half-widths found; return the largest relative change of a loaded contact."""

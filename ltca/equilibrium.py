@@ -28,8 +28,9 @@ ROUND_OFF_BOUND = 1e-5
 """Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 
 ITERATIONS = 200
-STEP_BOUND = 0.05
-"""Largest first step of a mode, mm: long against elastic approaches (µm), short against the radius of a flank (mm).
+STEP_BOUND = 1e-3
+"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
+(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
 It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
 LINE_TRIALS = 12
 SLOPE_LEFT = 0.3
@@ -150,6 +151,9 @@ class _Search:
         gradient = response.force.copy()
         gradient[:, 3] -= self.moment[rows]
         gradient /= self.lever
+        if np.isnan(gradient).any():
+            row = rows[np.isnan(gradient).any(axis=1)][0]
+            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
         tangent = response.tangent / (self.lever[:, None] * self.lever)
         return response, gradient, tangent
 
@@ -157,13 +161,15 @@ class _Search:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        damping, bound = np.full(count, 1e-6), np.full(count, STEP_BOUND)
+        first_bound = STEP_BOUND * self.lever[3]
+        damping, bound = np.full(count, 1e-6), np.full(count, first_bound)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
         for _ in range(ITERATIONS):
             self.history.append(residual.copy())
-            going = residual[active] > self.accepted(active, tangent)
+            # A residual that is no number does not balance either.
+            going = ~(residual[active] <= self.accepted(active, tangent))
             active, start = active[going], start.take(going)
             gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
@@ -175,7 +181,7 @@ class _Search:
             self.refuse_slip(active, residual)
             residual[active] = np.max(np.abs(gradient), axis=1)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
-            bound[active] = bound[active].clip(1e-3 * STEP_BOUND, max(STEP_BOUND, 0.1 * self.smallest_pin))
+            bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
             known = known.replaced(active, start)

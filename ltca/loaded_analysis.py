@@ -8,7 +8,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+<<<<<<< HEAD
 from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, Response
+=======
+from ltca.coefficients import InfluenceCoefficients
+from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance
+from ltca.coupled_compliance import CoupledCompliance
+>>>>>>> main
 from ltca.drive import Drive
 from ltca.equilibrium import Equilibrium, solve_equilibrium
 from ltca.errors import DriveError
@@ -19,6 +25,7 @@ FloatArray = NDArray[np.float64]
 
 Method = Literal["tables", "direct", "paper"]
 Contacts = Literal["tables", "grids"]
+Compliance = Literal["half-space", "fe", "hybrid"]
 
 PAPER_START = 0.95
 """Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
@@ -42,6 +49,8 @@ class LoadedAnalysis:
         How equilibrium was found.
     contacts : Contacts
         What gave the loads.
+    compliance : Compliance
+        How the bodies yield.
     full, light : Equilibrium
         At that torque and at the light torque.
     model : ComplianceModel
@@ -56,6 +65,7 @@ class LoadedAnalysis:
     torque: float
     method: Method
     contacts: Contacts
+    compliance: Compliance
     full: Equilibrium
     light: Equilibrium
     model: ComplianceModel
@@ -71,8 +81,11 @@ def analyse(
     *,
     method: Method = "tables",
     contacts: Contacts | None = None,
+    compliance: Compliance = "half-space",
+    coefficients: InfluenceCoefficients | None = None,
+    hole_near_field: bool = True,
 ) -> LoadedAnalysis:
-    """Analyse a drive with half-space compliance.
+    """Analyse a drive.
 
     Parameters
     ----------
@@ -88,6 +101,13 @@ def analyse(
         the torque. ``direct`` starts from the solution on tables.
     contacts : {"tables", "grids"}, optional
         What the paper's iteration runs on, tables by default; the other methods have their own.
+    compliance : {"half-space", "fe", "hybrid"}
+        ``half-space``: contacts do not feel each other (the paper); ``fe``: plane strain, coefficients from finite
+        elements; ``hybrid``: half-space of finite length at the contact, finite elements for the bodies.
+    coefficients : InfluenceCoefficients, optional
+        Of this drive; what ``fe`` and ``hybrid`` need (`ltca.coefficients.load_coefficients`).
+    hole_near_field : bool
+        Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``).
 
     Returns
     -------
@@ -100,7 +120,7 @@ def analyse(
         When a position does not balance.
     DriveError
         When the torque cannot be carried: a half-width beyond 0.3 of the smallest radius; when method and contacts
-        contradict each other.
+        contradict each other; when coefficients are missing.
 
     Examples
     --------
@@ -114,11 +134,17 @@ def analyse(
     used = _contacts_of(method, contacts)
     laws = HalfSpaceCompliance.of_drive(drive)
     model: ComplianceModel = laws if used == "tables" else GridCompliance.of_drive(drive)
+    if compliance != "half-space":
+        if method != "tables":
+            raise DriveError([f"method = {method}: runs on half-space compliance only, not on {compliance}"])
+        if coefficients is None:
+            raise DriveError([f"compliance = {compliance}: needs the influence coefficients of the drive"])
+        model = CoupledCompliance.of_drive(drive, coefficients, compliance, hole_near_field=hole_near_field)
 
     def solve(moment: float, start: FloatArray | None) -> Equilibrium:
-        if method == "tables":
+        if method == "tables" and compliance == "half-space":
             return solve_equilibrium(laws, crank_angle, moment, start)
-        if method == "direct":
+        if method in ("tables", "direct"):
             near = solve_equilibrium(laws, crank_angle, moment, start)
             # Grids wider than the bodies are curved have no separation: refused before they are laid.
             _check_half_widths(drive, torque, near.response, laws.pressures(near.response))
@@ -137,6 +163,7 @@ def analyse(
         torque=torque,
         method=method,
         contacts=used,
+        compliance=compliance,
         full=full,
         light=light,
         model=model,

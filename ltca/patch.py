@@ -13,7 +13,7 @@ bulges (the grid leaves room for that).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -96,16 +96,17 @@ class PatchGrid:
         )
 
     def whole(self) -> PatchGrid:
-        """The same grid without symmetry, for separations that have none in x."""
-        x, y = self.x_edges, self.y_edges
-        return PatchGrid(
-            x_edges=np.concatenate([-x[:0:-1], x]) if self.symmetric_x else x,
-            y_edges=np.concatenate([-y[:0:-1], y]) if self.symmetric_y else y,
-            symmetric_x=False,
-            symmetric_y=False,
-            end_plane=self.end_plane,
-            end_factor=self.end_factor,
-        )
+        """The same grid without symmetry."""
+        half = self.half()
+        y = half.y_edges
+        edges = np.concatenate([-y[:0:-1], y]) if half.symmetric_y else y
+        return replace(half, y_edges=edges, symmetric_y=False)
+
+    def half(self) -> PatchGrid:
+        """The same grid without symmetry along x: for flanks whose separation leans to one side."""
+        x = self.x_edges
+        edges = np.concatenate([-x[:0:-1], x]) if self.symmetric_x else x
+        return replace(self, x_edges=edges, symmetric_x=False)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -198,6 +199,15 @@ class PatchSolution:
     def mid_profile(self) -> tuple[Array, Array]:
         """Cell centres along x and the pressure there at mid-width y = 0 [mm, MPa]."""
         return self.grid.x_centres, self._at_mid_width(self.pressure)
+
+    def whole_field(self) -> tuple[Array, Array, Array]:
+        """Cell centres along x and y and the pressure over the whole patch, images unfolded [mm, mm, MPa]."""
+        x, y, pressure = self.grid.x_centres, self.grid.y_centres, self.pressure
+        if self.grid.symmetric_x:
+            x, pressure = np.concatenate([-x[::-1], x]), np.concatenate([pressure[::-1], pressure])
+        if self.grid.symmetric_y:
+            y, pressure = np.concatenate([-y[::-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
+        return x, y, pressure
 
     @property
     def half_width(self) -> float:
@@ -309,7 +319,7 @@ def solve_patch(
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
-    """Half-width at mid-width of an uncrowned contact [mm], a few per cent from the truth.
+    """Half-width at mid-width of an uncrowned contact [mm], a first guess: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
 
     From δ = q/(π E*) (1 + 2 ln(length/b) + ln 4 …) for a Hertz strip of even load q, solved for b.
     """

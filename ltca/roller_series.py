@@ -97,7 +97,7 @@ def balance_rollers(
     Raises
     ------
     ConvergenceError
-        When a roller does not settle (a law that is not monotone).
+        When a law gives no number or a roller does not settle.
     """
     direction = rays.direction
     lowest = rays.touching_distance(displacement)
@@ -125,6 +125,8 @@ def balance_rollers(
         bend = outer_load * (1.0 - cosine**2) / length
         stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
         imbalance = np.where(pressed, inner_load - outer_load * cosine, 0.0)
+        if np.isnan(imbalance).any():  # bisection would settle on it all the same
+            raise ConvergenceError("rollers do not balance between the races: a load is not a number", history)
         low = np.where(imbalance < 0.0, share, low)
         high = np.where(imbalance > 0.0, share, high)
         safe = np.where(pressed & (stiffness > 0.0), stiffness, 1.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ltca.pairs import FloatArray
@@ -34,6 +34,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--contacts", choices=("tables", "grids"), help="what the paper's iteration runs on; default tables"
     )
     parser.add_argument(
+        "--compliance",
+        choices=("half-space", "fe", "hybrid"),
+        default="half-space",
+        help="how bodies yield: half-spaces (default), plane-strain finite elements, or finite elements beyond "
+        "half-spaces of finite length",
+    )
+    parser.add_argument(
+        "--coefficients",
+        metavar="FILE",
+        type=Path,
+        help="influence coefficients of cyclo derive; without it they are derived once and kept",
+    )
+    parser.add_argument(
+        "--no-hole-near-field",
+        action="store_true",
+        help="leave out the local yielding of the hole walls (fe and hybrid)",
+    )
+    parser.add_argument(
         "--pressure",
         metavar="φ",
         nargs="*",
@@ -54,14 +72,30 @@ def execute(arguments: argparse.Namespace) -> int:
     angles = _crank_angles(arguments)
     torque = _torque(arguments.torque)
     pressure_angles = _pressure_angles(arguments.pressure)
+    if pressure_angles is not None and arguments.compliance != "half-space":
+        from ltca.errors import DriveError
+
+        raise DriveError(
+            [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
+        )
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
     out = arguments.out or Path("out") / file.name
+    options: dict[str, Any] = {
+        "method": arguments.method,
+        "contacts": arguments.contacts,
+        "compliance": arguments.compliance,
+        "hole_near_field": not arguments.no_hole_near_field,
+    }
+    if arguments.compliance != "half-space":
+        from ltca.coefficient_files import find_coefficients
+
+        options["coefficients"] = find_coefficients(next(iter(cases.values())), arguments.coefficients)
     analyses = {}
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
-            analyses[name] = analyse(drive, angles, torque, method=arguments.method, contacts=arguments.contacts)
+            analyses[name] = analyse(drive, angles, torque, **options)
             advance(name)
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
     dataset = build_dataset(file.name, analyses)
@@ -75,9 +109,7 @@ def execute(arguments: argparse.Namespace) -> int:
         shown = {}
         with progress("pressure fields", len(cases)) as advance:
             for name, drive in cases.items():
-                shown[name] = analyse(
-                    drive, pressure_angles, torque, method=arguments.method, contacts=arguments.contacts
-                )
+                shown[name] = analyse(drive, pressure_angles, torque, **options)
                 advance(name)
             fields = build_pressure_dataset(file.name, shown)
         packed = {name: {"zlib": True} for name in ("pin_pressure", "roller_pressure")}

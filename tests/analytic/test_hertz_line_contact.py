@@ -13,18 +13,19 @@ from ltca.subsurface import find_subsurface_shear, patch_stress
 MODULUS = hertz.contact_modulus(206e3, 0.3, 206e3, 0.3)
 
 
+@pytest.mark.parametrize("cells", [8, 16])
 @pytest.mark.parametrize(("length", "radius", "approach"), [(11.8, 2.0, 5e-3), (40.0, 2.0, 5e-3), (200.0, 5.0, 1e-3)])
-def test_mid_width_of_a_long_roller_is_hertz(length, radius, approach):
-    solution = solve_cylinder_patch(length, radius, MODULUS, approach, cells=16)
+def test_mid_width_of_a_long_roller_is_hertz(length, radius, approach, cells):
+    solution = solve_cylinder_patch(length, radius, MODULUS, approach, cells=cells)
     x, pressure = solution.mid_profile
     line_load = 2.0 * float(np.sum(pressure)) * (x[1] - x[0])
-    # required 0.3 %; 16 cells give 0.02 % (half-width and peak are corrected for the cells)
-    assert solution.mid_pressure == pytest.approx(float(hertz.line_peak_pressure(line_load, radius, MODULUS)), rel=1e-3)
-    assert solution.half_width == pytest.approx(float(hertz.line_half_width(line_load, radius, MODULUS)), rel=1e-3)
+    # required 0.3 %; half-width and peak are corrected for the cells, without that 8 of them err by 0.2 %
+    assert solution.mid_pressure == pytest.approx(float(hertz.line_peak_pressure(line_load, radius, MODULUS)), rel=4e-4)
+    assert solution.half_width == pytest.approx(float(hertz.line_half_width(line_load, radius, MODULUS)), rel=4e-4)
     shape = solution.mid_pressure * np.sqrt(np.maximum(1.0 - (x / solution.half_width) ** 2, 0.0))
-    inside = x < 0.9 * solution.half_width
-    # away from the edge's square root constant cells follow the profile within 0.3 %
-    np.testing.assert_allclose(pressure[inside], shape[inside], rtol=3e-3)
+    inside = x < solution.half_width - 2 * (x[1] - x[0])
+    # two cells from the edge's square root constant cells follow the profile within 0.1 %
+    np.testing.assert_allclose(pressure[inside], shape[inside], rtol=2e-3)
 
 
 def test_tabulated_pressure_and_half_width_belong_together():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+import ltca.influence
 from ltca.influence import assemble_influence_matrix, lagged_influence, love_displacement
 
 
@@ -97,3 +98,14 @@ def test_edges_are_checked():
         assemble_influence_matrix(np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0]))
     with pytest.raises(ValueError, match="start at 0"):
         assemble_influence_matrix(np.array([0.1, 1.1]), np.array([0.0, 1.0]), symmetric_x=True)
+
+
+def test_series_for_distant_cells_agrees_with_the_closed_form(monkeypatch):
+    lags = 0.1 * np.arange(5.0)
+    distance = np.array([[-9.0, -2.5, 2.0, 7.0]])
+    closed = ltca.influence._mean_line_potential(lags, 0.1, distance)
+    monkeypatch.setattr(ltca.influence, "_SERIES_RATIO", 3.0)
+    series = ltca.influence._mean_line_potential(lags, 0.1, distance)
+    # near enough that the terms kept matter (1e-6 and more); the first one left out is of the order (x/Y)⁸/200
+    np.testing.assert_allclose(series, closed, atol=1e-7)
+    assert not np.array_equal(series, closed)

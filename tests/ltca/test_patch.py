@@ -66,6 +66,30 @@ def test_whole_grid_gives_the_quarter_solution():
     assert whole.mid_pressure == pytest.approx(quarter.mid_pressure, rel=1e-3)
 
 
+def test_half_grid_serves_separations_that_lean():
+    whole = cylinder(4e-3, cells=8).grid.whole()
+    half = cylinder(4e-3, cells=8).grid.half()
+
+    def leaning(x, y):
+        return x**2 / 4.0 * (1.0 - 2.0 * x) + 1e-4 * y**2
+
+    first, second = (solve_patch(g, g.cell_means(leaning), MODULUS, 4e-3) for g in (whole, half))
+    assert second.load == pytest.approx(first.load, rel=1e-5)
+    assert second.stiffness == pytest.approx(first.stiffness, rel=1e-5)
+    assert second.mid_pressure == pytest.approx(first.mid_pressure, rel=1e-4)
+    for ours, theirs in zip(second.whole_field(), first.whole_field(), strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=2e-3, atol=1e-9)
+
+
+def test_whole_field_carries_the_load():
+    solution = cylinder(4e-3)
+    x, y, pressure = solution.whole_field()
+    assert np.all(np.diff(x) > 0)
+    assert np.all(np.diff(y) > 0)
+    assert float(np.sum(pressure * solution.grid.whole().areas)) == pytest.approx(solution.load, rel=1e-12)
+    assert np.array_equal(pressure, pressure[::-1, ::-1])
+
+
 def test_a_sheared_separation_moves_the_contact_and_keeps_the_load():
     """x²/(2ρ) + s x is the same parabola moved by −sρ and raised by −s²ρ/2: same contact elsewhere."""
     radius, slope = 2.0, 0.01

@@ -1,0 +1,119 @@
+"""``cyclo mesh``: meshes of all bodies of a drive, as files and a picture."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ltca.errors import CycloError
+
+if TYPE_CHECKING:
+    from fem.body_mesh import BodyMesh
+    from fem.drive_mesh import DriveMeshes
+    from fem.expected_contacts import ExpectedContacts
+    from fem.geometry import DriveShapes
+    from ltca.drive import Drive
+
+SUMMARY: str = "mesh the bodies of a drive for the contacts expected at a crank angle"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
+    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
+    parser.add_argument("--angle", type=float, default=0.0, metavar="PHI", help="crank angle, rad (default 0)")
+    parser.add_argument(
+        "--size",
+        type=float,
+        default=1.0,
+        metavar="S",
+        help="element edge as a multiple of the default of 8 elements for each contact half-width; 0.5 halves it",
+    )
+    parser.add_argument("--order", type=int, choices=(1, 2), default=2, help="1 straight, 2 curved triangles (default)")
+    parser.add_argument("--out", metavar="DIR", default="mesh", help="folder for the files (default: mesh)")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Mesh the drive, write ``.msh`` and ``.vtu`` of each body and ``mesh.png``.
+
+    Returns
+    -------
+    int
+        0.
+
+    Raises
+    ------
+    CycloError
+        For wrong input, missing libraries or a mesh that would not fit into memory.
+    """
+    import time
+
+    from fem.drive_mesh import mesh_drive
+    from fem.expected_contacts import expect_contacts
+    from fem.geometry import DriveShapes
+    from fem.quality import measure_quality
+
+    name, case, drive = _select(arguments.drive, arguments.case)
+    _check_numbers(arguments.angle, arguments.size)
+    out = Path(arguments.out)
+    if out.exists() and not out.is_dir():
+        raise CycloError(f"--out {out}: is a file, not a folder")
+
+    def report(body: BodyMesh) -> None:
+        print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
+
+    start = time.perf_counter()
+    contacts = expect_contacts(drive, arguments.angle)
+    shapes = DriveShapes.of_drive(drive)
+    meshes = mesh_drive(shapes, contacts, scale=arguments.size, order=arguments.order, report=report)
+    print(
+        f"{meshes.unknowns:,} unknowns in {len(meshes.bodies)} bodies, {time.perf_counter() - start:.2f} s", flush=True
+    )
+    _write_files(meshes, out)
+    headline = f"{name}, {case}, crank angle {arguments.angle:g} rad: {meshes.unknowns:,} unknowns"
+    _draw(drive, shapes, contacts, meshes, out / "mesh.png", headline)
+    print(f"written to {out}")
+    return 0
+
+
+def _select(source: str, case: str | None) -> tuple[str, str, Drive]:
+    from ltca.drive_file import load_drive
+
+    file = load_drive(source)
+    chosen, drive = next(iter(file.select([case] if case else None).items()))
+    return file.name, chosen, drive
+
+
+def _check_numbers(angle: float, size: float) -> None:
+    import math
+
+    if not math.isfinite(angle):
+        raise CycloError(f"--angle {angle:g}: must be a finite number (rad)")
+    if not (math.isfinite(size) and size > 0.0):
+        raise CycloError(f"--size {size:g}: must be a finite number greater than 0 (a multiple of the default edge)")
+
+
+def _write_files(meshes: DriveMeshes, out: Path) -> None:
+    from fem.mesh_file import write_msh, write_vtu
+
+    for body in meshes.bodies:
+        write_msh(body, out / f"{body.name}.msh")
+        write_vtu(body, out / f"{body.name}.vtu")
+
+
+def _draw(
+    drive: Drive, shapes: DriveShapes, contacts: ExpectedContacts, meshes: DriveMeshes, path: Path, headline: str
+) -> None:
+    from fem.mesh_picture import choose_zooms, draw_drive_mesh, place_bodies
+    from ltca.placement import Placement
+
+    placement = Placement.of_drive(drive)
+    shaft_pins = [
+        (complex(centre), shape) for centre, shape in zip(placement.shaft_pin_centres, shapes.shaft_pins, strict=True)
+    ]
+    problem = draw_drive_mesh(
+        path, place_bodies(meshes, placement, contacts), choose_zooms(contacts, placement), shaft_pins, headline
+    )
+    if problem:
+        print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
