@@ -8,13 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
-from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, Response
-=======
 from ltca.coefficients import InfluenceCoefficients
-from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance
+from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, Response
 from ltca.coupled_compliance import CoupledCompliance
->>>>>>> main
 from ltca.drive import Drive
 from ltca.equilibrium import Equilibrium, solve_equilibrium
 from ltca.errors import DriveError
