@@ -19,7 +19,7 @@ from ltca.transmission_error_spectrum import Spectrum
 FloatArray = NDArray[np.float64]
 
 NAMED = 10
-"""Orders that bear their name in the figure, the largest."""
+"""Orders listed by name in the figure, the largest."""
 
 
 def _save(figure: Figure, stem: Path) -> Path:
@@ -63,22 +63,15 @@ def draw_spectrum(spectrum: Spectrum, title: str, stem: Path) -> Path:
         heights = spectrum.amplitude * ARCSEC
         axes.vlines(values, 0.0, heights, color=COLOURS[1], linewidth=1.6)
         largest = np.argsort(-heights)[:NAMED]
-        rows: list[tuple[float, float]] = []
-        for number in largest:
-            x, y = float(values[number]), float(heights[number])
-            # Names of neighbouring orders are stacked.
-            while any(abs(x - a) < 0.22 * values.max() and abs(y - b) < 0.045 * heights.max() for a, b in rows):
-                y += 0.045 * float(heights.max())
-            rows.append((x, y))
-            axes.annotate(
-                f"{spectrum.orders[number].name}: {heights[number]:.2g}″",
-                (x, float(heights[number])),
-                xytext=(x + 0.008 * float(values.max()), y),
-                fontsize=7.0,
-                va="bottom",
-            )
-        axes.set_xlim(0.0, 1.25 * float(values.max()))
-        axes.set_ylim(0.0, 1.15 * max(y for _, y in rows) + 1e-9)
+        for row, number in enumerate(largest):
+            order = spectrum.orders[number]
+            axes.text(float(values[number]), float(heights[number]), f"{order.value:.4g}", fontsize=7.0, ha="center", va="bottom")
+            axes.text(
+                0.42, 0.96 - 0.055 * row, f"{order.value:>8.4f}  {heights[number]:.3f}″  {order.name}",
+                transform=axes.transAxes, fontsize=7.5, family="monospace",
+            )  # fmt: skip
+        axes.set_xlim(0.0, 1.02 * float(values.max()))
+        axes.set_ylim(0.0, 1.12 * float(heights.max()) + 1e-9)
         axes.set_xlabel("order per turn of the crank")
         axes.set_ylabel("amplitude [″]")
         axes.set_title(f"{title}; unexplained {spectrum.residual * ARCSEC:.2g}″ rms")

@@ -75,6 +75,16 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
         names += [
             Order(float(multiple * flank), f"flank, {multiple} z_C"),
             Order(float(multiple * holes), f"pin holes, {multiple} z_PS"),
+        ]
+    # Two motions that both bend the same contacts show sums and differences of their orders.
+    for first in (1, 2):
+        for second in (1, 2):
+            parts = f"{first} z_C", f"{second} z_PS"
+            names.append(Order(float(abs(first * flank - second * holes)), f"flank and holes, |{parts[0]} − {parts[1]}|"))
+            names.append(Order(float(first * flank + second * holes), f"flank and holes, {parts[0]} + {parts[1]}"))
+    names += [Order(1.0, "crank, 1")]
+    for multiple in range(1, harmonics + 1):
+        names += [
             Order(multiple * rollers * cage, f"roller passage, {multiple} n_BR(1 − c)"),
             Order(float(multiple), f"crank, {multiple}"),
             Order(multiple * cage, f"cage, {multiple} (1 − c)"),
