@@ -42,6 +42,7 @@ def paper_table() -> Callable[..., dict[str, Any]]:
     def table(**over: Any) -> dict[str, Any]:
         base = tomllib.loads(shipped_drive())
         del base["case"]
+        base.pop("tolerances", None)
         return _merge(base, copy.deepcopy(over))
 
     return table
