@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from ltca.drive import Drive
 from ltca.errors import ConvergenceError
+from ltca.placement import BatchScalar
 from ltca.profile_deviation import ProfileDeviation
 from ltca.unit_circle import integer_power, small_turn, unit
 
@@ -77,10 +78,10 @@ class FlankProfile:
         Departure from the design along its normal.
     """
 
-    generating_radius: float | FloatArray
-    eccentricity: float | FloatArray
+    generating_radius: BatchScalar
+    eccentricity: BatchScalar
     reduction_ratio: float
-    offset: float | FloatArray
+    offset: BatchScalar
     centre: complex | ComplexArray = 0.0
     deviation: ProfileDeviation | None = None
 
@@ -149,7 +150,7 @@ class FlankProfile:
         return Curve(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
 
     @property
-    def contact_offset(self) -> float | FloatArray:
+    def contact_offset(self) -> BatchScalar:
         """Distance of the actual flank from `contact_curve`, mm."""
         return self.offset if self.deviation is None else 0.0
 
