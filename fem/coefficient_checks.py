@@ -52,7 +52,7 @@ def near_field_unit(dataset: xr.Dataset, body: str) -> float:
 
 
 def station_resultants(dataset: xr.Dataset) -> FloatArray:
-    """Return force in x, y and moment about the disc centre of a newton into the disc at each station, (3, stations)."""
+    """Return force in x, y and moment about the disc centre of a newton at each station, shape (3, stations)."""
     point = dataset["station_x"].values + 1j * dataset["station_y"].values
     inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
     return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])

@@ -15,9 +15,9 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
-# On the paper's disc, cubic interpolation between these leaves 0.05 of the unit 2(1 − ν²)/(πEt) at the roots, 0.005 along
-# the working flank of 10 (half as many: 0.45 and 0.05); 32 in a hole leave 0.02 of 13,
-# 16 leave 0.2.
+# Error of cubic interpolation on the paper's disc, in units of 2(1 − ν²)/(πEt), of approaches of 10 to 14: with 32
+# for each lobe 0.045 in the roots and 0.005 along the working flank (with 16 0.45 and 0.05); with 32 in a hole 0.02,
+# with 16 0.2.
 FLANK_PER_LOBE = 32
 BORE = 48
 PER_HOLE = 24

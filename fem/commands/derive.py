@@ -62,8 +62,9 @@ def execute(arguments: argparse.Namespace) -> int:
 
     from fem.coefficient_checks import check_coefficients
     from fem.coefficient_dataset import derive_coefficients
-    from fem.coefficient_file import read_coefficients, write_coefficients
+    from fem.coefficient_file import read_coefficients, require_writable, write_coefficients
 
+    require_writable(out)
     start = time.perf_counter()
     show = _progress()
     dataset = derive_coefficients(

@@ -20,7 +20,7 @@ from fem.stations import DiscStations, nominal_shape
 from ltca.drive_file import load_drive
 from ltca.errors import CycloError
 
-COARSE = ("--stations", "0.25", "--size", "2")
+COARSE = ("--stations", "0.25", "--size", "1.5")
 
 
 def run(*words: str) -> int:
@@ -92,9 +92,10 @@ def test_file_follows_its_format(dataset):
         assert dataset.attrs[name], name
 
 
+@pytest.mark.slow
 def test_same_numbers_again_whichever_case(dataset):
     """Clearances are left out, gmsh is seeded: another case of the drive gives the same numbers, bit by bit."""
-    again = derive_coefficients(load_drive("paper").cases["CS-1"], stations=0.25, size=2.0)
+    again = derive_coefficients(load_drive("paper").cases["CS-1"], stations=0.25, size=1.5)
     np.testing.assert_array_equal(again["disc_approach"], dataset["disc_approach"])
     np.testing.assert_array_equal(again["race_approach"], dataset["race_approach"])
 
@@ -179,7 +180,8 @@ def test_failure_leaves_the_old_file(tmp_path, monkeypatch):
         (("paper", "--stations", "nan"), "stations nan"),
         (("paper", "--size", "0"), "size 0"),
         (("paper", "--size", "-1"), "size -1"),
-        (("paper", "--size", "1e-6"), "size"),
+        (("paper", "--size", "3"), "size 3: .* at most 2"),
+        (("paper", "--size", "1e-6"), "memory"),
         (("paper", "--out", "/proc/none/c.nc"), "/proc/none"),
     ],
 )
