@@ -50,12 +50,13 @@ def derive_coefficients(
     state: PlaneState = "strain",
     core_radius: float | None = None,
     race_bore_radius: float | None = None,
+    keep_clearance: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> xr.Dataset:
     """Derive the influence coefficients of all bodies of a drive.
 
-    Clearances and errors of single parts are left out, so that one dataset serves all cases of a drive that share
-    its `Drive.shape_fingerprint`.
+    Errors of single parts and, unless kept, clearances are left out, so that one dataset serves all cases of a drive
+    that share its `Drive.shape_fingerprint`.
 
     Parameters
     ----------
@@ -71,6 +72,8 @@ def derive_coefficients(
         Plane strain or plane stress.
     core_radius, race_bore_radius : float, optional
         Rigid core of the wheel pins and fixed bore of the race, mm; defaults of `DriveShapes.of_drive`.
+    keep_clearance : bool
+        Derive the disc with the bearing and pin-hole clearance of this case.
     progress : callable, optional
         Called with the name of each step before it starts.
 
@@ -87,7 +90,7 @@ def derive_coefficients(
         When mesh and solution would not fit into memory.
     """
     tell = progress or (lambda step: None)
-    nominal = nominal_shape(drive)
+    nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
     places = DiscStations.of_disc(shapes.disc, stations)
     materials, thickness = nominal.materials, nominal.disc.thickness
@@ -125,7 +128,11 @@ def derive_coefficients(
         convergence_estimate=max(convergence.values()),
         **{f"convergence_{name}": value for name, value in convergence.items()},
         symmetry=max(body.reciprocity for body in fine),
+        mirror=max(roller.mirror, race.mirror),
         rigid_residual=disc.rigid_residual,
+        roller_radius=shapes.rollers[0].radius,
+        bearing_clearance=nominal.clearance.bearing,
+        pin_hole_clearance=nominal.clearance.pin_hole,
         version=version("cyclo-ltca"),
         gmsh=str(load_gmsh().__version__),
     )

@@ -28,8 +28,9 @@ ROUND_OFF_BOUND = 1e-5
 """Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 
 ITERATIONS = 200
-STEP_BOUND = 0.05
-"""Largest first step of a mode, mm: long against elastic approaches (µm), short against the radius of a flank (mm).
+STEP_BOUND = 1e-3
+"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
+(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
 It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
 LINE_TRIALS = 12
 SLOPE_LEFT = 0.3
@@ -117,7 +118,8 @@ def solve_equilibrium(
 def _take_up(model: ComplianceModel, angle: FloatArray, sense: int) -> FloatArray:
     """Wheel angles at first contact; zero where pins interfere so that turning the wheel alone cannot find it."""
     try:
-        return first_contact(model.geometry, angle, WHEEL_ANGLE, sense)[0]
+        turned = first_contact(model.geometry, angle, WHEEL_ANGLE, sense)[0]
+        return np.where(np.abs(turned) < np.pi / model.geometry.placement.reduction_ratio, turned, 0.0)
     except ConvergenceError:
         if angle.size == 1:
             return np.zeros(1)
@@ -149,6 +151,9 @@ class _Search:
         gradient = response.force.copy()
         gradient[:, 3] -= self.moment[rows]
         gradient /= self.lever
+        if np.isnan(gradient).any():
+            row = rows[np.isnan(gradient).any(axis=1)][0]
+            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
         tangent = response.tangent / (self.lever[:, None] * self.lever)
         return response, gradient, tangent
 
@@ -156,7 +161,8 @@ class _Search:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        damping, bound = np.full(count, 1e-6), np.full(count, STEP_BOUND)
+        first_bound = STEP_BOUND * self.lever[3]
+        damping, bound = np.full(count, 1e-6), np.full(count, first_bound)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
@@ -172,9 +178,10 @@ class _Search:
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
             taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
             self.pose[active] = taken
+            self.refuse_slip(active, residual)
             residual[active] = np.max(np.abs(gradient), axis=1)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
-            bound[active] = bound[active].clip(1e-3 * STEP_BOUND, max(STEP_BOUND, 0.1 * self.smallest_pin))
+            bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
             known = known.replaced(active, start)
@@ -186,12 +193,26 @@ class _Search:
             [float(values[worst]) for values in self.history],
         )
 
+    def refuse_slip(self, rows: NDArray[np.intp], residual: FloatArray) -> None:
+        """Stop where wheel or disc has turned by half a pin pitch: the teeth have slipped, other pins would carry."""
+        turned = np.max(np.abs(self.pose[rows][:, 2:]), axis=1)
+        pitch = np.pi / self.model.geometry.placement.reduction_ratio
+        if np.max(turned) > pitch:
+            worst = rows[int(np.argmax(turned))]
+            self.history.append(residual.copy())
+            raise ConvergenceError(
+                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): "
+                f"the teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
+                f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
+                [float(values[worst]) for values in self.history],
+            )
+
     def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
         size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
         round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
         load = self.load[rows]
-        return np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load))
+        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start

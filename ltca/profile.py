@@ -100,7 +100,13 @@ class FlankProfile:
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
     def nearest_parameter(
-        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 100
+        self,
+        point: ComplexArray,
+        start: FloatArray,
+        *,
+        tolerance: float = 1e-13,
+        limit: int = 100,
+        across_root: bool = True,
     ) -> FloatArray:
         """Return θ of the flank point whose normal passes through a point.
 
@@ -119,6 +125,8 @@ class FlankProfile:
             Largest accepted step, rad.
         limit : int
             Iterations.
+        across_root : bool
+            Look at the other side of the root as well, where its curvature lets both sides be near.
 
         Returns
         -------
@@ -140,8 +148,8 @@ class FlankProfile:
             speed = (tangent * tangent.conjugate()).real
             value = (tangent.conjugate() * away).real
             slope = speed + (second.conjugate() * away).real
-            # Inside a centre of curvature the slope is negative: then step as steepest descent does.
-            step = np.clip(value / np.where(slope > 1e-3 * speed, slope, speed), -bound, bound)
+            # Beyond a centre of curvature the slope is negative, the point next to a largest distance: leave it.
+            step = np.clip(value / np.maximum(np.abs(slope), 1e-3 * speed), -bound, bound)
             if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
                 outside = ((theta - step < low) | (theta - step > high)) & np.isfinite(high - low)
@@ -150,8 +158,31 @@ class FlankProfile:
             history.append(float(np.max(np.abs(step), initial=0.0)))
             # Convergence is quadratic: a step of 1e-8 leaves an error below round-off.
             if history[-1] <= max(tolerance, 1e-8) and (len(history) > 1 or history[-1] <= tolerance):
-                return theta
+                return self._nearer_side(point, theta) if across_root else theta
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
+
+    def _nearer_side(self, point: ComplexArray, theta: FloatArray) -> FloatArray:
+        """Change to the other side of the root where the flank is nearer there.
+
+        With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin that has left it by
+        more than its radius there has a nearest point on either side.
+        """
+        eccentric, u = self.eccentricity, self.reduction_ratio
+        bend = eccentric * u * u - self.generating_radius
+        if bend <= 0.0:
+            return theta
+        root_radius = (self.generating_radius - eccentric * u) ** 2 / bend
+        away = np.abs(self.locus(theta)[0] - point)
+        pitch = 2.0 * np.pi / (u - 1.0)
+        root = pitch * np.round(theta / pitch)
+        doubtful = (away > 0.3 * root_radius) & (np.abs(theta - root) < 0.25 * pitch)
+        if not np.any(doubtful):
+            return theta
+        places = np.broadcast_to(point, theta.shape)[doubtful]
+        other = self.nearest_parameter(places, (2.0 * root - theta)[doubtful], across_root=False)
+        nearer = np.abs(self.locus(other)[0] - places) < away[doubtful]
+        theta[doubtful] = np.where(nearer, other, theta[doubtful])
+        return theta
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
         """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""
