@@ -99,6 +99,7 @@ def grade_contacts(
     margin: float,
     smallest_share: float,
     elastic_shaft_pins: bool = False,
+    open_gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
 ) -> ExpectedContacts:
     """Return the contacts to grade meshes for.
 
@@ -114,6 +115,9 @@ def grade_contacts(
         Candidates get elements for at least this share of the largest load of their kind.
     elastic_shaft_pins : bool
         Whether the shaft pins yield, too.
+    open_gaps : tuple of three arrays, optional
+        Gaps of pins, rollers and holes between the deformed bodies, mm, NaN where not known; the gaps of the rigid
+        bodies count there, and for all without this.
 
     Returns
     -------
@@ -126,6 +130,13 @@ def grade_contacts(
     rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
     bore, race, radius = place.bore_radius, place.inner_race_radius, place.roller_radii
     turn_back = np.exp(-1j * rotation)
+
+    rigid = (gaps.pins, gaps.rollers, gaps.holes)
+    left = (
+        rigid
+        if open_gaps is None
+        else tuple(np.where(np.isnan(known), plain, known) for known, plain in zip(open_gaps, rigid, strict=True))
+    )
 
     def group(
         load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
@@ -148,26 +159,26 @@ def grade_contacts(
         disc_rotation=float(rotation),
         wheel_angle=float(wheel_angle),
         pins=group(
-            pins, gaps.pins, flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
+            pins, left[0], flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
         ),
         flank_points=profile.flank(gaps.flank_parameters),
         rollers_outer=group(
             rollers,
-            gaps.rollers,
+            left[1],
             radius * bore / (bore - radius),
             contact_modulus(materials.disc, materials.roller),
             rays,
         ),
         rollers_inner=group(
             rollers,
-            gaps.rollers,
+            left[1],
             radius * race / (race + radius),
             contact_modulus(materials.inner_race, materials.roller),
             -rays,
         ),
         bore_points=_bore_points(displacement, place, rays) * turn_back,
         race_points=race * rays,
-        holes=group(holes, gaps.holes, hole_effective, hole_modulus, gaps.hole_directions),
+        holes=group(holes, left[2], hole_effective, hole_modulus, gaps.hole_directions),
         hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
     )
 

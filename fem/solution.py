@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.contact_results import ContactResults, summarise_contacts
+from fem.contact_results import ContactResults, open_gaps, summarise_contacts
 from fem.drive_condensation import condense_drive
 from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
 from fem.drive_model import DriveModel, DrivePose
@@ -116,6 +116,7 @@ class _Task:
         *,
         margin: float,
         share: float,
+        gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
     ) -> ExpectedContacts:
         return grade_contacts(
             self.drive,
@@ -125,6 +126,7 @@ class _Task:
             margin=margin * self.approach,
             smallest_share=share,
             elastic_shaft_pins=self.elastic_shaft_pins,
+            open_gaps=gaps,
         )
 
 
@@ -211,7 +213,8 @@ def solve_drive(
         place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
         loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
-        contacts = task.grade(crank_angle, place, loads, margin=FINE_MARGIN * 2.0 ** (grading - 1), share=FINE_SHARE)
+        margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
+        contacts = task.grade(crank_angle, place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
         say("meshes")
         model = task.condense(contacts, scale * RESERVE, watch)
         watch.lap("assembly and factorisation")
