@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
-from ltca.tooth_contact import WHEEL_ANGLE, first_contact
+from ltca.tooth_contact import WHEEL_ANGLE, turn_to_contact
 
 FloatArray = NDArray[np.float64]
 
@@ -110,9 +110,9 @@ def solve_equilibrium(
         sense = np.where(moment < 0.0, -1, 1)
         for value in np.unique(sense):
             rows = sense == value
-            start[rows, WHEEL_ANGLE], _ = first_contact(
-                model.geometry.take(rows), angle[rows], WHEEL_ANGLE, int(value)
-            )
+            # Parts far off their place may interfere at every wheel angle: the search then starts from none.
+            geometry = model.geometry.take(rows)
+            start[rows, WHEEL_ANGLE] = turn_to_contact(geometry, angle[rows], WHEEL_ANGLE, int(value))[0]
     search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
     return search.run()
 
