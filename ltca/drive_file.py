@@ -180,13 +180,15 @@ _ADAPTER = TypeAdapter(Drive)
 def build_drive(table: dict[str, Any]) -> Drive:
     """Return the drive of nested plain tables (as in a drive file without cases), fully checked.
 
+    Tolerances are no part of a drive and are passed over.
+
     Raises
     ------
     DriveError
         With every mistake.
     """
     problems: list[str] = []
-    drive = _validate(table, problems)
+    drive = _validate({name: value for name, value in table.items() if name != "tolerances"}, problems)
     if drive is not None:
         problems += find_contradictions(drive)
     if problems or drive is None:

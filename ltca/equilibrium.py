@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ltca.compliance import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
 from ltca.pairs import ContactGeometry
-from ltca.tooth_contact import WHEEL_ANGLE, first_contact
+from ltca.tooth_contact import WHEEL_ANGLE, turn_to_contact
 
 FloatArray = NDArray[np.float64]
 
@@ -121,7 +121,7 @@ def solve_equilibrium(
 def _take_up(geometry: ContactGeometry, angle: FloatArray, sense: int) -> FloatArray:
     """Wheel angles at first contact; zero where pins interfere so that turning the wheel alone cannot find it."""
     try:
-        turned = first_contact(geometry, angle, WHEEL_ANGLE, sense)[0]
+        turned = turn_to_contact(geometry, angle, WHEEL_ANGLE, sense)[0]
         return np.where(np.abs(turned) < np.pi / geometry.placement.reduction_ratio, turned, 0.0)
     except ConvergenceError:
         if angle.size == 1:
