@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import time
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -144,7 +145,7 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
 
 def _with_following(text: str) -> list[tuple[str, str]]:
     lines = [line for line in text.splitlines() if line.strip()]
-    return list(zip(lines, lines[1:], strict=False))
+    return list(pairwise(lines))
 
 
 def compare_with_calculix(solution: FullSolution, folder: Path, program: str) -> list[str]:

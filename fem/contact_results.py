@@ -134,7 +134,7 @@ def peak_of(arc: FloatArray, pressure: FloatArray, half_width: float) -> float:
     # Weighted gaps make the pressure an L2 projection on piecewise linear functions; the vertex values of the
     # projection of a parabola lie above it by h²|p″|/12, exactly, for equal edges h.
     edge = float(np.mean(np.diff(arc[near])))
-    return peak - edge**2 * abs(bend / peak) / half_width**2 / 12.0
+    return float(peak - edge**2 * abs(bend / peak) / half_width**2 / 12.0)
 
 
 def vertex_means(arc: FloatArray, pressure: FloatArray) -> FloatArray:

@@ -143,7 +143,7 @@ def integrate_pair(
     nodes = 0 if opposite is None else len(opposite.nodes)
     opposite_loads = np.zeros((2 * nodes, count))
     if opposite is not None:
-        local = opposite_pose.turn(np.ones(1))[0].conjugate()
+        local = np.exp(-1j * opposite_pose.rotation)
         edge_opposite, shapes = opposite.shapes_at(_coordinates(partner, opposite_pose, radius, opposite))
         push = normals * local
     for vertex, hat in ((edge, 1.0 - xi), (edge + 1, xi)):
@@ -175,7 +175,7 @@ def _segment_ends(
     """Return vertices of both surfaces as places along the pressure zone, increasing, without repetition."""
     # Where the rays of vertices and middles meet the circle is a smooth function of the place; a vertex of the
     # circle found by its inverse is off by far less than an edge, and the integrand has only a kink there.
-    ends = 0.5 * np.arange(2 * zone.edge_count + 1)
+    ends: FloatArray = 0.5 * np.arange(2 * zone.edge_count + 1, dtype=float)
     edge = np.minimum(ends.astype(np.int64), zone.edge_count - 1)
     meshed, _ = zone.points(edge, ends - edge)
     exact, normal = zone.exact(meshed)
@@ -192,4 +192,4 @@ def _segment_ends(
     inside = vertices[(vertices > coordinates[0]) & (vertices < coordinates[-1])]
     found = np.interp(inside, coordinates, places)
     ends = np.unique(np.concatenate([np.arange(zone.edge_count + 1, dtype=float), found]))
-    return ends[np.concatenate([[True], np.diff(ends) > 1e-9])]
+    return np.asarray(ends[np.concatenate([[True], np.diff(ends) > 1e-9])])

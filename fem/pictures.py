@@ -18,9 +18,9 @@ from fem.solution import FullSolution
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-# Colours over the whole drive end at this quantile of the nodal stresses: the few nodes under the contacts would
-# leave the rest of the drive in one colour.
-COLOUR_QUANTILE = 0.995
+# Colours over the whole drive end where this share of its area is below: the spots under the contacts would leave
+# the rest of the drive in one colour.
+COLOUR_AREA = 0.995
 # The largest elastic displacement is drawn as this part of the drive's radius.
 DEFORMED_SHARE = 0.04
 ZOOM_HALF_WIDTHS = 3.5
@@ -55,7 +55,7 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
     """
     everything = np.concatenate([field.places for field in fields])
     reach = 1.06 * float(np.max(np.abs(everything)))
-    limit = float(np.quantile(np.concatenate([field.stress.von_mises for field in fields]), COLOUR_QUANTILE))
+    limit = _stress_below(fields, COLOUR_AREA)
     shaft = _shaft_pins(solution)
     whole = Panel(
         title=f"{headline}: von Mises stress",
@@ -87,6 +87,20 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
     )
     render(folder / "deformed.png", [deformed], side=1600)
     return problem
+
+
+def _stress_below(fields: Sequence[BodyField], share: float) -> float:
+    """Return the von Mises stress that a share of the area stays below, MPa."""
+    areas, stresses = [], []
+    for field in fields:
+        triangles = field.body.mesh.t
+        a, b, c = (field.places[triangles[k]] for k in range(3))
+        areas.append(0.5 * np.abs(((b - a).conjugate() * (c - a)).imag))
+        stresses.append(field.stress.von_mises[triangles].mean(axis=0))
+    area, stress = np.concatenate(areas), np.concatenate(stresses)
+    order = np.argsort(stress)
+    below = np.cumsum(area[order]) / area.sum()
+    return float(stress[order][np.searchsorted(below, share)])
 
 
 def _round_down(value: float) -> float:
@@ -153,7 +167,8 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         panels.append(
             Panel(
                 title=(
-                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N, peak {detail.peak_pressure:.0f} MPa,\n"
+                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N, "
+                    f"peak {detail.peak_pressure:.0f} MPa,\n"
                     f"half-width {1e3 * detail.half_width:.1f} µm, window {2.0 * half_side:.3g} mm; white: pressure"
                 ),
                 centre=middle,
@@ -161,6 +176,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
                 patches=tuple(_patch(field, field.places + field.elastic, field.stress.von_mises) for field in near),
                 lines=(
                     *(Lines(points=_edges(field), colour="#404040", width=0.8) for field in near),
+                    _shaft_pins(solution),
                     Lines(points=teeth, colour="#ffffff", width=1.5),
                     Lines(points=diagram[None, max(on[0] - 1, 0) : on[-1] + 2], colour="#ffffff", width=3.0),
                 ),

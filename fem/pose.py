@@ -112,7 +112,7 @@ def solve_pose(
         contact = solve_unilateral_contact(problem, active)
         forces = pair_forces(model, integrals, contact.pressure)
         previous, loads = loads, np.hypot(forces[:, 0], forces[:, 1])
-        following, increment = _move(model, pose, contact, forces, integrals)
+        following, increment = _move(model, pose, contact, forces)
         increments.append(increment)
         changes.append(float(np.max(np.abs(loads - previous)) / np.max(loads)))
         if progress is not None:
@@ -142,7 +142,6 @@ def _move(
     pose: DrivePose,
     contact: ContactSolution,
     forces: FloatArray,
-    integrals: list[PairIntegrals],
 ) -> tuple[DrivePose, float]:
     """Return the pose found and the largest increment, mm."""
     motion = contact.motion.copy()
@@ -150,9 +149,6 @@ def _move(
     reach = np.ones(len(motion))
     reach[2] = shapes.disc.flank.profile.tip_radius
     reach[3] = float(np.abs(model.placement.wheel_pin_centres).max())
-    for column, roller in enumerate(model.rollers, start=4):
-        if not _is_held(model, contact, roller):
-            motion[column] = _rest_between(model, contact, integrals, roller, column)
     largest = float(np.max(np.abs(motion * reach)))
     motion *= min(1.0, LARGEST_STEP / largest) if largest > 0.0 else 1.0
     distances = pose.roller_distances.copy()
@@ -172,22 +168,3 @@ def _move(
         shaft_pin_displacements=pins,
     )
     return moved, increment
-
-
-def _is_held(model: DriveModel, contact: ContactSolution, roller: int) -> bool:
-    return any(
-        bool(np.any(contact.pressure[pair.unknowns] > 0.0))
-        for pair in model.pairs
-        if pair.index == roller and pair.kind in ("roller_outer", "roller_inner")
-    )
-
-
-def _rest_between(
-    model: DriveModel, contact: ContactSolution, integrals: list[PairIntegrals], roller: int, column: int
-) -> float:
-    """Return the radial motion that leaves an idle roller midway between race and bore, mm."""
-    room: dict[str, float] = {}
-    for pair, integral in zip(model.pairs, integrals, strict=True):
-        if pair.index == roller and pair.kind in ("roller_outer", "roller_inner"):
-            room[pair.kind] = float(np.min(contact.opening[pair.unknowns] / integral.measure))
-    return 0.5 * (room["roller_outer"] - room["roller_inner"]) + float(contact.motion[column])

@@ -177,7 +177,6 @@ def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None
             if patch.values is None:
                 plotter.add_mesh(mesh, color=patch.colour, lighting=False)
                 continue
-            mesh.point_data[f"{panel.label} "[: len(panel.label) + column]] = patch.values
             plotter.add_mesh(
                 mesh,
                 scalars=patch.values,
@@ -185,7 +184,18 @@ def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None
                 clim=panel.limits,
                 lighting=False,
                 show_scalar_bar=bar,
-                scalar_bar_args={"title": panel.label + " " * column, "color": "black", "n_labels": 5},
+                scalar_bar_args={
+                    "title": panel.label + " " * column,
+                    "color": "black",
+                    "n_labels": 5,
+                    "vertical": True,
+                    "position_x": 0.90,
+                    "position_y": 0.2,
+                    "width": 0.06,
+                    "height": 0.6,
+                    "title_font_size": 16,
+                    "label_font_size": 14,
+                },
             )
             bar = False
         for item in panel.lines:
@@ -222,7 +232,7 @@ def _render_with_matplotlib(path: Path, panels: Sequence[Panel], side: int) -> N
         coloured: Any = None
         for patch in panel.patches:
             values = np.zeros(len(patch.points)) if patch.values is None else patch.values
-            drawn = axes.tripcolor(
+            drawn: Any = axes.tripcolor(  # type: ignore[call-overload]
                 patch.points.real,
                 patch.points.imag,
                 patch.faces,

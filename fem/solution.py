@@ -17,21 +17,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.contact_results import ContactResults, summarise_contacts
-from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, mesh_drive
-from fem.drive_model import DriveModel, DrivePose, condense_drive
+from fem.drive_condensation import condense_drive
+from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
+from fem.drive_model import DriveModel, DrivePose
 from fem.elasticity import PlaneState
+from fem.errors import MeshError
 from fem.expected_contacts import ExpectedContacts, expect_contacts
 from fem.geometry import DriveShapes
 from fem.grading import grade_contacts, measure_gaps
+from fem.memory import require_memory, solution_memory
+from fem.meshing import estimate_unknowns
 from fem.pose import PoseSolution, solve_pose
 from ltca.drive import Drive
 from ltca.errors import ConvergenceError
 
 FloatArray = NDArray[np.float64]
 
-# The coarse stage looks for loads only: 4 elements for each half-width, zones for contacts that are open by as
+# The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.
-COARSE_SCALE = 2.0
+COARSE_SCALE = 3.5
 COARSE_SHARE = 0.25
 FINE_SHARE = 0.05
 # Open contacts within this part of the largest approach stay candidates of the fine stage.
@@ -141,10 +145,12 @@ def solve_drive(
     shapes = DriveShapes.of_drive(drive)
     guess = expect_contacts(drive, crank_angle, torque=torque)
     approach = _largest_approach(drive, guess)
+    _refuse_too_large(shapes, guess, scale)
     contacts = _regrade(drive, guess, _loads_of(guess), margin=approach, share=COARSE_SHARE)
     watch.lap("guess")
     say("coarse meshes")
-    model = condense_drive(drive, shapes, contacts, mesh_drive(shapes, contacts, scale=COARSE_SCALE), state=state)
+    coarse = mesh_drive(shapes, contacts, scale=max(COARSE_SCALE, scale))
+    model = condense_drive(drive, shapes, contacts, coarse, state=state)
     first = None
     if start is not None:
         first = model.start_pose(start)
@@ -332,6 +338,15 @@ def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
         drive, guess.crank_angle, complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
     )
     return float(-min(gaps.pins.min(), gaps.rollers.min(), gaps.holes.min()))
+
+
+def _refuse_too_large(shapes: DriveShapes, guess: ExpectedContacts, scale: float) -> None:
+    """Refuse a size that would exceed memory before any meshing; disc and race alone decide."""
+    if not (np.isfinite(scale) and scale > 0.0):
+        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
+    unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, scale))
+    unknowns += estimate_unknowns(shapes.inner_race, race_refinements(guess, scale))
+    require_memory(unknowns, solution_memory(unknowns), "the model of disc and inner race")
 
 
 def _silent(_: str) -> None:

@@ -149,7 +149,8 @@ def _print_contacts(solution: FullSolution) -> None:
     radial, tangential = bearing_components(contacts, solution.model.crank_angle)
     print(f"bearing force on the disc: radial {radial:.1f} N, tangential {tangential:.1f} N")
     print(
-        f"wheel angle {solution.pose.wheel_angle:.6g} rad; largest unbalanced force {contacts.equilibrium_residual:.1e} N"
+        f"wheel angle {solution.pose.wheel_angle:.6g} rad; "
+        f"largest unbalanced force {contacts.equilibrium_residual:.1e} N"
     )
     print(f"{solution.unknowns:,} unknowns, {solution.pose_iterations} pose iterations, {seconds['total']:.1f} s")
 

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from fem.unilateral import ContactProblem, solve_unilateral_contact
+from fem.unilateral import ContactProblem, find_active_set, solve_unilateral_contact
 from ltca.errors import ConvergenceError
 
 
@@ -62,9 +62,22 @@ def test_start_does_not_matter():
         np.testing.assert_allclose(answer, answers[0], atol=1e-10)
 
 
-def test_nothing_in_contact_is_an_error():
-    problem = ContactProblem(compliance=np.eye(2), gap=np.ones(2), motions=np.zeros((2, 1)), external=np.array([0.0]))
-    with pytest.raises(ConvergenceError, match="no contact is left"):
+def test_empty_start_is_a_start():
+    problem = random_problem(4)
+    solution = solve_unilateral_contact(problem, np.zeros(7, dtype=bool))
+    np.testing.assert_allclose(solution.pressure, enumerate_sets(problem)[0], atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_interior_point_finds_the_set(seed):
+    problem = random_problem(seed)
+    np.testing.assert_array_equal(find_active_set(problem), enumerate_sets(problem)[0] > 1e-9)
+
+
+def test_load_no_pressure_can_balance_is_an_error():
+    """Contact can only push: a load that would need a pull has no answer."""
+    problem = ContactProblem(compliance=np.eye(2), gap=np.ones(2), motions=np.ones((2, 1)), external=np.array([-1.0]))
+    with pytest.raises(ConvergenceError, match="balance the load"):
         solve_unilateral_contact(problem, np.array([True, False]))
 
 
