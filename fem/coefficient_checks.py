@@ -52,7 +52,7 @@ def near_field_unit(dataset: xr.Dataset, body: str) -> float:
 
 
 def station_resultants(dataset: xr.Dataset) -> FloatArray:
-    """Return force in x, y and moment about the disc centre of a newton into the disc at each station, (3, stations)."""
+    """Return force in x, y and moment about the disc centre of a newton at each station, shape (3, stations)."""
     point = dataset["station_x"].values + 1j * dataset["station_y"].values
     inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
     return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])
@@ -89,8 +89,9 @@ def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
             name="convergence: change from a mesh of twice the size",
             value=float(dataset.attrs["convergence_estimate"]),
             lowest=0.0,
-            highest=3e-3,
-            reason="of the largest entry without rigid motions; loads then change by less than that",
+            highest=1.2e-2,
+            reason="of the largest entry without rigid motions; halving the size divides it by 5 (measured; by 4 or "
+            "more with quadratic elements), so a mesh of half the size changes it by less than 0.3 %",
         ),
     )
 
@@ -167,7 +168,9 @@ def _check_closed_forms(dataset: xr.Dataset) -> tuple[Check, ...]:
         "tenth, some per cent of ln 2 at worst"
     )
     return (
-        Check(name="near field, disc, worst station", value=_farthest(slopes), lowest=0.96, highest=1.04, reason=reason),
+        Check(
+            name="near field, disc, worst station", value=_farthest(slopes), lowest=0.96, highest=1.04, reason=reason
+        ),
         Check(
             name="near field, pin, roller, race",
             value=_farthest(np.array(round_slopes)),

@@ -16,6 +16,7 @@ from fem.gmsh_session import load_gmsh
 from fem.influence_coefficients import (
     EDGE_SHARE,
     GROWTH,
+    LARGEST_SIZE,
     ROUND_SIZE,
     WIDE_RATIO,
     DerivedDisc,
@@ -24,6 +25,8 @@ from fem.influence_coefficients import (
     derive_pin,
     derive_race,
     derive_roller,
+    require_disc_memory,
+    require_element_size,
 )
 from fem.stations import DiscStations, nominal_shape
 from ltca.drive import Drive
@@ -89,10 +92,12 @@ def derive_coefficients(
     MemoryLimitError
         When mesh and solution would not fit into memory.
     """
+    require_element_size(size, LARGEST_SIZE / COARSER)
     tell = progress or (lambda step: None)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
     places = DiscStations.of_disc(shapes.disc, stations)
+    require_disc_memory(shapes.disc, places, size)
     materials, thickness = nominal.materials, nominal.disc.thickness
 
     def derive(size: float, note: str) -> tuple[DerivedDisc, DerivedRound, DerivedRound, DerivedRound]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,22 @@ from fem.mesh_file import written_whole
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def require_writable(path: Path) -> None:
+    """Make the folder of a file to come and check that it can be written to, before the work for it is done.
+
+    Raises
+    ------
+    MeshError
+        When it cannot.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise MeshError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:

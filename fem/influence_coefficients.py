@@ -32,9 +32,9 @@ IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
 # Element edge at a patch for its half-width, and growth of the edge by distance, on a mesh of size 1. Measured on
-# the paper's disc: 0.01 % of the largest entry off a mesh of three quarters of the size.
-EDGE_SHARE = 0.35
-GROWTH = 0.35
+# the paper's disc: 0.3 % of the largest entry between this size and twice it, 0.05 % between it and half of it.
+EDGE_SHARE = 0.4
+GROWTH = 0.4
 # Pins, rollers and race are small: a mesh of half the size costs nothing.
 ROUND_SIZE = 0.5
 # Elements stay small to this distance from the middle of a patch, in half-widths.
@@ -44,6 +44,8 @@ WIDE_STEP = 16
 WIDE_RATIO = 2.0
 # Stations whose displacement is solved for once more, to measure reciprocity by another way than the matrix.
 SAMPLED = 12
+# Beyond this the edges are longer than the patches are wide.
+LARGEST_SIZE = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,13 +114,36 @@ def _refinements(points: ComplexArray, half_width: float, size: float) -> list[R
     return [Refinement(float(point.real), float(point.imag), edge, ZONE * half_width) for point in points]
 
 
-def _require_size(size: float) -> None:
-    if not (np.isfinite(size) and 0.0 < size <= 4.0):
-        raise MeshError(f"element size {size:g}: must be greater than 0 and at most 4 (a multiple of the default edge)")
+def require_element_size(size: float, largest: float = LARGEST_SIZE) -> None:
+    """Check a multiple of the default element edge.
+
+    Raises
+    ------
+    MeshError
+        When it is not positive or above the largest.
+    """
+    if not (np.isfinite(size) and 0.0 < size <= largest):
+        raise MeshError(
+            f"element size {size:g}: must be greater than 0 and at most {largest:g} (a multiple of the default edge)"
+        )
 
 
 def _growth(size: float) -> float:
     return min(GROWTH * size, 1.0)
+
+
+def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> None:
+    """Check that the disc's mesh and solution will fit into memory.
+
+    Raises
+    ------
+    MemoryLimitError
+        With the numbers.
+    """
+    refinements = _refinements(stations.points, float(stations.half_width.min()), size)
+    coarse = default_coarse_size(shape, size)
+    unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=_growth(size))
+    require_memory(unknowns, solution_memory(unknowns), "the disc for its influence coefficients")
 
 
 def mesh_disc_for_stations(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> BodyMesh:
@@ -140,12 +165,10 @@ def mesh_disc_for_stations(shape: DiscShape, stations: DiscStations, size: float
     MemoryLimitError
         When mesh and solution would not fit into memory.
     """
-    _require_size(size)
+    require_element_size(size)
+    require_disc_memory(shape, stations, size)
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
-    coarse = default_coarse_size(shape, size)
-    unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=_growth(size))
-    require_memory(unknowns, solution_memory(unknowns), "the disc for its influence coefficients")
-    return mesh_disc(shape, refinements, coarse_size=coarse, growth=_growth(size))
+    return mesh_disc(shape, refinements, coarse_size=default_coarse_size(shape, size), growth=_growth(size))
 
 
 def derive_disc(
@@ -290,7 +313,7 @@ def derive_race(
 
 
 def _mesh_round(shape: Shape, angles: FloatArray, size: float) -> tuple[BodyMesh, float]:
-    _require_size(size)
+    require_element_size(size)
     finer = ROUND_SIZE * size
     width = patch_half_width(shape)
     refinements = _refinements(shape.curves[0].points(angles), width, finer)

@@ -28,8 +28,9 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ComplexArray = NDArray[np.complex128]
 
-# Between two vertices the integrand is cos²φ times a quadratic in s = b sin φ and the normal: six points leave 1e-12.
-GAUSS = np.polynomial.legendre.leggauss(6)
+# Between two vertices the integrand is cos²φ times a quadratic in s = b sin φ; where the patch lies within one edge,
+# φ runs over all of π, and ten points leave 1e-13.
+GAUSS = np.polynomial.legendre.leggauss(10)
 # Length of a quadratic edge whose speed varies by some per cent: four points leave 1e-12.
 LENGTH_GAUSS = np.polynomial.legendre.leggauss(4)
 # A patch must be small against its boundary: it may cover this part of it.

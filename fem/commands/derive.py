@@ -21,7 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=1.0,
         metavar="N",
-        help="number of stations as a multiple of the default (16 for each lobe, 48 on the bore, 16 on each hole)",
+        help="number of stations as a multiple of the default (32 for each lobe, 48 on the bore, 24 on each hole)",
     )
     parser.add_argument(
         "--size", type=float, default=1.0, metavar="S", help="element edge as a multiple of the default; 0.5 halves it"
@@ -62,8 +62,9 @@ def execute(arguments: argparse.Namespace) -> int:
 
     from fem.coefficient_checks import check_coefficients
     from fem.coefficient_dataset import derive_coefficients
-    from fem.coefficient_file import read_coefficients, write_coefficients
+    from fem.coefficient_file import read_coefficients, require_writable, write_coefficients
 
+    require_writable(out)
     start = time.perf_counter()
     show = _progress()
     dataset = derive_coefficients(
