@@ -148,7 +148,7 @@ class Placement:
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, n_BR)."""
-        return self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles
+        return np.asarray(self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles)
 
     def roller_rays(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the unit vectors of the cage rays, e^{iθ_b,n}, in the fixed frame, shape (…, n_BR)."""

@@ -55,7 +55,9 @@ class ProfileDeviation:
 
             knots = np.array([*errors.parameter, errors.parameter[0] + 2.0 * pi])
             pieces = CubicSpline(knots, [*errors.deviation, errors.deviation[0]], bc_type="periodic").c
-        return cls(orders=errors.orders, amplitudes=cosine - 1j * sine, knots=knots, pieces=pieces)
+        return cls(
+            orders=errors.orders, amplitudes=np.asarray(cosine - 1j * sine, dtype=complex), knots=knots, pieces=pieces
+        )
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ProfileDeviation:
         """Return the deviation of some positions of a batch."""

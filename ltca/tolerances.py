@@ -219,7 +219,7 @@ class Factors:
             columns = slice(column, column + (count or 1))
             drawn[:, columns] = distribution.quantile(probability[:, columns])
             column = columns.stop
-        return drawn + np.array(self.centres)
+        return np.asarray(drawn + np.array(self.centres))
 
     def values(self, row: FloatArray) -> dict[str, float | tuple[float, ...]]:
         """Return the fields of one sample by path, arrays whole."""

@@ -103,8 +103,8 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         )
         for sample, message in found.failures[:5]:
             print(f"  sample {sample}: {' '.join(message.split())[:200]}")
-    first = next(iter(found.quantities), None)
-    if first is not None:
-        worst = found.quantities[first].largest_sample
-        print(f"worst by {QUANTITIES[first].description}: cyclo run {write_sample(study, folder, worst)}")
+    leading = next(iter(found.quantities), None)
+    if leading is not None:
+        worst = found.quantities[leading].largest_sample
+        print(f"worst by {QUANTITIES[leading].description}: cyclo run {write_sample(study, folder, worst)}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")

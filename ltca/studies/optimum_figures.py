@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -49,9 +50,8 @@ def _front(optimum: Optimum) -> Figure:
     axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
     # Far candidates would squeeze the front into a corner.
     shown_points = np.concatenate([points[optimum.front], [optimum.start[:2] * scale]])
-    for low, high, bound in zip(
-        shown_points.min(axis=0), shown_points.max(axis=0), (axes.set_xlim, axes.set_ylim), strict=True
-    ):
+    setters: tuple[Any, Any] = (axes.set_xlim, axes.set_ylim)
+    for low, high, bound in zip(shown_points.min(axis=0), shown_points.max(axis=0), setters, strict=True):
         room = max(high - low, 1e-9 * abs(high))
         bound(low - 0.15 * room, high + 0.6 * room)
     axes.set_xlabel(_label(optimum.problem.aims[0]))
