@@ -124,7 +124,7 @@ def analyse(
     >>> from ltca.drive_file import load_drive
     >>> result = analyse(load_drive("paper").cases["CS-1"], np.array([0.5]))
     >>> print(f"{result.bearing_tangential[0]:.0f} N")
-    6740 N
+    6738 N
     """
     torque = drive.load.torque if torque is None else torque
     used = _contacts_of(method, contacts)

@@ -126,7 +126,7 @@ def test_stagnation_is_an_error_with_its_history(models):
         def respond(self, crank_angle, pose, start=None):
             response = models["CS-1"].respond(crank_angle, pose, start)
             self.looks += 1
-            return replace(response, force=[*response.force, 0.0, 100000.0 * (-1.0) ** self.looks, 0.0, 0.0])
+            return replace(response, force=response.force + np.array([0.0, 1e5 * (-1.0) ** self.looks, 0.0, 0.0]))
 
     with pytest.raises(ConvergenceError, match=r"crank angle 0.1 rad .*residual in N") as caught:
         solve_equilibrium(Stubborn(), np.array([0.1]), -1e5)
