@@ -33,7 +33,7 @@ from validation.rows import Row
 
 FloatArray = NDArray[np.float64]
 
-CASE, CRANK_ANGLE, SIZE = "CS-1", 0.5, 4.0
+CASE, CRANK_ANGLE, SIZE = "CS-1", 0.5, 6.0
 COMMAND = "python -m validation.other_codes"
 STORED = "stored/other_codes.json"
 LIMITS = {

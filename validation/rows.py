@@ -132,26 +132,50 @@ def range_row(
     level: int,
     quantity: str,
     value: float,
+    reference: float,
     lowest: float,
     highest: float,
     unit: str,
     reason: str,
-    *,
-    reference: float | None = None,
     **place: Any,
 ) -> Row:
-    """Return a row whose value must lie in a range: the difference is from its middle, the limit half its width."""
-    middle = 0.5 * (lowest + highest)
+    """Return a row whose value must lie in a range about the reference.
+
+    The difference is value less reference; its limit is the distance of the reference from the bound on that side.
+
+    Raises
+    ------
+    ValueError
+        When the reference lies outside the range.
+    """
+    if not lowest <= reference <= highest:
+        raise ValueError(f"{quantity}: reference {reference:g} outside {lowest:g} to {highest:g}")
     return Row(
         level=level,
         quantity=quantity,
         value=value,
-        reference=middle if reference is None else reference,
+        reference=reference,
         unit=unit,
-        difference=value - middle,
+        difference=value - reference,
         difference_unit=unit,
-        limit=0.5 * (highest - lowest),
-        reason=f"{lowest:g} to {highest:g} {unit}: {reason}".replace(" :", ":"),
+        limit=highest - reference if value >= reference else reference - lowest,
+        reason=f"within {lowest:g} … {highest:g}{f' {unit}' if unit else ''}: {reason}",
+        **place,
+    )
+
+
+def positive_row(level: int, quantity: str, value: float, unit: str, reason: str, **place: Any) -> Row:
+    """Return a row whose value must not be negative: the difference is what it falls short of zero by."""
+    return Row(
+        level=level,
+        quantity=quantity,
+        value=value,
+        reference=None,
+        unit=unit,
+        difference=value if math.isnan(value) else max(0.0, -value),
+        difference_unit=unit,
+        limit=0.0,
+        reason=f"must be positive: {reason}",
         **place,
     )
 
