@@ -197,8 +197,12 @@ class HalfSpaceCompliance:
         pin_radii = np.ones((1, 1))
         if not drives[0].pin_wheel.pin_profile.is_cylinder:
             radii = each.placement.wheel_pin_radii
-            pin_radii = np.stack([each.profile.effective_radius(turn[None, :], r(radii, axis=1, keepdims=True))
-                                  for r in (np.min, np.max)])
+            pin_radii = np.stack(
+                [
+                    each.profile.effective_radius(turn[None, :], r(radii, axis=1, keepdims=True))
+                    for r in (np.min, np.max)
+                ]
+            )
         return cls._of_geometry(geometry, drives[0], pin_radii, stiffness)
 
     @classmethod
@@ -368,9 +372,7 @@ def assemble_response(
     )
 
 
-def spring_load_and_stiffness(
-    approach: FloatArray, stiffness: float | FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the load of unilateral springs and its derivative, N and N/mm (Eq. 77)."""
     return stiffness * np.maximum(approach, 0.0), np.where(approach > 0.0, stiffness, 0.0)
 

@@ -65,7 +65,14 @@ def draw_spectrum(spectrum: Spectrum, title: str, stem: Path) -> Path:
         largest = np.argsort(-heights)[:NAMED]
         for row, number in enumerate(largest):
             order = spectrum.orders[number]
-            axes.text(float(values[number]), float(heights[number]), f"{order.value:.4g}", fontsize=7.0, ha="center", va="bottom")
+            axes.text(
+                float(values[number]),
+                float(heights[number]),
+                f"{order.value:.4g}",
+                fontsize=7.0,
+                ha="center",
+                va="bottom",
+            )
             axes.text(
                 0.42, 0.96 - 0.055 * row, f"{order.value:>8.4f}  {heights[number]:.3f}″  {order.name}",
                 transform=axes.transAxes, fontsize=7.5, family="monospace",

@@ -114,4 +114,3 @@ class ProfileErrors:
     def is_zero(self) -> bool:
         """Whether the flank is as designed."""
         return not (any(self.cosine) or any(self.sine) or any(self.deviation))
-

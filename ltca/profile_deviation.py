@@ -71,9 +71,7 @@ class ProfileDeviation:
         amplitudes = np.array([item.cosine or zeros for item in errors]) - 1j * np.array(
             [item.sine or zeros for item in errors]
         )
-        measured = cls.of_errors(
-            ProfileErrors(parameter=errors[0].parameter, deviation=errors[0].deviation)
-        )
+        measured = cls.of_errors(ProfileErrors(parameter=errors[0].parameter, deviation=errors[0].deviation))
         return cls(
             orders=orders,
             amplitudes=np.repeat(amplitudes, positions, axis=0),

@@ -121,7 +121,9 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
                 problems.append(describe_mistake(detail))
             continue
         if abs(distribution.mean) >= distribution.tolerance:
-            problems.append(f"tolerances.{path}.mean = {distribution.mean:g}: must be smaller in size than the tolerance")
+            problems.append(
+                f"tolerances.{path}.mean = {distribution.mean:g}: must be smaller in size than the tolerance"
+            )
         elif distribution.distribution == "uniform" and "cpk" in values:
             problems.append(f"tolerances.{path}.cpk: has no meaning for a uniform distribution")
         else:
@@ -182,7 +184,9 @@ class Factors:
             value = read_field(drive, path)
             centres += [value] if count is None else value
         if not found:
-            problems.append("tolerances: is missing or empty, so nothing scatters; see the shipped drive for an example")
+            problems.append(
+                "tolerances: is missing or empty, so nothing scatters; see the shipped drive for an example"
+            )
         if problems:
             raise DriveError(problems)
         return cls(fields=tuple(found), centres=tuple(centres), distributions=tuple(tolerances.values()))

@@ -86,7 +86,9 @@ def torque_curve(
     """
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rated = abs(drive.wheel_moment())
-    parts = np.unique(np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, LOST_MOTION, STIFF_FROM]]))
+    parts = np.unique(
+        np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, LOST_MOTION, STIFF_FROM]])
+    )
     torque = rated * np.concatenate([-parts[::-1], parts])
     model = build(drive)
     found = solve_equilibrium(model, np.repeat(angles, torque.size), np.tile(torque, angles.size))

@@ -80,7 +80,9 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
     for first in (1, 2):
         for second in (1, 2):
             parts = f"{first} z_C", f"{second} z_PS"
-            names.append(Order(float(abs(first * flank - second * holes)), f"flank and holes, |{parts[0]} − {parts[1]}|"))
+            names.append(
+                Order(float(abs(first * flank - second * holes)), f"flank and holes, |{parts[0]} − {parts[1]}|")
+            )
             names.append(Order(float(first * flank + second * holes), f"flank and holes, {parts[0]} + {parts[1]}"))
     names += [Order(1.0, "crank, 1")]
     for multiple in range(1, harmonics + 1):

@@ -44,7 +44,10 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.studies.optimiser import Problem, batch_analysis, optimise, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
-    for name, value, bound in (("--positions", arguments.positions, 100_000), ("--generations", arguments.generations, 10_000)):
+    for name, value, bound in (
+        ("--positions", arguments.positions, 100_000),
+        ("--generations", arguments.generations, 10_000),
+    ):
         if not 1 <= value <= bound:
             raise DriveError([f"{name} = {value}: must be from 1 to {bound}"])
     aims = tuple(dict.fromkeys(arguments.minimise))
@@ -103,7 +106,9 @@ def _print(optimum: Optimum) -> None:
     from ltca.studies.study_figures import shown
 
     problem = optimum.problem
-    print(f"{len(optimum.variables)} candidates in {optimum.generations} batches, {optimum.feasible.sum()} within the limits")
+    print(
+        f"{len(optimum.variables)} candidates in {optimum.generations} batches, {optimum.feasible.sum()} within the limits"
+    )
     print(f"{'':<48}{'as it is':>12}{'found':>12}")
     for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):
         print(f"{variable.path:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")

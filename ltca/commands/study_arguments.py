@@ -98,7 +98,9 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
         print(f"  {QUANTITIES[name].description}: {', '.join(first)} (linear: {100.0 * entry['explained']:.0f} %)")
     if found.failures:
-        print(f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}")
+        print(
+            f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}"
+        )
         for sample, message in found.failures[:5]:
             print(f"  sample {sample}: {' '.join(message.split())[:200]}")
     first = next(iter(found.quantities), None)

@@ -15,9 +15,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("drive", metavar="DRIVE", help="drive file with [tolerances], or 'paper' for the shipped drive")
     parser.add_argument("--case", metavar="NAME", help="case to study; default the first")
-    parser.add_argument(
-        "--samples", metavar="N", type=int, default=DEFAULT_SAMPLES, help=f"default {DEFAULT_SAMPLES}"
-    )
+    parser.add_argument("--samples", metavar="N", type=int, default=DEFAULT_SAMPLES, help=f"default {DEFAULT_SAMPLES}")
     parser.add_argument(
         "--positions",
         metavar="M",

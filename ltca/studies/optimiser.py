@@ -66,7 +66,9 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     element = parent in kinds and kinds[parent].is_array
     found = [name] if name in kinds or element else [path for path in kinds if path.rpartition(".")[2] == name]
     if len(found) != 1:
-        hint = f"may be {' or '.join(found)}: give the whole path" if found else "is not a field of the drive definition"
+        hint = (
+            f"may be {' or '.join(found)}: give the whole path" if found else "is not a field of the drive definition"
+        )
         raise DriveError([f"--vary {name}: {hint}"])
     path = found[0]
     unit = kinds[parent if element else path].unit

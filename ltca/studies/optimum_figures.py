@@ -49,7 +49,9 @@ def _front(optimum: Optimum) -> Figure:
     axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
     # Far candidates would squeeze the front into a corner.
     shown_points = np.concatenate([points[optimum.front], [optimum.start[:2] * scale]])
-    for low, high, bound in zip(shown_points.min(axis=0), shown_points.max(axis=0), (axes.set_xlim, axes.set_ylim), strict=True):
+    for low, high, bound in zip(
+        shown_points.min(axis=0), shown_points.max(axis=0), (axes.set_xlim, axes.set_ylim), strict=True
+    ):
         room = max(high - low, 1e-9 * abs(high))
         bound(low - 0.15 * room, high + 0.6 * room)
     axes.set_xlabel(_label(optimum.problem.aims[0]))

@@ -103,7 +103,9 @@ class Quantity:
     evaluate: Callable[[SampleBatch], FloatArray]
 
 
-def _quantity(unit: str, description: str, evaluate: Callable[[SampleBatch], FloatArray], stage: Stage = "full") -> Quantity:
+def _quantity(
+    unit: str, description: str, evaluate: Callable[[SampleBatch], FloatArray], stage: Stage = "full"
+) -> Quantity:
     return Quantity(unit=unit, stage=stage, description=description, evaluate=evaluate)
 
 
@@ -124,7 +126,9 @@ QUANTITIES: dict[str, Quantity] = {
     "max_roller_pressure_mid": _quantity(
         "MPa",
         "largest roller pressure at mid-width",
-        lambda b: np.maximum(b.by_sample(b.pressures.outer.mid).max(axis=1), b.by_sample(b.pressures.inner.mid).max(axis=1)),
+        lambda b: np.maximum(
+            b.by_sample(b.pressures.outer.mid).max(axis=1), b.by_sample(b.pressures.inner.mid).max(axis=1)
+        ),
     ),
     "max_pin_shaft_load": _quantity(
         "N", "largest load of a shaft pin", lambda b: b.by_sample(b.full.response.hole_load).max(axis=1)

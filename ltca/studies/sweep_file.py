@@ -88,7 +88,9 @@ def load_sweep(path: Path) -> Study:
 def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study") -> Study:
     """Validate the table of a sweep file; see `load_sweep`."""
     reader = _Reader(source=source, problems=[])
-    reader.problems += [f"{key}: is not a key of a study; there are {', '.join(sorted(KEYS))}" for key in table.keys() - KEYS]
+    reader.problems += [
+        f"{key}: is not a key of a study; there are {', '.join(sorted(KEYS))}" for key in table.keys() - KEYS
+    ]
     file = load_drive(drive)
     factors_table = table.get("factors")
     if not isinstance(factors_table, Mapping) or not factors_table:

@@ -39,7 +39,9 @@ def test_one_pin_moved_inward_turns_the_wheel_by_its_closed_form(paper_cases):
         # Moving the pin by −h outward presses it by h n·r; the wheel turns back by that over its rate of approach.
         closer = FEELER * (normal * out.conjugate()).real
         expected = -closer / gradient[row, pin, WHEEL_ANGLE]
-        moved, touching = first_contact(ContactGeometry.of_drive(moved_inward(drive, int(pin))), angles[[row]], WHEEL_ANGLE, -1)
+        moved, touching = first_contact(
+            ContactGeometry.of_drive(moved_inward(drive, int(pin))), angles[[row]], WHEEL_ANGLE, -1
+        )
         assert touching[0] == pin or expected * -1 < 0  # moved away, another pin may touch first
         if touching[0] == pin:
             # second order: h² over the flank's radius of some 16 mm and over the lever of 56 mm, 6 nm of 10 µm

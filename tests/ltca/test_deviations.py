@@ -53,7 +53,9 @@ def flank_by_definition(theta):
     """Eq. 1 with its own angle ψ, moved along the normal and off the bore; nothing taken from the package."""
     z, e, R, r = 14, 4.0, 88.09, 6.65
     psi = np.arctan2(np.sin((1 - z) * theta), R / (e * z) - np.cos((1 - z) * theta))
-    delta = 0.01 * np.cos(2 * theta) - 0.006 * np.sin(2 * theta) - 0.004 * np.cos(13 * theta) + 0.003 * np.sin(13 * theta)
+    delta = (
+        0.01 * np.cos(2 * theta) - 0.006 * np.sin(2 * theta) - 0.004 * np.cos(13 * theta) + 0.003 * np.sin(13 * theta)
+    )
     delta = delta + spline(theta)
     nominal = R * np.exp(1j * theta) - e * np.exp(1j * z * theta) - r * np.exp(1j * (theta + psi))
     return nominal + delta * np.exp(1j * (theta + psi)) + 0.03 * np.exp(0.7j)
@@ -95,7 +97,9 @@ def test_approach_against_brute_force(deviated):
 
             grid = np.linspace(0.0, 2.0 * np.pi, 4200, endpoint=False)
             best = grid[np.argmin(distance(grid))]
-            least = minimize_scalar(distance, bounds=(best - 2e-3, best + 2e-3), method="bounded", options={"xatol": 1e-12})
+            least = minimize_scalar(
+                distance, bounds=(best - 2e-3, best + 2e-3), method="bounded", options={"xatol": 1e-12}
+            )
             assert found[row, pin] == pytest.approx(6.5 - least.fun, abs=1e-11)
         for hole in range(8):
             ray = np.exp(2j * np.pi * hole / 8)
@@ -147,7 +151,12 @@ def test_offset_of_every_axis_together_is_no_deviation(paper_cases):
     """Crank and wheel moved alike against the pin shaft act like shaft pins moved the other way."""
     drive = paper_cases["CS-3"]
     x, y = 0.012, -0.007
-    both = {"crank.axis_offset.x": x, "crank.axis_offset.y": y, "pin_wheel.axis_offset.x": x, "pin_wheel.axis_offset.y": y}
+    both = {
+        "crank.axis_offset.x": x,
+        "crank.axis_offset.y": y,
+        "pin_wheel.axis_offset.x": x,
+        "pin_wheel.axis_offset.y": y,
+    }
     rays = np.exp(2j * np.pi * np.arange(8) / 8)
     shift = (-x - 1j * y) * rays.conjugate()
     pins = {
@@ -172,17 +181,21 @@ def test_runout_along_the_bore_offset(paper_cases):
     step = amount * np.exp(1j * (angle + pose[:, 2]))
     shifted[:, 0] += step.real
     shifted[:, 1] += step.imag
-    np.testing.assert_allclose(
-        geometry.flank(angles, pose).approach, plain.flank(angles, shifted).approach, atol=1e-13
-    )
+    np.testing.assert_allclose(geometry.flank(angles, pose).approach, plain.flank(angles, shifted).approach, atol=1e-13)
 
 
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
-        ({"disc.profile_errors.orders": (2,), "disc.profile_errors.cosine": (0.1, 0.1)}, "cosine has 2 values: must have 1"),
+        (
+            {"disc.profile_errors.orders": (2,), "disc.profile_errors.cosine": (0.1, 0.1)},
+            "cosine has 2 values: must have 1",
+        ),
         ({"disc.profile_errors.orders": (2, 2)}, "must name each order once"),
-        ({"disc.profile_errors.parameter": (1.0, 0.5, 2.0), "disc.profile_errors.deviation": (0.0, 0.0, 0.1)}, "ascending"),
+        (
+            {"disc.profile_errors.parameter": (1.0, 0.5, 2.0), "disc.profile_errors.deviation": (0.0, 0.0, 0.1)},
+            "ascending",
+        ),
         ({"disc.profile_errors.parameter": (1.0, 1.5, 2.0)}, "deviation has 0 values: must have 3"),
         ({"disc.profile_errors.orders": (300,), "disc.profile_errors.cosine": (0.2,)}, "folds back|hollow"),
         ({"crank.eccentricity_error": 1.0}, r"crank\.eccentricity_error = 1 mm: must be at most 0\.5 mm"),
