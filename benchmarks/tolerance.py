@@ -3,8 +3,8 @@
     python benchmarks/tolerance.py [--samples 10000] [--scheduler tcp://host:port]
 
 Prints positions per second with one and two workers (starting processes included, and the steady rate after the first
-batch of every worker), CPU time per position, failures, and whether the files are the same byte for byte. On a machine with
-other work the wall times are theirs as well: compare CPU times and the load printed beside them.
+batch of every worker), CPU time per position of the one worker, failures, and whether the files are the same byte for
+byte. On a machine with other work the wall times are theirs as well: look at the CPU time and the load printed beside.
 """
 
 from __future__ import annotations

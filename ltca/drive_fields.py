@@ -44,7 +44,7 @@ def field_kinds() -> dict[str, FieldKind]:
     return dict(_kinds(Drive, ""))
 
 
-def _kinds(owner: type, prefix: str) -> Iterator[tuple[str, FieldKind]]:
+def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path = f"{prefix}{name}"
         if is_dataclass(hint):
@@ -164,7 +164,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
             branch = branch.setdefault(step, {})
         branch[name] = value
     problems: list[str] = []
-    changed = _replaced(drive, tree, "", problems)
+    changed: Drive = _replaced(drive, tree, "", problems)
     if not problems and check:
         problems += find_contradictions(changed)
     if problems:

@@ -1,8 +1,8 @@
 r"""Distributions of the fields of a drive: the ``[tolerances]`` table that studies read.
 
 A tolerance is the ±T of the drawing about the field's value. A normal distribution takes its standard deviation from
-it by the process capability, C_pk = (T − |mean|)/(3σ) (ISO 22514-2 for a symmetric tolerance); truncated means that parts
-outside ±T are sorted out.
+it by the process capability, C_pk = (T − |mean|)/(3σ) (ISO 22514-2 for a symmetric tolerance); truncated means that
+parts outside ±T are sorted out.
 """
 
 from __future__ import annotations
@@ -219,7 +219,7 @@ class Factors:
             columns = slice(column, column + (count or 1))
             drawn[:, columns] = distribution.quantile(probability[:, columns])
             column = columns.stop
-        return drawn + np.array(self.centres)
+        return np.asarray(drawn + np.array(self.centres))
 
     def values(self, row: FloatArray) -> dict[str, float | tuple[float, ...]]:
         """Return the fields of one sample by path, arrays whole."""

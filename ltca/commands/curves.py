@@ -106,7 +106,7 @@ def _solve(
     # The crank turns against the disc, which does not turn: every turn of the crank is one of the bearing.
     hours = None if arguments.speed is None else life.life * 1e6 / (60.0 * arguments.speed)
 
-    def per_arcmin(stiffness: float) -> float:
+    def per_arcmin(stiffness: Any) -> Any:
         return stiffness / ARCMIN / 1e3
 
     print(f"{title}: torque curve at {ANGLES} crank angles over one mesh")

@@ -95,16 +95,20 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         print(f"{head:<48}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
-        first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
-        print(f"  {QUANTITIES[name].description}: {', '.join(first)} (linear: {100.0 * entry['explained']:.0f} %)")
+        leading = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
+        together = f"first order together: {100.0 * entry['explained']:.0f} %"
+        print(f"  {QUANTITIES[name].description}: {', '.join(leading)} ({together})")
+    linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
+    if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
+        print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
     if found.failures:
         print(
             f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}"
         )
         for sample, message in found.failures[:5]:
             print(f"  sample {sample}: {' '.join(message.split())[:200]}")
-    first = next(iter(found.quantities), None)
-    if first is not None:
+    if found.quantities:
+        first = next(iter(found.quantities))
         worst = found.quantities[first].largest_sample
         print(f"worst by {QUANTITIES[first].description}: cyclo run {write_sample(study, folder, worst)}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")

@@ -63,8 +63,8 @@ class Engine:
             with _cluster(self.scheduler) as found:
                 yield found
         elif self.workers > 1:
-            # Never a fork of this process, which may have threads; where there is a fork server it imports the suite and
-            # builds the tables once, and every worker starts as its copy.
+            # Never a fork of this process, which may have threads. Where there is a fork server it imports the suite
+            # and builds the tables once, and every worker starts as its copy.
             server = "forkserver" in get_all_start_methods()
             context = get_context("forkserver" if server else "spawn")
             if server:
@@ -102,7 +102,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
             "--scheduler needs dask.distributed, which is not installed: pip install 'cyclo-ltca[cluster]'"
         ) from error
     try:
-        client = Client(address, timeout="10s", set_as_default=False)
+        client: Any = Client(  # type: ignore[no-untyped-call]
+            address, timeout="10s", set_as_default=False
+        )
     except (OSError, ValueError) as error:
         raise CycloError(f"--scheduler = {address}: no scheduler answers there: {error}") from error
     try:

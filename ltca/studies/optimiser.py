@@ -1,8 +1,8 @@
 """Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two aims.
 
-A generation is one batch. Candidates that break a limit or are no sound drive rank behind every one that is fine, by how
-far they break it (the feasibility rule of Deb, Comput. Methods Appl. Mech. Eng. 186, 2000); the best one is refined by
-Nelder and Mead's simplex.
+A generation is one batch. Candidates that break a limit or are no sound drive rank behind every one that is fine, by
+how far they break it (the feasibility rule of Deb, Comput. Methods Appl. Mech. Eng. 186, 2000); the best one is refined
+by Nelder and Mead's simplex.
 """
 
 from __future__ import annotations

@@ -10,8 +10,8 @@ from typing import Any
 from ltca.drive_fields import drive_text
 from ltca.errors import CycloError
 from ltca.output_files import whole_file, write_json
-from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.placement import position_angles
+from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.engine import Engine, solve_batches
 from ltca.studies.storage import StudyFolder
 from ltca.studies.study import Study

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -128,10 +129,9 @@ def _settings(study: Study) -> BatchSettings:
         _NOMINAL.clear()
         _NOMINAL[key] = None
         if study.near_nominal:
-            try:
+            # Where it has no solution samples start from first contact, and say themselves what is wrong.
+            with suppress(CycloError):
                 _NOMINAL[key] = solve_nominal(study.cases[0][1], settings)
-            except CycloError:
-                pass  # samples start from first contact then, and say themselves what is wrong
     return BatchSettings(
         crank_angle=settings.crank_angle,
         quantities=settings.quantities,

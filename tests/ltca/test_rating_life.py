@@ -1,4 +1,4 @@
-"""Rating life against the tables of ISO 281, the integrals behind ISO/TS 16281, and the swapped means of a crank bearing."""
+"""Rating life against ISO 281's tables, the integrals behind ISO/TS 16281, and the swapped means of a crank bearing."""
 
 from __future__ import annotations
 

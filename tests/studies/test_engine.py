@@ -321,7 +321,8 @@ from ltca.studies import storage
 from ltca.studies.storage import StudyFolder
 from ltca.studies.tolerance_study import tolerance_study
 storage.CHUNK = 1024  # so that the smaller study fills several as well
-study = tolerance_study(load_drive("paper"), case="CS-6", samples=int(sys.argv[1]), positions=1, quantities=("max_pin_load",))
+paper, samples = load_drive("paper"), int(sys.argv[1])
+study = tolerance_study(paper, case="CS-6", samples=samples, positions=1, quantities=("max_pin_load",))
 run_study(study, StudyFolder(path=Path(sys.argv[2])), Engine())
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
