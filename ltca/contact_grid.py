@@ -72,7 +72,6 @@ class ContactKind:
     cells: int = CELLS
     pattern: dict[int, NDArray[np.bool_]] = field(default_factory=dict, compare=False, repr=False)
 
-
     @property
     def end_cell(self) -> float:
         """Length that the largest pressure stands for, mm: at an unrelieved end it is singular."""

@@ -16,11 +16,15 @@ from pydantic.dataclasses import dataclass
 from ltca.deviations import (
     STRICT,
     AxisOffset,
-    PlacementErrors,
     ProfileErrors,
-    RollerErrors,
     Runout,
     SignedLength,
+)
+from ltca.deviations import (
+    PlacementErrors as PlacementErrors,
+)
+from ltca.deviations import (
+    RollerErrors as RollerErrors,
 )
 from ltca.units import quantity
 

@@ -82,7 +82,7 @@ def _flank(drive: Drive) -> Iterator[str]:
             f"{profile.root_radius:.6g} mm, must be greater than 0 mm"
         )
     # Gap of every pin in the nominal position: Δr_P − ΔR_C cos ψ, ψ between 0 and asin(e z_P/R).
-    steepest = float(np.sqrt(1.0 - (pitch_radius / float(profile.generating_radius)) ** 2))
+    steepest = float(np.sqrt(1.0 - (pitch_radius / profile.generating_radius) ** 2))
     gap = disc.equidistant_offset - max(disc.shifting_offset, disc.shifting_offset * steepest)
     if gap < -ROUNDING:
         yield (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
 
 from pydantic import ValidationError
 from pydantic.functional_validators import BeforeValidator
@@ -48,7 +48,7 @@ def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path = f"{prefix}{name}"
         if is_dataclass(hint):
-            yield from _kinds(hint, f"{path}.")
+            yield from _kinds(cast(type, hint), f"{path}.")
             continue
         is_array = get_origin(hint) is tuple
         yield path, FieldKind(unit=_unit(get_args(hint)[0] if is_array else hint), is_array=is_array)

@@ -116,6 +116,8 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     drives: dict[str, Drive] = {}
     # Mistakes of the common part come back in every case: the base is validated alone, first.
     base_problems: list[str] = []
+    if isinstance(table["name"], str) and not _names_a_file(table["name"]):
+        base_problems.append(f"name = {table['name']!r}: must be a text that can name a folder, without / and \\")
     base = _validate(table, base_problems)
     if base_problems:
         raise DriveError(problems + base_problems, source)
@@ -130,8 +132,9 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     if not named and base is not None:
         drives[NOMINAL_CASE] = base
         contradictions[NOMINAL_CASE] = find_contradictions(base)
-    # A contradiction in every case is one of the common part: said once.
-    common = [p for p in next(iter(contradictions.values()), []) if all(p in c for c in contradictions.values())]
+    # A contradiction of the common part that no case mends is said once.
+    common = [] if base is None else find_contradictions(base)
+    common = [problem for problem in common if all(problem in found for found in contradictions.values())]
     problems += common
     for name, found in contradictions.items():
         problems += [f"case {name}: {problem}" for problem in found if problem not in common]
@@ -147,13 +150,20 @@ def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
     named: dict[str, dict[str, Any]] = {}
     for number, case in enumerate(cases):
         name = case.get("name")
-        if not isinstance(name, str) or not name.strip() or "/" in name:
+        if not isinstance(name, str):
             problems.append(f"case {number}: name is missing or no text; every [[case]] needs one")
+        elif not _names_a_file(name):
+            problems.append(f"case {number}: name = {name!r}: must be a text that can name a file, without / and \\")
         elif name in named:
             problems.append(f"case {name}: name is used twice; must be unique")
         else:
             named[name] = {key: value for key, value in case.items() if key != "name"}
     return named
+
+
+def _names_a_file(name: str) -> bool:
+    """Results go to files and folders of these names."""
+    return bool(name.strip(" .")) and not any(sign in name for sign in "/\\\0")
 
 
 def _merge(base: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:

@@ -2,8 +2,9 @@ r"""Equilibrium of the floating disc at held crank angles (Eq. 43–44, 70–72,
 
 The pose q minimises Π(q) = Σ U_i(δ_i(q)) − T_load · wheel_angle. Its gradient is the residual, its Hessian the
 4×4 tangent. Before first contact the disc floats and the tangent is singular, so Newton's step is damped
-(Levenberg–Marquardt) and its length bounded; a step is taken when Π does not rise again along it, which the
-residual at its end tells.
+(Levenberg–Marquardt) and its length bounded. Π is convex but for the small geometric part, and stiff where contacts
+open and close: along each step the slope of Π is brought down by a bracketed secant before the step is taken, so Π
+falls in every iteration and no cycle is possible between contacts that take turns.
 """
 
 from __future__ import annotations
@@ -16,24 +17,26 @@ from numpy.typing import NDArray
 
 from ltca.compliance import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
+from ltca.pairs import ContactGeometry
 from ltca.tooth_contact import WHEEL_ANGLE, turn_to_contact
 
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9
 """Largest residual accepted, as a part of the load T/(e z_P)."""
-
-ROUND_OFF = float(np.finfo(float).eps)
-"""Places are known to this part of the pin circle radius; times the stiffness of the contacts it is the residual
-below which none can be told from zero (some 1e-8 N: more than 1e-9 of the load only for torques below 1 N·m)."""
+ROUND_OFF = 4.0 * np.finfo(float).eps
+"""Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
+ROUND_OFF_BOUND = 1e-5
+"""Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 
 ITERATIONS = 200
-SHORTENINGS = 12
-"""Of one step, each to between a fiftieth and a half: enough to come from the largest step to a contact of 1e-5 mm."""
-
 STEP_BOUND = 1e-3
-"""Largest step as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches (µm), short
-against the radius of a flank (mm), and a part, so that the drive's size does not matter."""
+"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
+(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
+It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
+LINE_TRIALS = 12
+SLOPE_LEFT = 0.3
+"""A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,11 +113,21 @@ def solve_equilibrium(
         sense = np.where(moment < 0.0, -1, 1)
         for value in np.unique(sense):
             rows = sense == value
-            # Parts far off their place may interfere at every wheel angle: the search then starts from none.
-            geometry = model.geometry.take(rows)
-            start[rows, WHEEL_ANGLE] = turn_to_contact(geometry, angle[rows], WHEEL_ANGLE, int(value))[0]
+            start[rows, WHEEL_ANGLE] = _take_up(model.geometry.take(rows), angle[rows], int(value))
     search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
     return search.run()
+
+
+def _take_up(geometry: ContactGeometry, angle: FloatArray, sense: int) -> FloatArray:
+    """Wheel angles at first contact; zero where pins interfere so that turning the wheel alone cannot find it."""
+    try:
+        turned = turn_to_contact(geometry, angle, WHEEL_ANGLE, sense)[0]
+        return np.where(np.abs(turned) < np.pi / geometry.placement.reduction_ratio, turned, 0.0)
+    except ConvergenceError:
+        if angle.size == 1:
+            return np.zeros(1)
+        halves = np.array_split(np.arange(angle.size), 2)
+        return np.concatenate([_take_up(geometry.take(half), angle[half], sense) for half in halves])
 
 
 class _Search:
@@ -131,20 +144,28 @@ class _Search:
     ) -> None:
         self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
         self.pose = pose
+        self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
         self.batch = model.geometry.placement.is_batch
         self.history: list[FloatArray] = []
+
+    def levers(self, rows: NDArray[np.intp]) -> FloatArray:
+        """Return the lever arms of some positions: one row for all where the drives are the same."""
+        return self.lever[rows] if self.batch else self.lever
 
     def evaluate(
         self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None
     ) -> tuple[Response, FloatArray, FloatArray]:
         """Return the response, the scaled gradient and the scaled tangent (forces and lengths only)."""
         whole = not self.batch or rows.size == self.angle.size
-        lever = self.lever if whole else self.lever[rows]
+        lever = self.levers(rows)
         model = self.model if whole else cast(BatchModel, self.model).take(rows)
         response = model.respond(self.angle[rows], pose, start)
         gradient = response.force.copy()
         gradient[:, 3] -= self.moment[rows]
         gradient /= lever
+        if np.isnan(gradient).any():
+            row = rows[np.isnan(gradient).any(axis=1)][0]
+            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
         tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
         return response, gradient, tangent
 
@@ -152,46 +173,29 @@ class _Search:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        damping = np.full(count, 1e-6)
+        first_bound = STEP_BOUND * float(np.max(self.lever[..., 3]))
+        damping, bound = np.full(count, 1e-6), np.full(count, first_bound)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
-        reach = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
         for _ in range(ITERATIONS):
             self.history.append(residual.copy())
-            noise = ROUND_OFF * reach * np.trace(tangent, axis1=1, axis2=2)
             # A residual that is no number does not balance either.
-            going = ~(residual[active] <= np.maximum(TOLERANCE * self.load[active], noise))
+            going = ~(residual[active] <= self.accepted(active, tangent))
             active, start = active[going], start.take(going)
             gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
                 return self.finish(iterations, known)
             iterations[active] += 1
-            lever = self.lever[active] if self.batch else self.lever
-            step, slope = _damped_step(tangent, gradient, damping[active], STEP_BOUND * lever[..., 3])
-            trial = self.pose[active] + step / lever
-            response, new_gradient, new_tangent = self.evaluate(active, trial, start)
-            # The slope of Π at the end of a step: where it has risen as steeply as it fell, Π may be higher than
-            # before, and the step is shortened by the secant until it has not.
-            end_slope = np.einsum("bi,bi->b", new_gradient, step)
-            overshoot = end_slope > 0.9 * np.abs(slope)
-            moved = ~overshoot
-            damping[active] = np.where(overshoot, damping[active] * 10.0, damping[active] * 0.1).clip(1e-12, 1e3)
-            back = np.flatnonzero(overshoot)
-            fraction = np.ones(active.size)
-            for _ in range(SHORTENINGS):
-                if back.size == 0:
-                    break
-                fraction[back] *= np.clip(-slope[back] / (end_slope - slope)[back], 0.02, 0.5)
-                trial[back] = self.pose[active[back]] + fraction[back, None] * (step / lever)[back]
-                _, new_gradient[back], new_tangent[back] = self.evaluate(active[back], trial[back], start.take(back))
-                end_slope[back] = np.einsum("bi,bi->b", new_gradient[back], step[back])
-                back = back[end_slope[back] > 0.9 * np.abs(slope[back])]
-            new_residual = np.max(np.abs(new_gradient), axis=1)
-            self.pose[active] = trial
-            residual[active] = new_residual
-            gradient, tangent = new_gradient, new_tangent
-            start = start.replaced(moved, Start.after(response).take(moved))
+            step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
+            taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
+            self.pose[active] = taken
+            self.refuse_slip(active, residual)
+            residual[active] = np.max(np.abs(gradient), axis=1)
+            bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
+            bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
+            damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
+            damping[active] = damping[active].clip(1e-12, 1e3)
             known = known.replaced(active, start)
         worst = int(np.argmax(residual / self.load))
         raise ConvergenceError(
@@ -200,6 +204,58 @@ class _Search:
             f"{self.load[worst]:.4g} N",
             [float(values[worst]) for values in self.history],
         )
+
+    def refuse_slip(self, rows: NDArray[np.intp], residual: FloatArray) -> None:
+        """Stop where wheel or disc has turned by half a pin pitch: the teeth have slipped, other pins would carry."""
+        turned = np.max(np.abs(self.pose[rows][:, 2:]), axis=1)
+        pitch = np.pi / self.model.geometry.placement.reduction_ratio
+        if np.max(turned) > pitch:
+            worst = rows[int(np.argmax(turned))]
+            self.history.append(residual.copy())
+            raise ConvergenceError(
+                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): "
+                f"the teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
+                f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
+                [float(values[worst]) for values in self.history],
+            )
+
+    def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
+        """Return the largest residual that counts as balance, N."""
+        size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
+        round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
+        load = self.load[rows]
+        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
+
+    def walk(
+        self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Start, FloatArray]:
+        """Walk along the steps until Π stops falling: poses, gradients, tangents, starts there, parts of the steps."""
+        low, high = np.zeros(rows.size), np.ones(rows.size)
+        low_slope, high_slope = slope.copy(), np.zeros(rows.size)
+        fraction = np.ones(rows.size)
+        step_pose = step / self.levers(rows)
+        pose = self.pose[rows] + step_pose
+        response, gradient, tangent = self.evaluate(rows, pose, start)
+        start = Start.after(response)
+        # Longer than the minimum: round-off of the slope must not send a step back.
+        noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
+        end = np.einsum("bi,bi->b", gradient, step)
+        for _ in range(LINE_TRIALS):
+            far = end > SLOPE_LEFT * np.abs(slope) + noise
+            if not np.any(far):
+                break
+            high[far], high_slope[far] = fraction[far], end[far]
+            back = np.nonzero(far)[0]
+            width = high[back] - low[back]
+            place = -low_slope[back] / (high_slope[back] - low_slope[back])
+            fraction[back] = low[back] + width * place.clip(0.05, 0.9)
+            pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
+            response, gradient[back], tangent[back] = self.evaluate(rows[back], pose[back], start.take(back))
+            start = start.replaced(back, Start.after(response))
+            end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
+            near = back[end[back] < 0.0]
+            low[near], low_slope[near] = fraction[near], end[near]
+        return pose, gradient, tangent, start, fraction
 
     def finish(self, iterations: NDArray[np.intp], start: Start) -> Equilibrium:
         response, gradient, _ = self.evaluate(np.arange(self.angle.size), self.pose, start)
@@ -216,15 +272,17 @@ class _Search:
 def _damped_step(
     tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return −(H + μ tr(H)/4)⁻¹ g, its length bounded, and the slope g·step."""
-    stiffness = np.trace(tangent, axis1=1, axis2=2) / 4.0
+    """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
+
+    With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
+    downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
+    direction still corrects the others.
+    """
+    stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / 4.0
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
     stiffness = np.where(stiffness > 0.0, stiffness, 1.0)
-    damped = tangent + (damping * stiffness)[:, None, None] * np.eye(4)
-    step = -np.linalg.solve(damped, gradient[..., None])[..., 0]
-    uphill = np.einsum("bi,bi->b", gradient, step) >= 0.0
-    if np.any(uphill):  # an indefinite tangent (strong geometric part): steepest descent instead
-        step[uphill] = -gradient[uphill] / stiffness[uphill, None]
-    length = np.max(np.abs(step), axis=1)
-    step *= np.minimum(1.0, bound / np.maximum(length, 1e-300))[:, None]
-    return np.asarray(step), np.asarray(np.einsum("bi,bi->b", gradient, step))
+    values, modes = np.linalg.eigh(tangent)
+    along = np.einsum("bij,bi->bj", modes, gradient)
+    floor = np.maximum(damping, 1e-15) * stiffness
+    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound[:, None], bound[:, None])
+    return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)

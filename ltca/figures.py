@@ -38,7 +38,7 @@ def _degrees(dataset: xr.Dataset) -> FloatArray:
     return np.asarray(np.degrees(dataset["crank_angle"].values))
 
 
-def _draw(
+def draw_curves(
     figure: Figure, axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str], x_label: str, y_label: str
 ) -> None:
     """Draw one curve for each case and put its name at its right end, moved apart where ends coincide."""
@@ -109,8 +109,8 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
     upper, lower = figure.subplots(2, 1, sharex=True)
     names = _cases(data)
     light, full = (data[name].values * ARCSEC for name in ("transmission_error_light", "transmission_error"))
-    _draw(figure, upper, _degrees(data), light - light.mean(axis=1, keepdims=True), names, "", "light torque [″]")
-    _draw(figure, lower, _degrees(data), full - full.mean(axis=1, keepdims=True), names, CRANK, "full torque [″]")
+    draw_curves(figure, upper, _degrees(data), light - light.mean(axis=1, keepdims=True), names, "", "light torque [″]")
+    draw_curves(figure, lower, _degrees(data), full - full.mean(axis=1, keepdims=True), names, CRANK, "full torque [″]")
     figure.suptitle("Transmission error at the wheel, deviation from its mean (Fig. 23)")
 
 
@@ -122,7 +122,7 @@ def _one_quantity(
         if element is not None:
             values = values[:, :, element]
         axes = figure.subplots()
-        _draw(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
+        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
         axes.set_title(title)
 
     return draw
@@ -152,7 +152,7 @@ def _number_loaded(name: str, title: str) -> Callable[[Figure, xr.Dataset], None
 def _bearing(figure: Figure, data: xr.Dataset) -> None:
     total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
     axes = figure.subplots()
-    _draw(figure, axes, _degrees(data), total, _cases(data), CRANK, "total bearing load [N]")
+    draw_curves(figure, axes, _degrees(data), total, _cases(data), CRANK, "total bearing load [N]")
     axes.set_title("Bearing load of the crank (Fig. 28)")
     axes.set_ylim(auto=True)
     axes.set_ylim(0.98 * total.min(), 1.01 * total.max())
@@ -170,7 +170,7 @@ def _bearing_component(name: str, label: str, title: str) -> Callable[[Figure, x
     def draw(figure: Figure, data: xr.Dataset) -> None:
         values = data[name].values
         axes = figure.subplots()
-        _draw(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
+        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
         room = 0.06 * max(np.ptp(values), 1e-6)
         axes.set_ylim(values.min() - room, values.max() + room)
         axes.set_title(title)
@@ -199,7 +199,7 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
         count = np.maximum(np.bincount(bins.ravel(), minlength=centres.size), 1)
         x = centres
         curves = np.stack([np.bincount(bins.ravel(), case.ravel(), minlength=centres.size) / count for case in load])
-    _draw(figure, axes, x, curves, names, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
+    draw_curves(figure, axes, x, curves, names, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
     axes.set_xlim(0.0, 360.0)
     axes.set_xticks(np.arange(0.0, 361.0, 60.0))
     axes.set_title("Load distribution over the rollers (Fig. 34)")

@@ -53,7 +53,9 @@ class _RollerGrids:
         pressed = np.asarray(approach, dtype=float)
         load, stiffness = np.zeros_like(pressed), np.zeros_like(pressed)
         for row, roller in zip(*np.nonzero(pressed > 0.0), strict=True):
-            load[row, roller], stiffness[row, roller] = self.contacts[row][int(roller)].press(float(pressed[row, roller]))
+            load[row, roller], stiffness[row, roller] = self.contacts[row][int(roller)].press(
+                float(pressed[row, roller])
+            )
         return load, stiffness
 
 

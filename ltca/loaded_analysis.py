@@ -8,7 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance
+from ltca.coefficients import InfluenceCoefficients
+from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, Response
+from ltca.coupled_compliance import CoupledCompliance
 from ltca.drive import Drive
 from ltca.equilibrium import Equilibrium, solve_equilibrium
 from ltca.errors import DriveError
@@ -19,6 +21,7 @@ FloatArray = NDArray[np.float64]
 
 Method = Literal["tables", "direct", "paper"]
 Contacts = Literal["tables", "grids"]
+Compliance = Literal["half-space", "fe", "hybrid"]
 
 PAPER_START = 0.95
 """Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
@@ -42,6 +45,8 @@ class LoadedAnalysis:
         How equilibrium was found.
     contacts : Contacts
         What gave the loads.
+    compliance : Compliance
+        How the bodies yield.
     full, light : Equilibrium
         At that torque and at the light torque.
     model : ComplianceModel
@@ -56,6 +61,7 @@ class LoadedAnalysis:
     torque: float
     method: Method
     contacts: Contacts
+    compliance: Compliance
     full: Equilibrium
     light: Equilibrium
     model: ComplianceModel
@@ -71,8 +77,11 @@ def analyse(
     *,
     method: Method = "tables",
     contacts: Contacts | None = None,
+    compliance: Compliance = "half-space",
+    coefficients: InfluenceCoefficients | None = None,
+    hole_near_field: bool = True,
 ) -> LoadedAnalysis:
-    """Analyse a drive with half-space compliance.
+    """Analyse a drive.
 
     Parameters
     ----------
@@ -88,6 +97,13 @@ def analyse(
         the torque. ``direct`` starts from the solution on tables.
     contacts : {"tables", "grids"}, optional
         What the paper's iteration runs on, tables by default; the other methods have their own.
+    compliance : {"half-space", "fe", "hybrid"}
+        ``half-space``: contacts do not feel each other (the paper); ``fe``: plane strain, coefficients from finite
+        elements; ``hybrid``: half-space of finite length at the contact, finite elements for the bodies.
+    coefficients : InfluenceCoefficients, optional
+        Of this drive; what ``fe`` and ``hybrid`` need (`ltca.coefficients.load_coefficients`).
+    hole_near_field : bool
+        Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``).
 
     Returns
     -------
@@ -100,7 +116,7 @@ def analyse(
         When a position does not balance.
     DriveError
         When the torque cannot be carried: a half-width beyond 0.3 of the smallest radius; when method and contacts
-        contradict each other.
+        contradict each other; when coefficients are missing.
 
     Examples
     --------
@@ -108,18 +124,26 @@ def analyse(
     >>> from ltca.drive_file import load_drive
     >>> result = analyse(load_drive("paper").cases["CS-1"], np.array([0.5]))
     >>> print(f"{result.bearing_tangential[0]:.0f} N")
-    6740 N
+    6738 N
     """
     torque = drive.load.torque if torque is None else torque
     used = _contacts_of(method, contacts)
     laws = HalfSpaceCompliance.of_drive(drive)
     model: ComplianceModel = laws if used == "tables" else GridCompliance.of_drive(drive)
+    if compliance != "half-space":
+        if method != "tables":
+            raise DriveError([f"method = {method}: runs on half-space compliance only, not on {compliance}"])
+        if coefficients is None:
+            raise DriveError([f"compliance = {compliance}: needs the influence coefficients of the drive"])
+        model = CoupledCompliance.of_drive(drive, coefficients, compliance, hole_near_field=hole_near_field)
 
     def solve(moment: float, start: FloatArray | None) -> Equilibrium:
-        if method == "tables":
+        if method == "tables" and compliance == "half-space":
             return solve_equilibrium(laws, crank_angle, moment, start)
-        if method == "direct":
+        if method in ("tables", "direct"):
             near = solve_equilibrium(laws, crank_angle, moment, start)
+            # Grids wider than the bodies are curved have no separation: refused before they are laid.
+            _check_half_widths(drive, torque, near.response, laws.pressures(near.response))
             return solve_equilibrium(model, crank_angle, moment, near.pose)
         near = solve_equilibrium(laws, crank_angle, PAPER_START * moment, start)
         return solve_paper_equilibrium(model, crank_angle, moment, near.pose)
@@ -128,20 +152,21 @@ def analyse(
     light = solve(drive.wheel_moment(drive.load.light_torque), full.pose)
     rollers = full.response.rollers
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1) * np.exp(-1j * full.crank_angle)
-    analysis = LoadedAnalysis(
+    pressures = model.pressures(full.response)
+    _check_half_widths(drive, torque, full.response, pressures)
+    return LoadedAnalysis(
         drive=drive,
         torque=torque,
         method=method,
         contacts=used,
+        compliance=compliance,
         full=full,
         light=light,
         model=model,
-        pressures=model.pressures(full.response),
+        pressures=pressures,
         bearing_radial=push.real,
         bearing_tangential=push.imag,
     )
-    _check_half_widths(analysis)
-    return analysis
 
 
 def _contacts_of(method: Method, contacts: Contacts | None) -> Contacts:
@@ -153,17 +178,16 @@ def _contacts_of(method: Method, contacts: Contacts | None) -> Contacts:
     return own
 
 
-def _check_half_widths(analysis: LoadedAnalysis) -> None:
-    drive = analysis.drive
-    flank = analysis.full.response.flank
+def _check_half_widths(drive: Drive, torque: float, contacts: Response, pressures: ContactPressures) -> None:
+    flank = contacts.flank
     # 1/ρ = 1/r_pin + κ: the flank's own radius is a bound as well as the pin's.
     curvature = 1.0 / flank.effective_radius - 1.0 / drive.pin_wheel.pin_radius
     flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
     roller = drive.crank_bearing.roller_radius
     found: list[tuple[str, FloatArray, FloatArray | float]] = [
-        ("wheel pin", analysis.pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
-        ("roller on the bore", analysis.pressures.outer.half_width, roller),
-        ("roller on the inner race", analysis.pressures.inner.half_width, roller),
+        ("wheel pin", pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
+        ("roller on the bore", pressures.outer.half_width, roller),
+        ("roller on the inner race", pressures.inner.half_width, roller),
     ]
     problems = []
     for name, half_width, radius in found:
@@ -172,7 +196,7 @@ def _check_half_widths(analysis: LoadedAnalysis) -> None:
             worst = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             bound = float(half_width[worst] / ratio[worst])
             problems.append(
-                f"load.torque = {analysis.torque:g} N·mm cannot be carried: contact half-width "
+                f"load.torque = {torque:g} N·mm cannot be carried: contact half-width "
                 f"{half_width[worst]:.4g} mm of {name} {worst[1]}, must be at most {bound:.4g} mm "
                 f"({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
             )

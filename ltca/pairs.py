@@ -134,7 +134,8 @@ class RollerRays:
         """
         along = _dot(self.direction, displacement[:, None])
         across = (self.direction.conjugate() * displacement[:, None]).imag
-        return np.asarray(along + np.sqrt(self.bore_play**2 - across**2))
+        # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
+        return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

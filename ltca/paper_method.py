@@ -80,9 +80,7 @@ def pose_of_lead(
     return ideal + lead, pose
 
 
-def lead_of_pose(
-    model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def lead_of_pose(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted."""
     place = model.geometry.placement
     lead = -place.reduction_ratio * pose[:, 3]

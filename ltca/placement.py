@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ from ltca.unit_circle import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+BatchScalar: TypeAlias = Any
+"""A number of one drive, a float; of a batch of drives an array of shape (positions, 1)."""
 
 
 def _filled(values: Sequence[float], count: int) -> FloatArray:
@@ -74,12 +77,12 @@ class Placement:
     shaft_pin_radii: FloatArray
     roller_cage_angles: FloatArray
     roller_radii: FloatArray
-    inner_race_radius: float | FloatArray
-    bore_radius: float | FloatArray
-    eccentricity: float | FloatArray
+    inner_race_radius: BatchScalar
+    bore_radius: BatchScalar
+    eccentricity: BatchScalar
     crank_axis: complex | ComplexArray
     wheel_axis: complex | ComplexArray
-    cage_speed: float | FloatArray
+    cage_speed: BatchScalar
     reduction_ratio: float
 
     @classmethod
@@ -145,7 +148,7 @@ class Placement:
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, n_BR)."""
-        return self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles
+        return np.asarray(self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles)
 
     def roller_rays(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the unit vectors of the cage rays, e^{iθ_b,n}, in the fixed frame, shape (…, n_BR)."""

@@ -205,7 +205,10 @@ def build_pressure_dataset(
         [[pin_fields(analysis, position, cells)] for position in range(angles.size)] for analysis in analyses.values()
     ]
     rollers = [
-        [[roller_fields(analysis, position, side, cells) for side in ("outer", "inner")] for position in range(angles.size)]
+        [
+            [roller_fields(analysis, position, side, cells) for side in ("outer", "inner")]
+            for position in range(angles.size)
+        ]
         for analysis in analyses.values()
     ]
     _store(variables, "pin", pins, placement.wheel_pin_radii.size, with_side=False)

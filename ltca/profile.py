@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from ltca.drive import Drive
 from ltca.errors import ConvergenceError
+from ltca.placement import BatchScalar
 from ltca.profile_deviation import ProfileDeviation
 from ltca.unit_circle import integer_power, small_turn, unit
 
@@ -77,10 +78,10 @@ class FlankProfile:
         Departure from the design along its normal.
     """
 
-    generating_radius: float | FloatArray
-    eccentricity: float | FloatArray
+    generating_radius: BatchScalar
+    eccentricity: BatchScalar
     reduction_ratio: float
-    offset: float | FloatArray
+    offset: BatchScalar
     centre: complex | ComplexArray = 0.0
     deviation: ProfileDeviation | None = None
 
@@ -149,7 +150,7 @@ class FlankProfile:
         return Curve(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
 
     @property
-    def contact_offset(self) -> float | FloatArray:
+    def contact_offset(self) -> BatchScalar:
         """Distance of the actual flank from `contact_curve`, mm."""
         return self.offset if self.deviation is None else 0.0
 
@@ -220,18 +221,26 @@ class FlankProfile:
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
     def nearest_parameter(
-        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 50
+        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 100
     ) -> FloatArray:
         """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
         return self.nearest_point(point, start, tolerance=tolerance, limit=limit).parameter
 
     def nearest_point(
-        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 50
+        self,
+        point: ComplexArray,
+        start: FloatArray,
+        *,
+        tolerance: float = 1e-13,
+        limit: int = 100,
+        across_root: bool = True,
     ) -> NearestPoint:
         """Find the flank point whose normal passes through a point.
 
-        Newton's method on Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth. The root next
-        to the start is found; for points about a pin radius away from the flank that is the nearest one.
+        Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
+        settle soon, kept between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g
+        vanishes and Newton's method alone creeps or runs away. The minimum next to the start is found; for points
+        about a pin radius away from the flank that is the nearest one.
 
         Parameters
         ----------
@@ -243,6 +252,8 @@ class FlankProfile:
             Largest accepted step, rad.
         limit : int
             Iterations.
+        across_root : bool
+            Whether to look at the other side of a sharp root as well.
 
         Returns
         -------
@@ -257,23 +268,53 @@ class FlankProfile:
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
         direction = unit(theta)
         bound = 0.4 * np.pi / self.reduction_ratio
+        low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
         history: list[float] = []
-        for _ in range(limit):
+        for iteration in range(limit):
             curve = self.contact_curve(direction)
             away = curve.point - point
             tangent = curve.tangent
             speed = tangent.real**2 + tangent.imag**2
+            value = tangent.real * away.real + tangent.imag * away.imag
             slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
-            # Far inside a centre of curvature the slope turns negative: then step as steepest descent does.
-            slope = np.where(slope > 0.1 * speed, slope, speed)
-            step = np.clip((tangent.real * away.real + tangent.imag * away.imag) / slope, -bound, bound)
+            # Beyond a centre of curvature the slope is negative, the point next to a largest distance: leave it.
+            step = np.clip(value / np.maximum(np.abs(slope), 1e-3 * speed), -bound, bound)
+            if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
+                low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
+                outside = ((theta - step < low) | (theta - step > high)) & np.isfinite(high - low)
+                step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta -= step
             direction = direction * small_turn(-step)
             history.append(float(np.max(np.abs(step), initial=0.0)))
             # Convergence is quadratic: a step of 1e-8 leaves an error below round-off.
             if history[-1] <= max(tolerance, 1e-8) and (len(history) > 1 or history[-1] <= tolerance):
-                return NearestPoint(theta, self.contact_curve(direction))
+                found = NearestPoint(theta, self.contact_curve(direction))
+                return self._nearer_side(point, found) if across_root else found
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
+
+    def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
+        """Change to the other side of the root where the flank is nearer there.
+
+        With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin that has left it by
+        more than its radius there has a nearest point on either side.
+        """
+        u = self.reduction_ratio
+        bend = np.asarray(self.eccentricity * u * u - self.generating_radius)
+        if np.all(bend <= 0.0):
+            return found
+        sharp = (self.generating_radius - self.eccentricity * u) ** 2 / np.where(bend > 0.0, bend, np.nan)
+        theta = found.parameter
+        away = np.abs(self.locus(theta).point + self.centre - point)
+        pitch = 2.0 * np.pi / (u - 1.0)
+        root = pitch * np.round(theta / pitch)
+        doubtful = (away > 0.3 * sharp) & (np.abs(theta - root) < 0.25 * pitch)
+        if not np.any(doubtful):
+            return found
+        mirrored = np.where(doubtful, 2.0 * root - theta, theta)
+        other = self.nearest_point(point, mirrored, across_root=False)
+        nearer = doubtful & (np.abs(self.locus(other.parameter).point + self.centre - point) < away)
+        chosen = (np.where(nearer, one, two) for one, two in zip(other.curve, found.curve, strict=True))
+        return NearestPoint(np.where(nearer, other.parameter, theta), Curve(*chosen))
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
         """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""

@@ -1,7 +1,7 @@
 r"""Deviation of the flank from its design along the design normal, δ(θ), with two derivatives.
 
-Harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and a periodic cubic spline through measured
-points (twice continuously differentiable, so contact and its tangent are continuous) add up.
+Harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and a periodic cubic spline through measured points
+(twice continuously differentiable, so contact and its tangent are continuous) add up.
 """
 
 from __future__ import annotations
@@ -55,8 +55,9 @@ class ProfileDeviation:
 
             knots = np.array([*errors.parameter, errors.parameter[0] + 2.0 * pi])
             pieces = CubicSpline(knots, [*errors.deviation, errors.deviation[0]], bc_type="periodic").c
-        amplitudes = np.asarray(cosine - 1j * sine, dtype=complex)
-        return cls(orders=errors.orders, amplitudes=amplitudes, knots=knots, pieces=pieces)
+        return cls(
+            orders=errors.orders, amplitudes=np.asarray(cosine - 1j * sine, dtype=complex), knots=knots, pieces=pieces
+        )
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ProfileDeviation:
         """Return the deviation of some positions of a batch."""

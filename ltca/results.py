@@ -151,7 +151,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis]) -> xr
         },
         attrs={
             "drive": drive_name,
-            "compliance": "half-space",
+            "compliance": first.compliance,
             "method": first.method,
             "contacts": first.contacts,
             "cage_speed": ContactGeometry.of_drive(first.drive).placement.cage_speed,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 SUMMARY = "write a commented copy of the paper's drive to start from"
@@ -23,7 +24,7 @@ def execute(arguments: argparse.Namespace) -> int:
     path = Path(arguments.file)
     if path.exists() and not arguments.force:
         raise CycloError(f"{path}: exists already; --force overwrites it")
-    text = shipped_drive().replace('name = "paper"', f'name = "{path.stem}"', 1)
+    text = shipped_drive().replace('name = "paper"', f"name = {json.dumps(path.stem, ensure_ascii=False)}", 1)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")
     print(f"{path}: written; 'cyclo show {path}' checks it, 'cyclo run {path}' analyses it")

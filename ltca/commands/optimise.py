@@ -107,8 +107,7 @@ def _print(optimum: Optimum) -> None:
 
     problem = optimum.problem
     print(
-        f"{len(optimum.variables)} candidates in {optimum.generations} batches, "
-        f"{optimum.feasible.sum()} within the limits"
+        f"{len(optimum.variables)} candidates in {optimum.generations} batches, {optimum.feasible.sum()} within the limits"
     )
     print(f"{'':<48}{'as it is':>12}{'found':>12}")
     for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ltca.pairs import FloatArray
@@ -23,6 +23,40 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     where.add_argument("--angles", metavar="φ", nargs="+", help="crank angles in rad (or texts such as '20 deg')")
     parser.add_argument("--torque", metavar="T", help="output torque in N·mm (or a text such as '377.3 N m')")
+    parser.add_argument(
+        "--method",
+        choices=("tables", "direct", "paper"),
+        default="tables",
+        help="equilibrium on tabulated contact laws (default), with contact grids solved inside every iteration, or by "
+        "the paper's iteration with held wheel",
+    )
+    parser.add_argument(
+        "--contacts", choices=("tables", "grids"), help="what the paper's iteration runs on; default tables"
+    )
+    parser.add_argument(
+        "--compliance",
+        choices=("half-space", "fe", "hybrid"),
+        default="half-space",
+        help="how bodies yield: half-spaces (default), plane-strain finite elements, or finite elements beyond "
+        "half-spaces of finite length",
+    )
+    parser.add_argument(
+        "--coefficients",
+        metavar="FILE",
+        type=Path,
+        help="influence coefficients of cyclo derive; without it they are derived once and kept",
+    )
+    parser.add_argument(
+        "--no-hole-near-field",
+        action="store_true",
+        help="leave out the local yielding of the hole walls (fe and hybrid)",
+    )
+    parser.add_argument(
+        "--pressure",
+        metavar="φ",
+        nargs="*",
+        help="pressure fields of all loaded contacts at these crank angles (default 0) into pressure.nc, with figures",
+    )
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>")
     parser.add_argument("--no-figures", action="store_true", help="write results.nc and summary.json only")
 
@@ -37,22 +71,53 @@ def execute(arguments: argparse.Namespace) -> int:
 
     angles = _crank_angles(arguments)
     torque = _torque(arguments.torque)
+    pressure_angles = _pressure_angles(arguments.pressure)
+    if pressure_angles is not None and arguments.compliance != "half-space":
+        from ltca.errors import DriveError
+
+        raise DriveError(
+            [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
+        )
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
     out = arguments.out or Path("out") / file.name
+    options: dict[str, Any] = {
+        "method": arguments.method,
+        "contacts": arguments.contacts,
+        "compliance": arguments.compliance,
+        "hole_near_field": not arguments.no_hole_near_field,
+    }
+    if arguments.compliance != "half-space":
+        from ltca.coefficient_files import find_coefficients
+
+        options["coefficients"] = find_coefficients(next(iter(cases.values())), arguments.coefficients)
     analyses = {}
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
-            analyses[name] = analyse(drive, angles, torque)
+            analyses[name] = analyse(drive, angles, torque, **options)
             advance(name)
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
     dataset = build_dataset(file.name, analyses)
     with whole_file(out / "results.nc") as part:
         dataset.to_netcdf(part, engine="h5netcdf")
     write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
+    fields = None
+    if pressure_angles is not None:
+        from ltca.pressure_fields import build_pressure_dataset
+
+        shown = {}
+        with progress("pressure fields", len(cases)) as advance:
+            for name, drive in cases.items():
+                shown[name] = analyse(drive, pressure_angles, torque, **options)
+                advance(name)
+            fields = build_pressure_dataset(file.name, shown)
+        packed = {name: {"zlib": True} for name in ("pin_pressure", "roller_pressure")}
+        with whole_file(out / "pressure.nc") as part:
+            fields.to_netcdf(part, engine="h5netcdf", encoding=packed)
     print(_table(summaries))
-    print(f"results: {out / 'results.nc'}, {out / 'summary.json'}")
+    files = ["results.nc", "summary.json"] + (["pressure.nc"] if fields is not None else [])
+    print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
         from ltca.figures import FIGURES, write_figures
 
@@ -60,6 +125,14 @@ def execute(arguments: argparse.Namespace) -> int:
             for path in write_figures(dataset, out / "figures"):
                 advance(path.name)
         print(f"figures: {out / 'figures'} ({len(FIGURES)} as SVG and PNG)")
+        if fields is not None:
+            from ltca.pressure_figures import can_render, write_pressure_figures
+
+            if not can_render():
+                print("pyvista cannot render here (no GL): 3-D pressures are drawn with matplotlib")
+            with progress("pressure figures", 3 + len(cases)) as advance:
+                for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), out / "figures"):
+                    advance(path.name)
     return 0
 
 
@@ -76,6 +149,16 @@ def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
     if not 1 <= positions <= 1_000_000:
         raise DriveError([f"--positions = {positions}: must be from 1 to 1000000"])
     return position_angles(positions)
+
+
+def _pressure_angles(texts: list[str] | None) -> FloatArray | None:
+    import numpy as np
+
+    from ltca.units import parse_quantity
+
+    if texts is None:
+        return None
+    return np.array([parse_quantity(text, "rad", "--pressure") for text in texts or ["0"]])
 
 
 def _torque(text: str | None) -> float | None:
@@ -97,8 +180,10 @@ ROWS = (
     ("  tangential, peak to peak", "ptp_tangential_bearing_load_N", "N", "{:.1f}"),
     ("largest pin load", "max_pin_load_N", "N", "{:.1f}"),
     ("largest pin pressure, mid-width", "max_pin_pressure_mid_MPa", "MPa", "{:.1f}"),
+    ("  anywhere (end cell a hundredth)", "max_pin_pressure_max_MPa", "MPa", "{:.1f}"),
     ("largest roller load", "max_roller_load_N", "N", "{:.1f}"),
     ("largest roller pressure, mid-width", "max_roller_pressure_mid_MPa", "MPa", "{:.1f}"),
+    ("  anywhere (end cell a hundredth)", "max_roller_pressure_max_MPa", "MPa", "{:.1f}"),
     ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
     ("pin-shaft loaded range", "pin_shaft_loaded_range_deg", "°", "{:.1f}"),
     ("loaded wheel pins, mean", "mean_loaded_pins", "", "{:.2f}"),

@@ -95,9 +95,8 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         print(f"{head:<48}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
-        leading = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
-        together = f"first order together: {100.0 * entry['explained']:.0f} %"
-        print(f"  {QUANTITIES[name].description}: {', '.join(leading)} ({together})")
+        first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
+        print(f"  {QUANTITIES[name].description}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)")
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
@@ -107,8 +106,8 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         )
         for sample, message in found.failures[:5]:
             print(f"  sample {sample}: {' '.join(message.split())[:200]}")
-    if found.quantities:
-        first = next(iter(found.quantities))
-        worst = found.quantities[first].largest_sample
-        print(f"worst by {QUANTITIES[first].description}: cyclo run {write_sample(study, folder, worst)}")
+    leading = next(iter(found.quantities), None)
+    if leading is not None:
+        worst = found.quantities[leading].largest_sample
+        print(f"worst by {QUANTITIES[leading].description}: cyclo run {write_sample(study, folder, worst)}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")

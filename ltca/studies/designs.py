@@ -223,10 +223,11 @@ class SweepDesign:
             return np.array(list(rows))
         if self.kind == "list":
             return np.stack([factor.column()[first:last] for factor in self.factors], axis=1)
-        if self.kind == "sobol":
-            shares = sobol_rows(self.seed, first, last, len(self.factors))
-        else:
-            shares = self._hypercube[first:last]
+        shares = (
+            sobol_rows(self.seed, first, last, len(self.factors))
+            if self.kind == "sobol"
+            else self._hypercube[first:last]
+        )
         return np.stack([factor.at(share) for factor, share in zip(self.factors, shares.T, strict=True)], axis=1)
 
     def fields(self, row: FloatArray) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_all_start_methods, get_context
-from typing import Any
+from typing import Any, cast
 
 from ltca.errors import CycloError
 from ltca.studies.study import BatchResult, Study, run_batch
@@ -63,8 +63,8 @@ class Engine:
             with _cluster(self.scheduler) as found:
                 yield found
         elif self.workers > 1:
-            # Never a fork of this process, which may have threads. Where there is a fork server it imports the suite
-            # and builds the tables once, and every worker starts as its copy.
+            # Never a fork of this process, which may have threads; where there is a fork server it imports the suite and
+            # builds the tables once, and every worker starts as its copy.
             server = "forkserver" in get_all_start_methods()
             context = get_context("forkserver" if server else "spawn")
             if server:
@@ -102,9 +102,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
             "--scheduler needs dask.distributed, which is not installed: pip install 'cyclo-ltca[cluster]'"
         ) from error
     try:
-        client: Any = Client(  # type: ignore[no-untyped-call]
-            address, timeout="10s", set_as_default=False
-        )
+        client: Any = cast(Any, Client)(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
         raise CycloError(f"--scheduler = {address}: no scheduler answers there: {error}") from error
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -49,10 +50,10 @@ def _front(optimum: Optimum) -> Figure:
     axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
     # Far candidates would squeeze the front into a corner.
     shown_points = np.concatenate([points[optimum.front], [optimum.start[:2] * scale]])
-    low, high = shown_points.min(axis=0), shown_points.max(axis=0)
-    room = np.maximum(high - low, 1e-9 * np.abs(high))
-    axes.set_xlim(low[0] - 0.15 * room[0], high[0] + 0.6 * room[0])
-    axes.set_ylim(low[1] - 0.15 * room[1], high[1] + 0.6 * room[1])
+    setters: tuple[Any, Any] = (axes.set_xlim, axes.set_ylim)
+    for low, high, bound in zip(shown_points.min(axis=0), shown_points.max(axis=0), setters, strict=True):
+        room = max(high - low, 1e-9 * abs(high))
+        bound(low - 0.15 * room, high + 0.6 * room)
     axes.set_xlabel(_label(optimum.problem.aims[0]))
     axes.set_ylabel(_label(optimum.problem.aims[1]))
     axes.legend(frameon=False, fontsize=8.0)

@@ -129,7 +129,7 @@ def _settings(study: Study) -> BatchSettings:
         _NOMINAL.clear()
         _NOMINAL[key] = None
         if study.near_nominal:
-            # Where it has no solution samples start from first contact, and say themselves what is wrong.
+            # Without it samples start from first contact, and say themselves what is wrong.
             with suppress(CycloError):
                 _NOMINAL[key] = solve_nominal(study.cases[0][1], settings)
     return BatchSettings(

@@ -72,7 +72,7 @@ def _save(figure: Figure, stem: Path) -> Iterator[Path]:
 def _panels(count: int, height: float) -> tuple[Figure, Any]:
     columns = min(3, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(3.7 * columns, height * rows + 0.3))
+    figure = Figure(figsize=(3.4 * columns, height * rows))
     axes = np.atleast_1d(figure.subplots(rows, columns, squeeze=False)).ravel()
     for spare in axes[count:]:
         spare.set_visible(False)
@@ -151,7 +151,8 @@ def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
         axis.set_xlim(left=0.0)
         axis.set_xlabel("share of the variance [%]", fontsize=7.5)
         axis.tick_params(axis="x", labelsize=7.5)
-        together = f"first order together {100.0 * entry['explained']:.0f} %"
-        axis.set_title(f"{QUANTITIES[name].description}\n{together}", fontsize=7.5, loc="right")
+        axis.set_title(
+            f"{QUANTITIES[name].description}\nfirst order together {100.0 * entry['explained']:.0f} %", fontsize=8.0
+        )
     figure.suptitle(f"{study.name}: {ranking['method']}", fontsize=9.5)
     return figure

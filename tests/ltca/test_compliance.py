@@ -19,7 +19,9 @@ class PowerLaw:
 
     def load_and_stiffness(self, approach, effective_radius):
         pressed = np.maximum(approach, 0.0) + 0.0 * effective_radius
-        slope = np.where(pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0)
+        slope = np.where(
+            pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0
+        )
         return self.factor * pressed**self.exponent, slope
 
     def energy(self, approach, effective_radius):
@@ -122,7 +124,9 @@ def test_start_does_not_matter(drives):
     model = HalfSpaceCompliance.of_drive(drive)
     angles, poses, _ = pressed_poses(drive, 4, 5)
     plain = model.respond(angles, poses)
-    start = Start(parameter=plain.flank.parameter + 0.01, share=np.full_like(plain.rollers.share, 0.9), memory=plain.memory)
+    start = replace(
+        Start.after(plain), parameter=plain.flank.parameter + 0.01, share=np.full_like(plain.rollers.share, 0.9)
+    )
     other = model.respond(angles, poses, start)
     np.testing.assert_allclose(other.force, plain.force, atol=1e-8 * np.abs(plain.force).max())
 

@@ -42,8 +42,8 @@ WRONG = {
         r"disc\.equidistant_offset = -6\.5 mm: must be greater than -6\.5 mm",
     ),
     "undercut": (
-        {"pin_wheel": {"pin_radius": 19.0}},
-        r"pin_wheel\.pin_radius = 19 mm: must be less than 18\.\d+ mm .*undercut",
+        {"crank": {"eccentricity": 6.0}, "pin_shaft": {"hole_radius": 16.075}, "pin_wheel": {"pin_radius": 8.6}},
+        r"pin_wheel\.pin_radius = 8\.6 mm: must be less than 8\.4057\d* mm .*undercut",
     ),
     "disc and pins interfere": (
         {"disc": {"equidistant_offset": 0.05}},
@@ -154,15 +154,19 @@ def test_undercut_bound_is_where_the_flank_folds(paper_table):
     """Brute force: the flank of pins below the bound goes on, above it it runs back on itself."""
 
     def table(pin_radius):
-        return paper_table(pin_wheel={"pin_radius": pin_radius}, disc={"equidistant_offset": 0.15})
+        return paper_table(
+            crank={"eccentricity": 6.0}, pin_shaft={"hole_radius": 16.075}, pin_wheel={"pin_radius": pin_radius}
+        )
 
     with pytest.raises(DriveError, match="undercut") as caught:
-        build_drive(table(19.0))
+        build_drive(table(8.6))
     bound = float(str(caught.value).split("must be less than ")[1].split(" mm")[0])
     theta = np.linspace(0.0, 2.0 * np.pi, 200_001)
-    locus = 88.09 * np.exp(1j * theta) - 4.0 * np.exp(14j * theta)
-    tangent = 88.09j * np.exp(1j * theta) - 56.0j * np.exp(14j * theta)
+    locus = 88.09 * np.exp(1j * theta) - 6.0 * np.exp(14j * theta)
+    tangent = 88.09j * np.exp(1j * theta) - 84.0j * np.exp(14j * theta)
     for radius, folds in ((bound - 0.02, False), (bound + 0.02, True)):
+        if not folds:
+            build_drive(table(radius))
         flank = locus + 1j * (radius + 0.15) * tangent / np.abs(tangent)
         forward = (np.diff(flank) * tangent[:-1].conjugate()).real
         assert bool(np.any(forward < 0.0)) is folds

@@ -35,9 +35,9 @@ def brute_flank_approach(drive, crank, pose, pin):
     z = wheel.number_of_pins
     errors = wheel.pin_errors
     turn = crank / z + pose[3] + 2.0 * np.pi * pin / z
-    centre = (
-        wheel.pin_circle_radius + part(errors, "radial", pin) + 1j * part(errors, "tangential", pin)
-    ) * np.exp(1j * turn)
+    centre = (wheel.pin_circle_radius + part(errors, "radial", pin) + 1j * part(errors, "tangential", pin)) * np.exp(
+        1j * turn
+    )
     disc = e * np.exp(1j * crank) + pose[0] + 1j * pose[1]
     R = wheel.pin_circle_radius + drive.disc.shifting_offset
     r = wheel.pin_radius + drive.disc.equidistant_offset
@@ -123,7 +123,10 @@ def test_gradients_and_curvatures_against_finite_differences(drives):
                 np.testing.assert_allclose(here.gradient[..., column] / lever[column], slope / lever[column], atol=1e-6)
                 scale = radius / (lever[column] * lever)
                 np.testing.assert_allclose(
-                    here.curvature[..., column] * scale, bend * scale, rtol=1e-5, atol=1e-5 * np.max(np.abs(bend * scale))
+                    here.curvature[..., column] * scale,
+                    bend * scale,
+                    rtol=1e-5,
+                    atol=1e-5 * np.max(np.abs(bend * scale)),
                 )
 
 

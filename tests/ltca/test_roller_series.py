@@ -23,7 +23,9 @@ class PowerLaw:
 
     def load_and_stiffness(self, approach, effective_radius):
         pressed = np.maximum(approach, 0.0) + 0.0 * effective_radius
-        slope = np.where(pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0)
+        slope = np.where(
+            pressed > 0.0, self.factor * self.exponent * np.maximum(pressed, 1e-300) ** (self.exponent - 1), 0
+        )
         return self.factor * pressed**self.exponent, slope
 
     def energy(self, approach, effective_radius):
@@ -33,15 +35,15 @@ class PowerLaw:
 
 def power_laws(rollers):
     radius = np.full(rollers, 4.0)
-    return RollerLaws(inner=PowerLaw(8e5, 10.0 / 9.0), outer=PowerLaw(1.1e6, 1.3), inner_radius=radius, outer_radius=radius)
+    return RollerLaws(
+        inner=PowerLaw(8e5, 10.0 / 9.0), outer=PowerLaw(1.1e6, 1.3), inner_radius=radius, outer_radius=radius
+    )
 
 
 def rays(rng, positions=5, rollers=9, clearance=0.0, roller_errors=0.0):
     angles = rng.uniform(0.0, 2.0 * np.pi, (positions, 1)) + 2.0 * np.pi * np.arange(rollers) / rollers
     radius = 5.0 + roller_errors * rng.uniform(-1.0, 1.0, rollers)
-    return RollerRays(
-        direction=np.exp(1j * angles), outermost=19.5 + radius, bore_play=29.5 + 0.5 * clearance - radius
-    )
+    return RollerRays(direction=np.exp(1j * angles), outermost=19.5 + radius, bore_play=29.5 + 0.5 * clearance - radius)
 
 
 def total_energy(case, laws, displacement, roller, row, place):
@@ -165,6 +167,27 @@ def test_eliminated_energy_its_gradient_and_tangent():
         size = np.abs(here.tangent).max()
         np.testing.assert_allclose(bend.real[clear], column[..., 0][clear], atol=1e-6 * size)
         np.testing.assert_allclose(bend.imag[clear], column[..., 1][clear], atol=1e-6 * size)
+
+
+def test_tangent_where_the_normals_differ_much():
+    """Rays and outer normals at 20° and more, loads that bend: every term of the eliminated tangent counts."""
+    rng = np.random.default_rng(7)
+    angles = rng.uniform(0.0, 2.0 * np.pi, (1, 40))
+    case = RollerRays(direction=np.exp(1j * angles), outermost=np.full(40, 2.0), bore_play=np.full(40, 1.6))
+    law = PowerLaw(50.0, 1.5)
+    laws = RollerLaws(inner=law, outer=PowerLaw(80.0, 1.2), inner_radius=np.ones(40), outer_radius=np.ones(40))
+    displacement = np.array([0.6 - 0.4j])
+    here = balance_rollers(case, displacement, laws)
+    pressed = here.outer_approach > 0.01
+    cosine = (here.outer_direction * case.direction.conjugate()).real
+    assert np.min(cosine[pressed]) < 0.94
+    h = 1e-5
+    for axis, move in enumerate((h, 1j * h)):
+        ahead, behind = (balance_rollers(case, displacement + sign * move, laws) for sign in (1, -1))
+        bend = -(ahead.outer_load * ahead.outer_direction - behind.outer_load * behind.outer_direction) / (2.0 * h)
+        found = here.tangent[..., 0, axis] + 1j * here.tangent[..., 1, axis]
+        # h² times third derivatives: (1e-5/0.01)² of some per cent
+        np.testing.assert_allclose(found[pressed], bend[pressed], atol=1e-6 * np.abs(here.tangent).max())
 
 
 def test_start_does_not_matter(half_space_laws):

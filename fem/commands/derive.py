@@ -1,0 +1,105 @@
+"""``cyclo derive``: influence coefficients of the bodies of a drive by finite elements, as a file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from ltca.errors import CycloError
+
+SUMMARY: str = "derive the bodies' influence coefficients by finite elements"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
+    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
+    parser.add_argument(
+        "--stations",
+        type=float,
+        default=1.0,
+        metavar="N",
+        help="number of stations as a multiple of the default (32 for each lobe, 48 on the bore, 24 on each hole)",
+    )
+    parser.add_argument(
+        "--size", type=float, default=1.0, metavar="S", help="element edge as a multiple of the default; 0.5 halves it"
+    )
+    parser.add_argument(
+        "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
+    )
+    parser.add_argument(
+        "--with-clearance",
+        action="store_true",
+        help="derive the disc with the clearances of the case; without it one file serves all clearance cases alike",
+    )
+    parser.add_argument("--out", metavar="FILE", default="coefficients.nc", help="file (default: coefficients.nc)")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Derive, write the file whole or not at all, and check it.
+
+    Returns
+    -------
+    int
+        0, or 1 when a check of the file fails.
+
+    Raises
+    ------
+    CycloError
+        For wrong input, missing libraries or a mesh that would not fit into memory.
+    """
+    import time
+
+    from ltca.drive_file import load_drive
+
+    out = Path(arguments.out)
+    if out.is_dir():
+        raise CycloError(f"--out {out}: is a folder, not a file")
+    file = load_drive(arguments.drive)
+    case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+
+    from fem.coefficient_checks import check_coefficients
+    from fem.coefficient_dataset import derive_coefficients
+    from fem.coefficient_file import read_coefficients, require_writable, write_coefficients
+
+    require_writable(out)
+    start = time.perf_counter()
+    show = _progress()
+    dataset = derive_coefficients(
+        drive,
+        case=case,
+        stations=arguments.stations,
+        size=arguments.size,
+        state=arguments.plane,
+        keep_clearance=arguments.with_clearance,
+        progress=show,
+    )
+    show("")
+    write_coefficients(dataset, out)
+    written = read_coefficients(out)
+    checks = check_coefficients(written)
+    attributes = written.attrs
+    print(
+        f"{written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
+        f"{attributes['plane']}, {time.perf_counter() - start:.1f} s"
+    )
+    width = max(len(check.name) for check in checks)
+    for check in checks:
+        bounds = f"at most {check.highest:g}" if check.lowest == 0.0 else f"{check.lowest:g} to {check.highest:g}"
+        print(f"{check.name:<{width}}  {check.value:>10.4g}  {bounds:<16}  {'ok' if check.passed else 'FAILED'}")
+    print(f"written to {out}")
+    return 0 if all(check.passed for check in checks) else 1
+
+
+def _progress() -> Callable[[str], None]:
+    """Return a function that shows one line that overwrites itself; it shows nothing without a terminal."""
+    if not sys.stderr.isatty():
+        return lambda step: None
+
+    def show(step: str) -> None:
+        text = f"deriving coefficients: {step}" if step else ""
+        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+
+    return show

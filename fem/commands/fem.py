@@ -1,0 +1,175 @@
+"""``cyclo fem``: the full finite-element contact solution of a drive at one crank angle."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ltca.errors import CycloError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fem.solution import FullSolution
+
+SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
+    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
+    parser.add_argument("--angle", type=float, default=0.0, metavar="PHI", help="crank angle, rad (default 0)")
+    parser.add_argument(
+        "--size",
+        type=float,
+        default=1.0,
+        metavar="S",
+        help="element edge as a multiple of the default of 8 elements for each contact half-width; 0.5 halves it",
+    )
+    parser.add_argument("--torque", type=float, metavar="T", help="output torque, N·mm (default: the drive's own)")
+    parser.add_argument(
+        "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
+    )
+    parser.add_argument(
+        "--elastic-shaft-pins", action="store_true", help="shaft pins yield, too (default: rigid circles on springs)"
+    )
+    parser.add_argument("--out", metavar="DIR", default="fem", help="folder for the files (default: fem)")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
+    parser.add_argument(
+        "--export", choices=("calculix",), help="write a complete input deck of the same problem for another code"
+    )
+    parser.add_argument(
+        "--referee", choices=("calculix",), help="let another code solve the same problem and print both side by side"
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Solve the drive; write ``fem.nc``, ``summary.json``, ``.vtu`` of each body and pictures.
+
+    Returns
+    -------
+    int
+        0.
+
+    Raises
+    ------
+    CycloError
+        For wrong input, no convergence, or meshes that would not fit into memory.
+    """
+    from fem.fields import recover_fields
+    from fem.solution import solve_drive
+    from fem.solution_files import write_solution
+    from ltca.drive_file import load_drive
+
+    _check_numbers(arguments)
+    out = Path(arguments.out)
+    if out.exists() and not out.is_dir():
+        raise CycloError(f"--out {out}: is a file, not a folder")
+    referee = _referee(arguments.referee)
+    file = load_drive(arguments.drive)
+    case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    solution = solve_drive(
+        drive,
+        arguments.angle,
+        torque=arguments.torque,
+        scale=arguments.size,
+        state=arguments.plane,
+        elastic_shaft_pins=arguments.elastic_shaft_pins,
+        progress=_progress(),
+    )
+    fields = recover_fields(solution.model, solution.state, state=arguments.plane)
+    write_solution(solution, fields, case, out)
+    _print_contacts(solution)
+    if not arguments.no_pictures:
+        from fem.pictures import draw_solution
+
+        problem = draw_solution(solution, fields, f"{file.name}, {case}, {arguments.angle:g} rad", out)
+        if problem:
+            print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
+    if arguments.export or referee:
+        from fem.calculix import write_deck
+
+        print(f"CalculiX deck: {write_deck(solution, out / 'calculix.inp')}")
+    if referee:
+        referee(solution, out)
+    print(f"written to {out}")
+    return 0
+
+
+def _check_numbers(arguments: argparse.Namespace) -> None:
+    import math
+
+    if not math.isfinite(arguments.angle):
+        raise CycloError(f"--angle {arguments.angle:g}: must be a finite number (rad)")
+    if not (math.isfinite(arguments.size) and arguments.size > 0.0):
+        raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
+    if arguments.torque is not None and not (math.isfinite(arguments.torque) and arguments.torque > 0.0):
+        raise CycloError(f"--torque {arguments.torque:g}: must be a finite number greater than 0 (N·mm)")
+
+
+def _progress() -> Callable[[str], None] | None:
+    """Return a function that shows one line that overwrites itself; None without a terminal."""
+    if not sys.stderr.isatty():
+        return None
+
+    def show(line: str) -> None:
+        print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
+
+    return show
+
+
+def _print_contacts(solution: FullSolution) -> None:
+    from fem.solution_files import bearing_components
+
+    contacts, seconds = solution.contacts, solution.seconds
+    if sys.stderr.isatty():
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+    rows = (
+        ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
+        (
+            "roller outer",
+            contacts.roller_load_outer,
+            contacts.roller_pressure_max_outer,
+            contacts.roller_half_width_outer,
+        ),
+        (
+            "roller inner",
+            contacts.roller_load_inner,
+            contacts.roller_pressure_max_inner,
+            contacts.roller_half_width_inner,
+        ),
+        ("shaft pin", contacts.pin_shaft_load, contacts.hole_pressure_max, contacts.hole_half_width),
+    )
+    print(f"{'contact':<16}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
+    for name, load, peak, width in rows:
+        for index in range(len(load)):
+            if load[index] > 0.0:
+                print(
+                    f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}"
+                )
+    radial, tangential = bearing_components(contacts, solution.model.crank_angle)
+    print(f"bearing force on the disc: radial {radial:.1f} N, tangential {tangential:.1f} N")
+    print(
+        f"wheel angle {solution.pose.wheel_angle:.6g} rad; "
+        f"largest unbalanced force {contacts.equilibrium_residual:.1e} N"
+    )
+    print(f"{solution.unknowns:,} unknowns, {solution.pose_iterations} pose iterations, {seconds['total']:.1f} s")
+
+
+def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:
+    """Return a function that runs and prints the referee; complain before any work when it is missing."""
+    if name is None:
+        return None
+    from fem.calculix import find_calculix
+    from fem.calculix_referee import compare_with_calculix
+
+    program = find_calculix()
+
+    def run(solution: FullSolution, out: Path) -> None:
+        for line in compare_with_calculix(solution, out, program):
+            print(line)
+
+    return run

@@ -1,0 +1,86 @@
+"""Public modules, classes and functions are documented, and what they document is what they take."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+from numpydoc.docscrape import NumpyDocString
+
+ROOT = Path(__file__).parents[1]
+MODULES = sorted(path for package in ("ltca", "fem", "validation") for path in (ROOT / package).rglob("*.py"))
+
+
+def public_definitions(tree):
+    """Yield (qualified name, node, owning class or None) of public functions, classes and methods."""
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            yield node.name, node, None
+            if isinstance(node, ast.ClassDef):
+                for inner in node.body:
+                    if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
+                        yield f"{node.name}.{inner.name}", inner, node
+
+
+def documented(docstring, section):
+    """Names of a numpydoc section, `a, b : float` being two."""
+    parsed = NumpyDocString(docstring)[section]
+    return [name.strip().lstrip("*") for entry in parsed for name in entry.name.split(",")]
+
+
+def signature(node, owner):
+    arguments = node.args
+    names = [a.arg for a in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
+    names += [a.arg for a in (arguments.vararg, arguments.kwarg) if a]
+    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in node.decorator_list)
+    return names[1:] if owner is not None and not static else names
+
+
+def fields(node):
+    """Annotated fields of a (data)class body."""
+    return [
+        entry.target.id
+        for entry in node.body
+        if isinstance(entry, ast.AnnAssign)
+        and isinstance(entry.target, ast.Name)
+        and not entry.target.id.startswith("_")
+    ]
+
+
+def problems_of(tree):
+    found = []
+    for name, node, owner in public_definitions(tree):
+        docstring = ast.get_docstring(node)
+        if not docstring:
+            found.append(f"{name}: no docstring")
+            continue
+        if isinstance(node, ast.ClassDef):
+            init = [n for n in node.body if isinstance(n, ast.FunctionDef) and n.name == "__init__"]
+            expected = sorted(signature(init[0], node)) if init else sorted(fields(node))
+            told = sorted(documented(docstring, "Attributes") + documented(docstring, "Parameters"))
+            if told and told != expected:
+                found.append(f"{name}: documents {told}, has {expected}")
+        else:
+            expected, told = signature(node, owner), documented(docstring, "Parameters")
+            if told and sorted(told) != sorted(expected):
+                found.append(f"{name}: documents {told}, takes {expected}")
+    return found
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.filterwarnings("error")
+def test_documented_parameters_equal_the_signature(path):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    assert ast.get_docstring(tree), "no module docstring"
+    assert problems_of(tree) == []
+
+
+def test_the_check_itself_can_fail():
+    tree = ast.parse(
+        '"""M."""\nclass A:\n    """A.\n\n    Attributes\n    ----------\n    x : int\n    """\n    y: int\n'
+        '    def f(self, a, b):\n        """F.\n\n'
+        '        Parameters\n        ----------\n        a : int\n        """\n'
+        "def g():\n    pass\n"
+    )
+    assert [problem.split(":")[0] for problem in problems_of(tree)] == ["A", "A.f", "g"]

@@ -1,0 +1,1 @@
+"""Commands of ``cyclo`` that this package brings."""

@@ -1,0 +1,145 @@
+"""``cyclo validate``: how far each simplification is from the full solution, as a report with pass and fail."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from validation.study import Plan, Study
+
+SUMMARY = "compare the codes with closed forms, other codes, the paper and full finite elements; write a report"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
+    parser.add_argument(
+        "--case", action="append", metavar="NAME", help="case, repeatable; default the first, middle and last of the file"
+    )
+    parser.add_argument(
+        "--angles",
+        metavar="φ",
+        nargs="+",
+        help="crank angles of full solutions in rad (or texts such as '20 deg'); default two (quick) or twelve (full) "
+        "over one period of the flank",
+    )
+    parser.add_argument(
+        "--level", choices=("quick", "full"), default="quick", help="how many angles; full also halves meshes"
+    )
+    parser.add_argument(
+        "--size",
+        type=float,
+        default=1.0,
+        metavar="S",
+        help="element edges of the full solutions as a multiple of the default (limits are for 1)",
+    )
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder of report and kept solutions; default out/<drive>/validation")  # fmt: skip
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the validation; write ``report.html``, ``validation.json`` and ``rows.csv``.
+
+    Returns
+    -------
+    int
+        0, or 1 when a row fails its limit.
+
+    Raises
+    ------
+    CycloError
+        For wrong input or when something does not converge.
+    """
+    import math
+
+    from ltca.drive_file import load_drive
+    from ltca.errors import CycloError
+    from ltca.units import parse_quantity
+    from validation.finite_element_positions import Settings
+    from validation.headline import write_files
+    from validation.report import write_report
+    from validation.rows import failed_rows
+    from validation.study import plan_study, run_study
+
+    if not (math.isfinite(arguments.size) and arguments.size > 0.0):
+        raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
+    angles = [parse_quantity(text, "rad", "--angles") for text in arguments.angles or []]
+    file = load_drive(arguments.drive)
+    plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
+    out: Path = arguments.out or Path("out") / file.name / "validation"
+    if out.exists() and not out.is_dir():
+        raise CycloError(f"--out {out}: is a file, not a folder")
+    progress = _Progress(plan)
+    try:
+        study = run_study(plan, out / "kept", progress.step, progress.say)
+        progress.step("report")
+        paths = [write_report(study, out / "report.html"), *write_files(study, out)]
+    finally:
+        progress.clear()
+    failed = failed_rows(study.rows)
+    for row in failed:
+        place = ", ".join(part for part in (row.case, _angle(row.crank_angle), row.contact, row.model) if part)
+        print(
+            f"FAILED  level {row.level}: {row.quantity} ({place}): {row.value:.6g} {row.unit}, difference "
+            f"{row.difference:.3g}{row.difference_unit} beyond {row.limit:g}"
+        )
+    _print_headline(study)
+    print(f"{len(study.rows)} rows, {len(failed)} failed")
+    print("written: " + ", ".join(str(path) for path in paths))
+    return 1 if failed else 0
+
+
+def _angle(angle: float | None) -> str:
+    return "" if angle is None else f"{angle:.4g} rad"
+
+
+def _print_headline(study: Study) -> None:
+    from validation.headline import headline
+
+    head = headline(study)
+    print(f"{'against full FE':<14}{'load':>12}{'pressure':>12}{'wheel angle':>14}")
+    for model, worst in head["worst_difference_from_full_fe"].items():
+        print(
+            f"{model:<14}{100.0 * worst['load']['difference']:>+11.2f}%{100.0 * worst['pressure']['difference']:>+11.2f}%"
+            f"{worst['wheel_angle']['difference_arcsec']:>+13.3f}″"
+        )
+    print(f"{'full FE against half-space':<28}{'pin':>9}{'roller':>9}{'pin shaft':>11}")
+    for case, changes in head["change_half_space_to_full_fe"].items():
+        pin, roller, shaft = (100.0 * changes[name] for name in ("pin_load", "roller_load", "pin_shaft_load"))
+        print(f"{case:<28}{pin:>+8.1f}%{roller:>+8.1f}%{shaft:>+10.1f}%")
+    _print_costs(study)
+
+
+def _print_costs(study: Study) -> None:
+    """Costs stay out of the report: it shall not depend on the machine or on what was kept."""
+    from validation.costs import measure_costs
+
+    costs = measure_costs(study)
+    print(
+        f"one position: full FE {costs.full:.1f} s; LTCA after derivation "
+        + ", ".join(f"{model} {1e3 * value:.2f} ms ({costs.full / value:.0f} times cheaper)" for model, value in costs.models.items())
+    )  # fmt: skip
+
+
+class _Progress:
+    """One line on a terminal that overwrites itself: step of how many, what it is, its details; nothing in a pipe."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.total, self.done, self.title = plan.steps, 0, ""
+        self.terminal = sys.stderr.isatty()
+
+    def step(self, title: str) -> None:
+        self.done += 1
+        self.title = f"[{self.done}/{self.total}] {title}"
+        self.say("")
+
+    def say(self, detail: str) -> None:
+        if self.terminal:
+            line = f"{self.title}: {detail}" if detail else self.title
+            print(f"\r\x1b[K{line[:118]}", end="", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        if self.terminal:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)

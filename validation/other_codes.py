@@ -1,0 +1,213 @@
+"""Level 2: the codes against other people's, run where they are installed, else as stored with the command that ran them.
+
+Stored figures are ours and theirs of one run on our machine, in ``validation/stored/other_codes.json``;
+``python -m validation.other_codes`` writes the file anew where both codes are installed.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import tempfile
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.calculix import find_calculix, pair_name, write_deck
+from fem.calculix_referee import ask_calculix
+from fem.solution import solve_drive
+from ltca.drive_file import load_drive
+from ltca.errors import CycloError
+from ltca.hertz import contact_modulus
+from ltca.length_profile import LogarithmicRelief
+from ltca.line_contact import LineContactLaw
+from ltca.output_files import write_json
+from ltca.profiled_line_contact import ProfiledLineContactLaw
+from ltca.series_law import approach_at_load
+from validation.comparison import ARCSECONDS
+from validation.rows import Row
+
+FloatArray = NDArray[np.float64]
+
+CASE, CRANK_ANGLE, SIZE = "CS-1", 0.5, 6.0
+COMMAND = "python -m validation.other_codes"
+STORED = "stored/other_codes.json"
+LIMITS = {
+    "load": (5e-3, "of the largest load of its kind; same mesh in both codes, their contact is a penalty"),
+    "wheel": (0.3, "seconds of arc are 0.13 µm at the pins; the penalty gives way by about a tenth of that"),
+    "pressure": (3e-3, "the other code's uniform cells, 96 across: finer ones halve the difference (0.15 % at worst)"),
+    "approach": (3e-3, "its uniform cells at the ends: 0.05 to 0.1 % measured"),
+}
+
+
+def compare_other_codes(progress: Callable[[str], None] | None = None) -> list[Row]:
+    """Return the rows of level 2, computed or stored.
+
+    Raises
+    ------
+    CycloError
+        When a code that is installed fails.
+    """
+    say = progress or _silent
+    stored = json.loads((resources.files("validation") / STORED).read_text(encoding="utf-8"))
+    figures: list[dict[str, Any]] = []
+    for code, available, run in (
+        ("CalculiX", _has_calculix(), run_calculix),
+        ("tamaas", importlib.util.find_spec("tamaas") is not None, run_tamaas),
+    ):
+        if available:
+            say(f"{code} solves the same problem")
+            figures += [{**item, "code": code} for item in run()]
+        else:
+            figures += [{**item, "code": f"{code} (stored, {COMMAND})"} for item in stored[code]]
+    return [_row(item) for item in figures]
+
+
+def _silent(_: str) -> None:
+    pass
+
+
+def _has_calculix() -> bool:
+    try:
+        find_calculix()
+    except CycloError:
+        return False
+    return True
+
+
+def _row(item: dict[str, Any]) -> Row:
+    limit, reason = LIMITS[item["bound"]]
+    scale = item["scale"]
+    return Row(
+        level=2,
+        quantity=item["quantity"],
+        value=item["ours"],
+        reference=item["theirs"],
+        unit=item["unit"],
+        difference=(item["ours"] - item["theirs"]) / scale,
+        difference_unit='"' if item["bound"] == "wheel" else "",
+        limit=limit,
+        reason=reason,
+        case=item.get("case", ""),
+        crank_angle=item.get("angle_rad"),
+        contact=item.get("contact", ""),
+        model=item["model"],
+        against=item["code"],
+    )
+
+
+def run_calculix() -> list[dict[str, Any]]:
+    """Solve the paper's drive with coarse elements, the same in both codes; return both answers."""
+    solution = solve_drive(load_drive("paper").cases[CASE], CRANK_ANGLE, scale=SIZE)
+    with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
+        answer = ask_calculix(solution, write_deck(solution, Path(folder) / "drive.inp"), find_calculix())
+    pairs, details = solution.model.pairs, solution.contacts.details
+    largest: dict[str, float] = {}
+    for pair, detail in zip(pairs, details, strict=True):
+        largest[pair.kind] = max(largest.get(pair.kind, 0.0), detail.load)
+    place = {"case": CASE, "angle_rad": CRANK_ANGLE, "model": "finite elements, coarse"}
+    found: list[dict[str, Any]] = []
+    for pair, detail in zip(pairs, details, strict=True):
+        theirs = answer.load.get(pair_name(pair), 0.0)
+        if detail.load <= 0.0 and theirs <= 0.0:
+            continue
+        found.append(
+            {
+                "quantity": "load of a contact of the whole drive",
+                "contact": pair_name(pair).lower().replace("_", " "),
+                "ours": detail.load,
+                "theirs": theirs,
+                "scale": largest[pair.kind],
+                "unit": "N",
+                "bound": "load",
+                **place,
+            }
+        )
+    found.append(
+        {
+            "quantity": "wheel angle",
+            "ours": solution.pose.wheel_angle * ARCSECONDS,
+            "theirs": answer.wheel_angle * ARCSECONDS,
+            "scale": 1.0,
+            "unit": '"',
+            "bound": "wheel",
+            **place,
+        }
+    )
+    return found
+
+
+def run_tamaas() -> list[dict[str, Any]]:
+    """Press an uncrowned and a logarithmic roller against a flat with both codes; return both answers."""
+    modulus = contact_modulus(210e3, 0.3, 210e3, 0.3)
+    relief = LogarithmicRelief(length=20.0, diameter=20.0)
+    crowned = ProfiledLineContactLaw.for_radii(relief, modulus, 10.0, 10.0)
+    cases: tuple[tuple[str, Any, float, float, float, tuple[int, int], Callable[[FloatArray], FloatArray]], ...] = (
+        ("uncrowned roller", LineContactLaw(11.8, modulus), 11.8, 2.0, 1500.0, (96, 512), np.zeros_like),
+        ("roller with ISO/TS 16281 profile", crowned, 20.0, 10.0, 40e3, (96, 384), relief.relief),
+    )
+    found: list[dict[str, Any]] = []
+    for name, law, length, radius, load, counts, drop in cases:
+        approach = float(approach_at_load(law, np.array([load]), radius)[0][0])
+        span = 3.4 * float(law.half_width(approach, radius))
+        pressure, theirs = _press(modulus, length, span, counts, radius, drop, load)
+        peak = float(law.mid_pressure(approach, radius))
+        for quantity, ours, other, unit, bound in (
+            (f"pressure at mid-length, {name}", peak, pressure, "MPa", "pressure"),
+            (f"approach, {name}", approach, theirs, "mm", "approach"),
+        ):
+            found.append(
+                {
+                    "quantity": quantity,
+                    "ours": ours,
+                    "theirs": other,
+                    "scale": other,
+                    "unit": unit,
+                    "bound": bound,
+                    "model": "half-space",
+                }
+            )
+    return found
+
+
+def _press(
+    modulus: float,
+    length: float,
+    span: float,
+    counts: tuple[int, int],
+    radius: float,
+    drop: Callable[[FloatArray], FloatArray],
+    load: float,
+) -> tuple[float, float]:
+    """Return pressure at mid-length and approach by tamaas: uniform cells, FFT of Boussinesq, conjugate gradients."""
+    import tamaas
+
+    tamaas.set_log_level(tamaas.LogLevel.error)
+    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [span, length], list(counts))
+    model.E, model.nu = modulus, 0.0
+    tamaas.ModelFactory.registerNonPeriodic(model, "free")
+    x, y = ((np.arange(n) + 0.5) * size / n - size / 2 for n, size in zip(counts, (span, length), strict=True))
+    surface = -(x[:, None] ** 2 / (2.0 * radius) + drop(y)[None, :])
+    solver = tamaas.PolonskyKeerRey(model, np.ascontiguousarray(surface), 1e-8)
+    solver.setIntegralOperator("free")
+    solver.max_iter = 5000
+    residual = float(solver.solve(load / (span * length)))
+    if not residual < 1e-8:
+        raise CycloError(f"tamaas did not converge: residual {residual:.1e}")
+    pressure = np.array(model.traction)
+    displacement = np.empty_like(pressure)
+    model.operators["free"](pressure, displacement)
+    loaded = pressure > 0.2 * pressure.max()
+    middle = pressure.shape[1] // 2
+    peak = float(pressure[:, middle - 1 : middle + 1].mean(axis=1).max())
+    return peak, float(np.mean((displacement - surface)[loaded]))
+
+
+if __name__ == "__main__":
+    target = Path(__file__).parent / STORED
+    write_json(target, {"command": COMMAND, "CalculiX": run_calculix(), "tamaas": run_tamaas()})
+    print(target)

@@ -1,0 +1,228 @@
+"""The whole validation of a drive: which positions, in which order, and the rows of all six levels."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from ltca.coefficients import InfluenceCoefficients
+from ltca.drive import Drive
+from ltca.drive_file import DriveFile
+from ltca.output_files import write_json
+from validation.closed_forms import check_closed_forms
+from validation.coefficient_rows import check_file, halved_mesh_row
+from validation.compared_positions import ComparedPosition, compare_case
+from validation.derived_coefficients import coefficients_of, has_clearance
+from validation.finite_element_positions import FullPosition, Settings, solve_position
+from validation.meaning import CaseMeaning, full_solution_rows, meaning_rows, study_case
+from validation.model_laws import compare_models
+from validation.other_codes import compare_other_codes
+from validation.position_rows import compare_position_rows, shared_file_rows
+from validation.printed_results import compare_printed_results
+from validation.rows import Row
+
+Level = Literal["quick", "full"]
+
+QUICK_ANGLES, FULL_ANGLES = 2, 12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """What to compare.
+
+    Attributes
+    ----------
+    name : str
+        Name of the drive.
+    drives : dict of str to Drive
+        The chosen cases.
+    crank_angles : tuple of float
+        rad.
+    level : {"quick", "full"}
+        How much is computed beside the positions.
+    settings : Settings
+        Of the full solutions.
+    """
+
+    name: str
+    drives: dict[str, Drive]
+    crank_angles: tuple[float, ...]
+    level: Level
+    settings: Settings
+
+    @property
+    def steps(self) -> int:
+        """Number of steps that `run_study` reports."""
+        return 5 + 2 * len(self.drives) + len(self.drives) * len(self.crank_angles)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """Everything a report needs.
+
+    Attributes
+    ----------
+    plan : Plan
+        What was compared.
+    rows : tuple of Row
+        Of all levels, in order.
+    compared : dict of str to list of ComparedPosition
+        By case.
+    meanings : dict of str to CaseMeaning
+        By case.
+    coefficients : dict of str to InfluenceCoefficients
+        By case.
+    """
+
+    plan: Plan
+    rows: tuple[Row, ...]
+    compared: dict[str, list[ComparedPosition]]
+    meanings: dict[str, CaseMeaning]
+    coefficients: dict[str, InfluenceCoefficients]
+
+
+def plan_study(
+    file: DriveFile,
+    cases: list[str] | None,
+    crank_angles: list[float] | None,
+    level: Level,
+    settings: Settings,
+) -> Plan:
+    """Return what a validation compares.
+
+    Without cases: the first, the middle and the last one of the file. Without angles: two (quick) or twelve (full) over
+    one period of the flank, 360°/z_C of the crank.
+
+    Raises
+    ------
+    DriveError
+        When a case is not in the file.
+    """
+    names = list(file.cases)
+    if not cases:
+        cases = list(dict.fromkeys([names[0], names[(len(names) - 1) // 2], names[-1]]))
+    drives = file.select(cases)
+    if not crank_angles:
+        count = QUICK_ANGLES if level == "quick" else FULL_ANGLES
+        teeth = next(iter(drives.values())).disc.number_of_teeth
+        crank_angles = (2.0 * np.pi / teeth * np.arange(count) / count).tolist()
+    return Plan(
+        name=file.name,
+        drives=drives,
+        crank_angles=tuple(dict.fromkeys(crank_angles)),
+        level=level,
+        settings=settings,
+    )
+
+
+def run_study(plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]) -> Study:
+    """Run a validation.
+
+    Parameters
+    ----------
+    plan : Plan
+        What to compare.
+    folder : Path
+        Where finished solutions, coefficients and other codes' answers are kept.
+    step : callable
+        Called with the name of each step before it starts.
+    say : callable
+        Called with the details of a step.
+
+    Returns
+    -------
+    Study
+        The same whether everything was solved now or taken from files.
+
+    Raises
+    ------
+    CycloError
+        When something does not converge or a file cannot be written.
+    """
+    first_case, first_drive = next(iter(plan.drives.items()))
+    step("closed forms")
+    rows = check_closed_forms(first_drive)
+    step("other codes")
+    rows += _kept_rows(folder / "other_codes.json", lambda: compare_other_codes(say))
+    step("printed results")
+    rows += compare_printed_results()
+    coefficients: dict[str, InfluenceCoefficients] = {}
+    four: list[Row] = []
+    for case, drive in plan.drives.items():
+        step(f"coefficients of {case}")
+        dataset, coefficients[case] = coefficients_of(drive, case, folder / "coefficients", progress=say)
+        four += check_file(dataset, case, "strain")
+    step("coefficients of the bodies in plane stress")
+    stress_file, stress = coefficients_of(
+        first_drive, first_case, folder / "coefficients", plane="stress", progress=say
+    )
+    four += check_file(stress_file, first_case, "stress")
+    if plan.level == "full":
+        finer, _ = coefficients_of(first_drive, first_case, folder / "coefficients", size=0.5, progress=say)
+        four.append(halved_mesh_row(finer, first_case))
+    rows += four
+    full = _solve_positions(plan, folder / "positions", step, say)
+    compared = {case: compare_case(plan.drives[case], full[case], coefficients[case]) for case in plan.drives}
+    angles = np.array(plan.crank_angles)
+    for position in (item for case in compared.values() for item in case):
+        rows += compare_position_rows(position)
+    rows += compare_models(first_drive, first_case, angles, coefficients[first_case], stress)
+    last_case, last_drive = list(plan.drives.items())[-1]
+    if has_clearance(last_drive):
+        _, shared = coefficients_of(
+            last_drive, last_case, folder / "coefficients", keep_clearance=False, progress=say
+        )
+        rows += shared_file_rows(compare_case(last_drive, full[last_case], shared))
+    meanings = {}
+    for case, drive in plan.drives.items():
+        step(f"one turn of {case}")
+        meanings[case] = study_case(drive, coefficients[case])
+        rows += [*full_solution_rows(case, compared[case]), *meaning_rows(case, meanings[case])]
+    return Study(plan=plan, rows=tuple(rows), compared=compared, meanings=meanings, coefficients=coefficients)
+
+
+def _solve_positions(
+    plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]
+) -> dict[str, list[FullPosition]]:
+    pictured = plan.crank_angles[len(plan.crank_angles) // 2]
+    solved: dict[str, list[FullPosition]] = {}
+    for case, drive in plan.drives.items():
+        solved[case] = []
+        for angle in plan.crank_angles:
+            step(f"full FE of {case} at {angle:.4g} rad")
+            solved[case].append(
+                solve_position(
+                    drive,
+                    case,
+                    angle,
+                    folder,
+                    plan.settings,
+                    pictures=angle == pictured,
+                    title=f"{plan.name}, {case}, {angle:.4g} rad",
+                    progress=say,
+                )
+            )
+    return solved
+
+
+def _kept_rows(path: Path, make: Callable[[], list[Row]]) -> list[Row]:
+    """Return rows of other codes from their file; they are asked once, as their answers do not depend on the plan."""
+    key = {"version": version("cyclo-ltca")}
+    try:
+        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        if content["key"] == key:
+            return [Row(**item) for item in content["rows"]]
+    except (OSError, ValueError, KeyError, TypeError):
+        pass
+    write_json(path, {"key": key, "rows": [_fields(row) for row in make()]})
+    return _kept_rows(path, make)
+
+
+def _fields(row: Row) -> dict[str, Any]:
+    return {name: getattr(row, name) for name in Row.__dataclass_fields__}
