@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from ltca.commands import curves, optimise, sweep, tolerance
+from ltca.compliance import HalfSpaceCompliance
 from ltca.drive_fields import read_field, with_fields
 from ltca.drive_file import load_drive
 from ltca.errors import CycloError, DriveError
@@ -187,6 +188,14 @@ def test_names_ranges_and_limits(drive):
     ):
         with pytest.raises(DriveError, match=message):
             parse_limit(text)
+
+
+def test_models_of_one_drive_serve_the_optimiser(drive):
+    """A model that is built for one drive at a time (finite-element coefficients are) gives what the batch gives."""
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
+    drives = [drive, with_fields(drive, {"disc.equidistant_offset": 0.16})]
+    alone = batch_analysis(problem, 5, lambda one, positions: HalfSpaceCompliance.of_drive(one[0]), together=False)
+    np.testing.assert_allclose(alone(drives), batch_analysis(problem, 5)(drives), rtol=1e-9)
 
 
 @pytest.mark.slow
