@@ -4,13 +4,20 @@ Modules in the order data passes through them:
 
 =====================  ==============================================================================
 drive                  frozen definitions of parts, clearances, load, materials
+deviations             departures of real parts from their drawing
 units                  quantities: plain numbers and texts with units
 drive_checks           what the numbers of a drive cannot be together
+deviation_checks       counts, sizes, flanks that fold or trap pins
+drive_fields           fields by dotted path; a drive as text
+tolerances             how fields scatter: the [tolerances] table
 drive_file             TOML to validated drives, one for each case
+unit_circle            e^{iφ} by products
+profile_deviation      deviation of the flank along its normal
 profile                flank, normals, curvature, nearest point (Eq. 1)
 placement              where pins, rollers and holes stand, errors included (Eq. 47–51)
 pairs                  approach of every pair at a pose, with derivatives (Eq. 45–64)
 tooth_contact          first contact, backlash, unloaded transmission error (Eq. 2–6)
+rigid_limit            play of all clearances together, disc floating
 influence              Boussinesq–Love influence coefficients of rectangles
 unilateral             p ≥ 0 contact problem on cells, exactly
 patch                  grid and pressure of one contact patch
@@ -35,8 +42,13 @@ pressure_figures       contact zone, roller pressure in 3-D and in sections
 random_drives          random but valid drives
 equilibrium_check      whether a pose balances, by energies alone
 loaded_analysis        a drive at many crank angles: loads, pressures, bearing forces
+torque_curve           torque against wind-up, lost motion, stiffness
+transmission_error_spectrum  orders of the transmission error by name
+rating_life            life of the crank bearing (ISO 281, ISO/TS 16281)
+pressure_safety        flank pressure against a limit
+studies                samples by the thousand: tolerances, sweeps, optimiser
 results                labelled dataset and summary
-figures, drive_picture figures of a run, picture of the drive
+figures, drive_picture, curve_figures  figures of a run, picture of the drive, curves
 output_files           whole files or none
 progress               progress bar on a terminal
 cli, commands          the program ``cyclo``

@@ -44,7 +44,7 @@ def field_kinds() -> dict[str, FieldKind]:
     return dict(_kinds(Drive, ""))
 
 
-def _kinds(owner: type, prefix: str) -> Iterator[tuple[str, FieldKind]]:
+def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path = f"{prefix}{name}"
         if is_dataclass(hint):

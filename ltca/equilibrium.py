@@ -68,7 +68,7 @@ class Equilibrium:
 
 
 def lever_arms(model: ComplianceModel) -> FloatArray:
-    """Return the lengths that turn the residual into forces: 1, 1, e z_C and e z_P (mm), shape (4,) or (positions, 4)."""
+    """Return the lengths that turn the residual into forces, mm: 1, 1, e z_C, e z_P; (4,) or (positions, 4)."""
     place = model.geometry.placement
     wheel = place.eccentricity * place.reduction_ratio
     one = np.ones_like(wheel)

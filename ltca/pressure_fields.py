@@ -152,7 +152,7 @@ def roller_fields(
     outer = side == "outer"
     kind = kinds.outer if outer else kinds.inner
     approach = rollers.outer_approach if outer else rollers.inner_approach
-    race = -place.bore_radius if outer else place.inner_race_radius
+    race = -float(place.bore_radius) if outer else float(place.inner_race_radius)
     fields = {}
     for roller in _loaded(rollers.outer_load, position):
         radius = float(place.roller_radii[roller])

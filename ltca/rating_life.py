@@ -1,10 +1,11 @@
 r"""Rating life of the crank bearing from the loads of its rollers (ISO 281, ISO/TS 16281).
 
-A point of a race that stands still to the load always carries the same roller load; one that moves against it carries them all
-in turn. So the equivalent load of the moving race is the fourth-power mean of the roller loads, that of the standing race the
-mean with 4.5 (= 4 · 9/8, the Weibull slope of line contact). In a usual bearing the load stands in space, the inner race turns
-and the outer one stands. **Here it is the other way round**: the load turns with the crank, so the inner race, which is the
-crank's own surface, stands still to it, and the disc's bore moves against it. The means change places.
+A point of a race that stands still to the load always carries the same roller load; one that moves against it carries
+them all in turn. So the equivalent load of the moving race is the fourth-power mean of the roller loads, that of the
+standing race the mean with 4.5 (= 4 · 9/8, the Weibull slope of line contact). In a usual bearing the load stands in
+space, the inner race turns and the outer one stands. **Here it is the other way round**: the load turns with the crank,
+so the inner race, which is the crank's own surface, stands still to it, and the disc's bore moves against it. The means
+change places.
 """
 
 from __future__ import annotations
@@ -149,7 +150,7 @@ def rating_life(
 
     Notes
     -----
-    ISO/TS 16281:2008 Sect. 5 with the load of a roller spread evenly over its laminae: Q_ci and Q_ce by C_r/(0.378 Z) and
+    ISO/TS 16281:2008 with the load of a roller spread evenly over its laminae: Q_ci and Q_ce by C_r/(0.378 Z) and
     C_r/(0.364 Z), races joined with the slope 9/8. The laminae all carry Q/n_s, so their sum is a factor on the load,
     the 4.5-power mean of the edge factors.
     """

@@ -1,8 +1,8 @@
 r"""Distributions of the fields of a drive: the ``[tolerances]`` table that studies read.
 
 A tolerance is the ±T of the drawing about the field's value. A normal distribution takes its standard deviation from
-it by the process capability, C_pk = (T − |mean|)/(3σ) (ISO 22514-2 for a symmetric tolerance); truncated means that parts
-outside ±T are sorted out.
+it by the process capability, C_pk = (T − |mean|)/(3σ) (ISO 22514-2 for a symmetric tolerance); truncated means that
+parts outside ±T are sorted out.
 """
 
 from __future__ import annotations

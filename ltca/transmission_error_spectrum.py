@@ -1,10 +1,10 @@
 r"""Orders of the transmission error by name, fitted together.
 
 Orders are counted per turn of the crank. Everything in a cycloid drive comes from a few motions: the crank (1), the
-loaded zone past the teeth of the flank (z_C), past the holes (z_PS), past single pins of the wheel, which turns on by 1/z_P a
-turn (z_C/z_P), and past the rollers of the cage (1 − c with the cage speed c; n_BR (1 − c) for equal rollers). The true
-period of all of them is long (98 z_P turns for the paper's drive, where one turn is often all one has), so the known orders
-are fitted by least squares in place of a Fourier transform over a period.
+loaded zone past the teeth of the flank (z_C), past the holes (z_PS), past single pins of the wheel, which turns on by
+1/z_P a turn (z_C/z_P), and past the rollers of the cage (1 − c with the cage speed c; n_BR (1 − c) for equal rollers).
+The true period of all of them is long (98 turns for the rollers of the paper's drive), so the known orders are fitted
+by least squares in place of a Fourier transform over a period.
 """
 
 from __future__ import annotations

@@ -96,7 +96,12 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
         first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
-        print(f"  {QUANTITIES[name].description}: {', '.join(first)} (linear: {100.0 * entry['explained']:.0f} %)")
+        print(
+            f"  {QUANTITIES[name].description}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)"
+        )
+    linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
+    if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
+        print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
     if found.failures:
         print(
             f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}"

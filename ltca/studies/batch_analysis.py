@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import BatchModel, ContactPressures, HalfSpaceCompliance, batch_signature
+from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, batch_signature
 from ltca.drive import Drive
 from ltca.equilibrium import Equilibrium, solve_equilibrium
 from ltca.errors import CycloError, DriveError
@@ -17,7 +17,7 @@ from ltca.studies.quantities import QUANTITIES, SampleBatch
 from ltca.tooth_contact import WHEEL_ANGLE, backlash
 
 FloatArray = NDArray[np.float64]
-ModelBuilder = Callable[[Sequence[Drive], int], BatchModel]
+ModelBuilder = Callable[[Sequence[Drive], int], ComplianceModel]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,12 +48,15 @@ class BatchSettings:
         Compliance model of several drives at a number of positions each.
     nominal : Nominal or None
         Starting poses; by default every sample starts from first contact.
+    together : bool
+        Whether the model takes different drives in one batch; otherwise it is built for one drive at a time.
     """
 
     crank_angle: FloatArray
     quantities: tuple[str, ...]
     build: ModelBuilder = HalfSpaceCompliance.of_drives
     nominal: Nominal | None = None
+    together: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,7 +109,8 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     messages = [""] * len(drives)
     groups: dict[tuple[object, ...], list[int]] = {}
     for number, drive in enumerate(drives):
-        groups.setdefault(batch_signature(drive), []).append(number)
+        key = batch_signature(drive) if settings.together else (number,)
+        groups.setdefault(key, []).append(number)
     for members in groups.values():
         _solve_group(drives, members, settings, values, messages)
     return SampleResults(values=values, messages=tuple(messages))

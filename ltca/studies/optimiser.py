@@ -1,8 +1,8 @@
 """Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two aims.
 
-A generation is one batch. Candidates that break a limit or are no sound drive rank behind every one that is fine, by how
-far they break it (the feasibility rule of Deb, Comput. Methods Appl. Mech. Eng. 186, 2000); the best one is refined by
-Nelder and Mead's simplex.
+A generation is one batch. Candidates that break a limit or are no sound drive rank behind every one that is fine, by
+how far they break it (the feasibility rule of Deb, Comput. Methods Appl. Mech. Eng. 186, 2000); the best one is refined
+by Nelder and Mead's simplex.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.compliance import HalfSpaceCompliance
 from ltca.drive import Drive
 from ltca.drive_fields import field_kinds, read_field, with_fields
 from ltca.errors import CycloError, DriveError
@@ -137,7 +138,13 @@ class Problem:
         return tuple(dict.fromkeys((*self.aims, *(limit.quantity for limit in self.limits))))
 
 
-def batch_analysis(problem: Problem, positions: int, build: ModelBuilder | None = None) -> Analysis:
+def batch_analysis(
+    problem: Problem,
+    positions: int,
+    build: ModelBuilder = HalfSpaceCompliance.of_drives,
+    *,
+    together: bool = True,
+) -> Analysis:
     """Return the analysis of candidates by the batch solver over one turn.
 
     Parameters
@@ -146,12 +153,14 @@ def batch_analysis(problem: Problem, positions: int, build: ModelBuilder | None 
         For its quantities.
     positions : int
         Crank angles 2πk/N.
-    build : callable, optional
+    build : callable
         Compliance model of several drives; half-space tables by default.
+    together : bool
+        Whether that model takes different drives in one batch, see `ltca.studies.batch_analysis.BatchSettings`.
     """
-    settings = BatchSettings(crank_angle=position_angles(positions), quantities=problem.quantities)
-    if build is not None:
-        settings = BatchSettings(crank_angle=settings.crank_angle, quantities=problem.quantities, build=build)
+    settings = BatchSettings(
+        crank_angle=position_angles(positions), quantities=problem.quantities, build=build, together=together
+    )
     return lambda drives: analyse_samples(drives, settings).values
 
 

@@ -1,8 +1,8 @@
 r"""Which tolerances matter: standardised regression over random samples, Sobol indices over Saltelli blocks.
 
-Regression of a quantity y on the drawn numbers x gives :math:`\mathrm{SRC}_j = b_j \sigma_j/\sigma_y`; for independent factors
-SRC² is the part of the variance of y that x_j explains linearly (Saltelli et al., *Global Sensitivity Analysis*, 2008,
-Sect. 1.2.5), and what all of them leave, 1 − R², is curved or mutual. Sobol indices see that too: S is the part of
+Regression of a quantity y on the drawn numbers x gives :math:`\mathrm{SRC}_j = b_j \sigma_j/\sigma_y`; for independent
+factors SRC² is the part of the variance of y that x_j explains linearly (Saltelli et al., *Global Sensitivity
+Analysis*, 2008), and what all of them leave, 1 − R², is curved or mutual. Sobol indices see that too: S is the part of
 the variance that vanishes with a factor known, S_T the part left with all others known.
 """
 

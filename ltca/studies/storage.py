@@ -151,7 +151,8 @@ class StudyFolder:
                 return []
             numbers = file.variables["failed_sample"][...].tolist()
             reasons = file.variables["failure_message"][...]
-            return [(int(number), str(text)) for number, text in zip(numbers, reasons, strict=True)]
+            texts = [reason.decode() if isinstance(reason, bytes) else str(reason) for reason in reasons]
+            return list(zip(numbers, texts, strict=True))
 
     def finish(self, study: Study) -> list[tuple[int, str]]:
         """Write dataset and table from all batches, then remove those; return failed samples and why.

@@ -25,7 +25,7 @@ def moved_inward(drive, pin, size=FEELER):
 
 
 def test_one_pin_moved_inward_turns_the_wheel_by_its_closed_form(paper_cases):
-    """Rigid limit: the pin that touches gives way by 10 µm along its normal, over the normal's lever about the wheel."""
+    """Rigid limit: the pin that touches gives way by 10 µm along its normal, over the lever about the wheel."""
     drive = paper_cases["CS-1"]
     geometry = ContactGeometry.of_drive(drive)
     angles = np.linspace(0.0, 2.0 * np.pi, 9)
@@ -39,7 +39,9 @@ def test_one_pin_moved_inward_turns_the_wheel_by_its_closed_form(paper_cases):
         # Moving the pin by −h outward presses it by h n·r; the wheel turns back by that over its rate of approach.
         closer = FEELER * (normal * out.conjugate()).real
         expected = -closer / gradient[row, pin, WHEEL_ANGLE]
-        moved, touching = first_contact(ContactGeometry.of_drive(moved_inward(drive, int(pin))), angles[[row]], WHEEL_ANGLE, -1)
+        moved, touching = first_contact(
+            ContactGeometry.of_drive(moved_inward(drive, int(pin))), angles[[row]], WHEEL_ANGLE, -1
+        )
         assert touching[0] == pin or expected * -1 < 0  # moved away, another pin may touch first
         if touching[0] == pin:
             # second order: h² over the flank's radius of some 16 mm and over the lever of 56 mm, 6 nm of 10 µm
@@ -71,7 +73,7 @@ def test_one_pin_moved_inward_takes_load_by_the_stiffness_of_the_pairs(paper_cas
 
 
 def test_ten_micrometres_are_the_sum_of_their_small_steps(paper_cases):
-    """10 µm is as much as the approaches, other pins lift off on the way: the rate of every step adds up to the shift."""
+    """10 µm is as much as the approaches, other pins lift off on the way: the rates of all steps add up."""
     drive, angle = paper_cases["CS-6"], np.array([0.3])
     pin, sizes = None, np.linspace(0.0, FEELER, 21)
     loads, rates = [], []
@@ -102,7 +104,7 @@ RUNOUT = 0.002
 def test_eccentric_flank_is_one_order_of_the_transmission_error(paper_cases):
     """Rigid limit: δφ = ρ·n/(n's lever e u cos β) = ρ/(e u) (sin(α − φ) + tan β cos(α − φ)), β of the touching normal.
 
-    β repeats with the teeth, so order 1 has the amplitude ρ/(e u) |1 + i mean tan β| and only its sidebands z_C ± 1 join.
+    β repeats with the teeth: order 1 has the amplitude ρ/(e u) |1 + i mean tan β|, only its sidebands z_C ± 1 join.
     """
     drive = paper_cases["CS-1"]
     angle_of = 0.8
@@ -118,7 +120,7 @@ def test_eccentric_flank_is_one_order_of_the_transmission_error(paper_cases):
     slant = normal.real / normal.imag
     reach = RUNOUT / (4.0 * 14.0)
     by_hand = reach * (np.sin(angle_of - angles) + slant * np.cos(angle_of - angles))
-    # Where the same pin touches it is its own closed form, to second order in ρ and to the backlash's turn of the lever.
+    # Where the same pin touches it is a closed form, to second order in ρ and to the backlash's turn of the lever.
     np.testing.assert_allclose(error[pins == same], by_hand[pins == same], atol=3e-3 * reach)
     orders = tuple(Order(float(value), str(value)) for value in (1, 2, 3, 5, 11, 12, 13, 14, 15, 26))
     spectrum = fit_orders(angles, error, orders)
@@ -219,7 +221,7 @@ def test_torque_curve_tends_to_the_play_of_the_clearances(paper_cases, case):
 
 
 def test_torque_curve_is_monotone_and_mirrored(paper_cases):
-    """A mirrored drive at the mirrored crank angle winds up the other way; φ_C = 0 is its own mirror but for the rollers."""
+    """A mirrored drive at the mirrored crank angle winds up the other way; φ_C = 0 is its own mirror."""
     drive = paper_cases["CS-6"]
     curve = torque_curve(drive, np.array([0.0]), points=10)
     assert np.all(np.diff(curve.wheel_angle[0]) > 0.0)

@@ -1,4 +1,4 @@
-"""Rating life against the tables of ISO 281, the integrals behind ISO/TS 16281, and the swapped means of a crank bearing."""
+"""Rating life against ISO 281's tables, the integrals behind ISO/TS 16281, and the swapped means of a crank bearing."""
 
 from __future__ import annotations
 
@@ -104,9 +104,10 @@ def test_edge_factors_and_relief():
     assert np.all(np.diff(factors[15:]) > 0.0)
     np.testing.assert_array_equal(factors, factors[::-1])
     loads, _ = zone(20)
-    assert rating_life(bearing(), loads[None], loads[None]).life < rating_life(
-        bearing(), loads[None], loads[None], relieved=True
-    ).life
+    assert (
+        rating_life(bearing(), loads[None], loads[None]).life
+        < rating_life(bearing(), loads[None], loads[None], relieved=True).life
+    )
 
 
 def test_wrong_input_is_refused():

@@ -134,7 +134,7 @@ def bad_sweep(paper):
     """Thickness so small that the torque cannot be carried, and a flank that interferes, among sound samples."""
     factors = (
         SweepFactor(path="disc.equidistant_offset", levels=(0.15, 0.05, 0.15, 0.16)),
-        SweepFactor(path="load.torque", levels=(3e5, 3e5, 3e8, 3e5)),
+        SweepFactor(path="load.torque", levels=(3e5, 3e5, 1e8, 3e5)),
     )
     return Study(
         name="bad",
@@ -159,7 +159,7 @@ def test_failed_samples_are_listed_with_their_drive_and_stop_nobody(paper, tmp_p
     unsound = (tmp_path / "samples" / "sample_00000001.toml").read_text()
     assert "disc.equidistant_offset = 0.05" in unsound
     heavy = load_drive(tmp_path / "samples" / "sample_00000002.toml").cases["nominal"]
-    assert heavy.load.torque == 3e8
+    assert heavy.load.torque == 1e8
     # told again by a resumed, finished study
     assert run_study(bad_sweep(paper), folder, Engine(), resume=True).failures == found.failures
 
@@ -214,7 +214,7 @@ def children():
 @pytest.mark.slow
 def test_killed_study_resumes_to_the_same_dataset(paper, tmp_path):
     """kill −9 for the main process of the command in the middle, then --resume: byte for byte the undisturbed files."""
-    arguments = ["paper", "--case", "CS-6", "--samples", "40", "--positions", "512", "--seed", "4", "--no-figures"]
+    arguments = ["paper", "--case", "CS-6", "--samples", "28", "--positions", "512", "--seed", "4", "--no-figures"]
     arguments += ["--quantities", "ptp_transmission_error", "max_pin_load"]
     program = "import sys; from ltca.cli import _Parser; from ltca.commands import tolerance as t; p = _Parser();"
     program += "t.configure(p); sys.exit(t.execute(p.parse_args(sys.argv[1:])))"
@@ -232,11 +232,11 @@ def test_killed_study_resumes_to_the_same_dataset(paper, tmp_path):
     process.kill()
     process.communicate()
     kept = len(list(one.glob("batches/[0-9]*.npz")))
-    assert 3 <= kept < 10
+    assert 3 <= kept < 7
     resumed = start(one, "--resume", "--workers", "2")
     text, _ = resumed.communicate()
     assert resumed.returncode == 0
-    assert "40 samples × 512 positions" in text
+    assert "28 samples × 512 positions" in text
     straight = start(other)
     straight.communicate()
     assert straight.returncode == 0
@@ -247,13 +247,21 @@ def test_killed_study_resumes_to_the_same_dataset(paper, tmp_path):
 def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
     """A scheduler and two workers as separate processes; one of them is killed in the middle."""
     pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
-    study = small_study(paper, samples=40)
+    study = small_study(paper, samples=32)
     quiet = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     address_file = tmp_path / "scheduler.json"
     base = [sys.executable, "-m"]
     processes = [
         subprocess.Popen(
-            [*base, "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(address_file)],
+            [
+                *base,
+                "distributed.cli.dask_scheduler",
+                "--port",
+                "0",
+                "--no-dashboard",
+                "--scheduler-file",
+                str(address_file),
+            ],
             stderr=subprocess.DEVNULL,
             env=quiet,
         )
@@ -283,12 +291,12 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
 
         found = run_study(study, folder, Engine(scheduler=address), advance=advance)
         assert workers[0].wait(timeout=10) == -signal.SIGKILL
-        assert sum(done) == 40
+        assert sum(done) == 32
         assert not found.failures
     finally:
-        for process in processes:
-            process.terminate()
-        for process in processes:
+        # Workers first: one whose scheduler is gone waits for it to come back.
+        for process in reversed(processes):
+            process.kill()
             process.wait(timeout=20)
     straight = StudyFolder(path=tmp_path / "straight")
     run_study(study, straight, Engine())
@@ -309,9 +317,12 @@ from pathlib import Path
 from ltca.drive_file import load_drive
 from ltca.studies.engine import Engine
 from ltca.studies.run_study import run_study
+from ltca.studies import storage
 from ltca.studies.storage import StudyFolder
 from ltca.studies.tolerance_study import tolerance_study
-study = tolerance_study(load_drive("paper"), case="CS-6", samples=int(sys.argv[1]), positions=1, quantities=("max_pin_load",))
+storage.CHUNK = 1024  # so that the smaller study fills several as well
+paper, samples = load_drive("paper"), int(sys.argv[1])
+study = tolerance_study(paper, case="CS-6", samples=samples, positions=1, quantities=("max_pin_load",))
 run_study(study, StudyFolder(path=Path(sys.argv[2])), Engine())
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
@@ -319,12 +330,12 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 @pytest.mark.slow
 def test_memory_is_flat_against_the_number_of_samples(tmp_path):
-    """Four times the samples: the factors alone of the greater would be 12 MB more if they were kept."""
+    """Four times the samples: the factors alone of the greater would be 6 MB more if they were kept."""
 
     def peak(samples):
         command_line = [sys.executable, "-c", MEMORY, str(samples), str(tmp_path / str(samples))]
         text = subprocess.run(command_line, check=True, capture_output=True, text=True).stdout
         return int(text.split()[-1]) / 1024.0  # MB
 
-    small, large = peak(4096), peak(16384)
-    assert large - small < 6.0
+    small, large = peak(2048), peak(8192)
+    assert large - small < 3.0

@@ -1,0 +1,89 @@
+"""Throughput of the tolerance study of issue 6: the paper's CS-6, all deviations random, 28 positions over one turn.
+
+    python benchmarks/tolerance.py [--samples 10000] [--scheduler tcp://host:port]
+
+Prints positions per second with one and two workers (starting processes included, and the steady rate after the first
+batch of every worker), CPU time per position of the one worker, failures, and whether the files are the same byte for
+byte. On a machine with other work the wall times are theirs as well: look at the CPU time and the load printed beside.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import argparse
+import resource
+import tempfile
+import time
+from pathlib import Path
+
+from ltca.drive_file import load_drive
+from ltca.studies.engine import Engine, solve_batches
+from ltca.studies.run_study import run_study
+from ltca.studies.storage import StudyFolder
+from ltca.studies.study import Study
+from ltca.studies.tolerance_study import tolerance_study
+
+
+def cpu_seconds() -> float:
+    """CPU time of this process and its finished children."""
+    return sum(
+        usage.ru_utime + usage.ru_stime
+        for usage in (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN))
+    )
+
+
+def measure(study: Study, engine: Engine, folder: StudyFolder) -> tuple[float, float]:
+    """Run the study and return its positions per second, whole and steady."""
+    workers = max(engine.workers, 1)
+    began, load = time.perf_counter(), os.getloadavg()[0]
+    cpu = cpu_seconds()
+    left, first, steady, solved = folder.prepare(study, resume=False), 0.0, 0, 0
+    for number, result in enumerate(solve_batches(study, left, engine)):
+        folder.store(result)
+        solved += len(result.messages)
+        if number == workers - 1:
+            first = time.perf_counter()
+        elif number >= workers:
+            steady += len(result.messages)
+    ended = time.perf_counter()
+    positions = study.positions
+    whole, rate = solved * positions / (ended - began), steady * positions / (ended - first)
+    used = 1e6 * (cpu_seconds() - cpu) / (solved * positions)
+    name = engine.scheduler or f"{engine.workers} worker{'s' if engine.workers > 1 else ''}"
+    print(f"  {name:<24}{whole:>10.0f}{rate:>10.0f}{used:>12.0f}{load:>10.1f} → {os.getloadavg()[0]:.1f}")
+    run_study(study, folder, engine, resume=True)
+    return whole, rate
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--samples", type=int, default=10_000)
+    parser.add_argument("--positions", type=int, default=28)
+    parser.add_argument("--scheduler", default="")
+    arguments = parser.parse_args()
+    study = tolerance_study(
+        load_drive("paper"), case="CS-6", samples=arguments.samples, positions=arguments.positions, seed=1
+    )
+    print(f"{study.name}: {arguments.samples} samples × {arguments.positions} positions, {os.cpu_count()} cores")
+    print(f"  {'':<24}{'whole':>10}{'steady':>10}{'CPU µs':>12}{'machine load':>16}")
+    print(f"  {'':<24}{'pos./s':>10}{'pos./s':>10}{'a position':>12}")
+    engines = [Engine(workers=1), Engine(workers=2)]
+    if arguments.scheduler:
+        engines.append(Engine(scheduler=arguments.scheduler))
+    with tempfile.TemporaryDirectory() as place:
+        folders = [StudyFolder(path=Path(place) / str(number)) for number in range(len(engines))]
+        rates = [measure(study, engine, folder) for engine, folder in zip(engines, folders, strict=True)]
+        print(f"  two workers by one: {rates[1][0] / rates[0][0]:.2f} whole, {rates[1][1] / rates[0][1]:.2f} steady")
+        failed = folders[0].failures(study)
+        print(f"  failed samples: {len(failed)}")
+        first = folders[0].results.read_bytes()
+        print(f"  the same files: {all(folder.results.read_bytes() == first for folder in folders[1:])}")
+
+
+if __name__ == "__main__":
+    main()
