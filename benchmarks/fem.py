@@ -14,6 +14,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+# This file's folder would hide the package of the same name.
+sys.path[0] = str(Path(__file__).resolve().parents[1])
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
@@ -67,7 +69,7 @@ def measure(size: float, further: bool, ccx: bool) -> dict:
 def main() -> None:
     """Measure every size in a process of its own and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sizes", type=float, nargs="+", default=[8.0, 3.0, 1.0, 0.5, 0.38])
+    parser.add_argument("--sizes", type=float, nargs="+", default=[6.0, 2.0, 1.0, 0.5, 0.38])
     parser.add_argument("--ccx", action="store_true", help="CalculiX on the deck of size 1")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--worker", type=float, help=argparse.SUPPRESS)
@@ -80,7 +82,7 @@ def main() -> None:
     for size in arguments.sizes:
         words = [sys.executable, __file__, "--worker", str(size)]
         words += ["--ccx"] if arguments.ccx and size == 1.0 else []
-        done = subprocess.run(words, capture_output=True, text=True, check=True)
+        done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True)
         row = json.loads(done.stdout.splitlines()[-1])
         rows.append(row)
         seconds = row["seconds"]

@@ -142,13 +142,15 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
     Raises
     ------
     CycloError
-        For plane stress, whose contact CalculiX does not offer in this form.
+        For plane stress and for elastic shaft pins, which the deck does not have.
     MeshError
         When the file cannot be written.
     """
     if solution.plane_state != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
     model, pose = solution.model, solution.pose
+    if model.shaft_pins:
+        raise CycloError("the CalculiX deck has rigid shaft pins; solve without --elastic-shaft-pins")
     drive, meshes = model.drive, model.meshes
     thickness, materials = drive.disc.thickness, drive.materials
     deck = _Deck()

@@ -137,6 +137,26 @@ def peak_of(arc: FloatArray, pressure: FloatArray, half_width: float) -> float:
     return float(peak - edge**2 * abs(bend / peak) / half_width**2 / 12.0)
 
 
+def open_gaps(model: DriveModel, solution: PoseSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the smallest gap left between the deformed bodies at each pin, roller and hole, mm.
+
+    NaN where a part has no contact zone; a roller's is the sum of its two.
+    """
+    place = model.placement
+    pins = np.full(len(place.wheel_pin_radii), np.nan)
+    rollers = np.full(len(place.roller_radii), np.nan)
+    holes = np.full(len(place.hole_radii), np.nan)
+    for pair, integral in zip(model.pairs, solution.integrals, strict=True):
+        left = float(np.min(solution.contact.opening[pair.unknowns] / integral.measure))
+        if pair.kind == "pin":
+            pins[pair.index] = left
+        elif pair.kind == "hole":
+            holes[pair.index] = left
+        else:
+            rollers[pair.index] = left if np.isnan(rollers[pair.index]) else rollers[pair.index] + left
+    return pins, rollers, holes
+
+
 def vertex_means(arc: FloatArray, pressure: FloatArray) -> FloatArray:
     r"""Return the mean pressure under the shape function of each vertex, ∫φp ds/∫φ ds, MPa.
 

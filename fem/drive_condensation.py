@@ -33,6 +33,7 @@ def condense_drive(
     meshes: DriveMeshes,
     *,
     state: PlaneState = "strain",
+    shaft_pins: tuple[BodyMesh, ...] = (),
 ) -> DriveModel:
     """Assemble, factorise and condense all bodies.
 
@@ -48,6 +49,8 @@ def condense_drive(
         Meshes graded for them.
     state : {"strain", "stress"}
         Plane strain or plane stress.
+    shaft_pins : tuple of BodyMesh
+        Meshes of elastic shaft pins, from `fem.shaft_pins.mesh_shaft_pins`; rigid circles without them.
 
     Returns
     -------
@@ -107,6 +110,13 @@ def condense_drive(
         False,
     )
 
+    hole_groups: dict[int, tuple[int, float]] = {}
+    if shaft_pins:
+        holes_expected = contacts.holes
+        hole_groups = condense_round(
+            shaft_pins, (holes_expected.direction,), (holes_expected.half_width,), materials.shaft_pin, False
+        )
+
     def add_pairs(
         kind: PairKind,
         body: BodyMesh,
@@ -151,7 +161,7 @@ def condense_drive(
         contacts.holes.half_width,
         contacts.holes.load,
         place.shaft_pin_radii,
-        {},
+        hole_groups,
     )
     add_pairs(
         "roller_outer",
@@ -191,4 +201,5 @@ def condense_drive(
         groups=tuple(groups),
         pairs=tuple(pairs),
         placement=place,
+        shaft_pins=shaft_pins,
     )

@@ -138,6 +138,8 @@ class DriveModel:
         All candidate contacts, those on the disc first.
     placement : Placement
         Nominal places of the parts.
+    shaft_pins : tuple of BodyMesh
+        Meshes of elastic shaft pins; empty for rigid ones.
     """
 
     drive: Drive
@@ -150,6 +152,7 @@ class DriveModel:
     groups: tuple[RoundGroup, ...]
     pairs: tuple[ContactPair, ...]
     placement: Placement
+    shaft_pins: tuple[BodyMesh, ...] = ()
 
     @property
     def unknown_count(self) -> int:
@@ -261,6 +264,9 @@ class DriveModel:
                 moved = pose.shaft_pin_displacements[pair.index]
                 gap[own] -= fx * moved.real + fy * moved.imag
                 compliance[own, own] += (np.outer(fx, fx) + np.outer(fy, fy)) / spring
+                if pair.group >= 0:
+                    loads = integral.opposite_loads
+                    compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
             else:
                 ray = self.roller_rays[pair.index]
                 motions[own, 4 + rollers.index(pair.index)] = fx * ray.real + fy * ray.imag

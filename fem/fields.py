@@ -20,6 +20,9 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
+_BODY_KINDS = {"pin": "pin", "roller_outer": "roller", "roller_inner": "roller", "hole": "shaft_pin"}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodyField:
     """Displacement and stress of one body.
@@ -27,7 +30,7 @@ class BodyField:
     Attributes
     ----------
     kind : str
-        "disc", "pin", "roller" or "inner_race".
+        "disc", "pin", "roller", "shaft_pin" (elastic ones) or "inner_race".
     body : BodyMesh
         Its mesh in its own frame.
     pose : Pose
@@ -97,6 +100,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
             "pin": materials.wheel_pin,
             "roller": materials.roller,
             "inner_race": materials.inner_race,
+            "shaft_pin": materials.shaft_pin,
         }[kind]
         stress = turn_stress(recover_stress(body, elastic, material, state=state), at.rotation)
         carried = np.zeros(body.node_count)
@@ -119,6 +123,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
     centres: tuple[tuple[str, PairKind, tuple[BodyMesh, ...]], ...] = (
         ("pin", "pin", meshes.wheel_pins),
         ("roller", "roller_outer", meshes.rollers),
+        ("shaft_pin", "hole", model.shaft_pins),
     )
     for kind, pair_kind, bodies in centres:
         for index, body in enumerate(bodies):
@@ -137,7 +142,7 @@ def _round_displacements(model: DriveModel, solution: PoseSolution) -> dict[tupl
     for pair, integral in zip(model.pairs, solution.integrals, strict=True):
         if pair.group < 0:
             continue
-        key = ("pin" if pair.kind == "pin" else "roller", pair.index)
+        key = (_BODY_KINDS[pair.kind], pair.index)
         own = integral.opposite_loads @ solution.contact.pressure[pair.unknowns]
         # Outer comes before inner for every roller, as in its group.
         loads[key] = np.concatenate([loads[key], own]) if key in loads else own

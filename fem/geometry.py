@@ -164,6 +164,8 @@ class DiscShape:
         Boundary "bore".
     holes : tuple of CircleCurve
         Boundaries "hole_0", "hole_1", …
+    name : str
+        Name of the body.
     """
 
     flank: FlankCurve

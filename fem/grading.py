@@ -98,6 +98,8 @@ def grade_contacts(
     *,
     margin: float,
     smallest_share: float,
+    elastic_shaft_pins: bool = False,
+    open_gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
 ) -> ExpectedContacts:
     """Return the contacts to grade meshes for.
 
@@ -111,6 +113,11 @@ def grade_contacts(
         A contact without load whose gap is below this becomes a candidate, mm.
     smallest_share : float
         Candidates get elements for at least this share of the largest load of their kind.
+    elastic_shaft_pins : bool
+        Whether the shaft pins yield, too.
+    open_gaps : tuple of three arrays, optional
+        Gaps of pins, rollers and holes between the deformed bodies, mm, NaN where not known; the gaps of the rigid
+        bodies count there, and for all without this.
 
     Returns
     -------
@@ -124,6 +131,13 @@ def grade_contacts(
     bore, race, radius = place.bore_radius, place.inner_race_radius, place.roller_radii
     turn_back = np.exp(-1j * rotation)
 
+    rigid = (gaps.pins, gaps.rollers, gaps.holes)
+    left = (
+        rigid
+        if open_gaps is None
+        else tuple(np.where(np.isnan(known), plain, known) for known, plain in zip(open_gaps, rigid, strict=True))
+    )
+
     def group(
         load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
     ) -> ContactGroup:
@@ -135,6 +149,9 @@ def grade_contacts(
     hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
     flank_effective = profile.effective_radius(gaps.flank_parameters, place.wheel_pin_radii)
     pins, rollers, holes = loads
+    hole_modulus = 1.0 / materials.disc.plane_strain_compliance
+    if elastic_shaft_pins:
+        hole_modulus = contact_modulus(materials.disc, materials.shaft_pin)
     return ExpectedContacts(
         crank_angle=float(crank_angle),
         disc_x=displacement.real,
@@ -142,28 +159,26 @@ def grade_contacts(
         disc_rotation=float(rotation),
         wheel_angle=float(wheel_angle),
         pins=group(
-            pins, gaps.pins, flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
+            pins, left[0], flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
         ),
         flank_points=profile.flank(gaps.flank_parameters),
         rollers_outer=group(
             rollers,
-            gaps.rollers,
+            left[1],
             radius * bore / (bore - radius),
             contact_modulus(materials.disc, materials.roller),
             rays,
         ),
         rollers_inner=group(
             rollers,
-            gaps.rollers,
+            left[1],
             radius * race / (race + radius),
             contact_modulus(materials.inner_race, materials.roller),
             -rays,
         ),
         bore_points=_bore_points(displacement, place, rays) * turn_back,
         race_points=race * rays,
-        holes=group(
-            holes, gaps.holes, hole_effective, 1.0 / materials.disc.plane_strain_compliance, gaps.hole_directions
-        ),
+        holes=group(holes, left[2], hole_effective, hole_modulus, gaps.hole_directions),
         hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
     )
 

@@ -54,16 +54,18 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
         "" when pyvista drew them, else why matplotlib did.
     """
     everything = np.concatenate([field.places for field in fields])
-    reach = 1.06 * float(np.max(np.abs(everything)))
+    # Room for the colour bar on the right.
+    reach = 1.14 * float(np.max(np.abs(everything)))
+    room = 0.1 * reach + 0j
     limit = _stress_below(fields, COLOUR_AREA)
     shaft = _shaft_pins(solution)
     whole = Panel(
-        title=f"{headline}: von Mises stress",
-        centre=0j,
+        title=f"{headline}: von Mises stress, colours end at {limit:.3g} MPa",
+        centre=room,
         half_side=reach,
         patches=tuple(_patch(field, field.places, field.stress.von_mises) for field in fields),
         lines=(*(_outline(field, field.places) for field in fields), shaft),
-        label=f"von Mises, MPa (colours end at {limit:.3g})",
+        label="von Mises, MPa",
         limits=(0.0, limit),
     )
     problem = render(folder / "von_mises.png", [whole], side=1600)
@@ -72,7 +74,7 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
     scale = _round_down(DEFORMED_SHARE * reach / largest)
     deformed = Panel(
         title=f"{headline}: elastic displacement x {scale:g} at the loaded pose (grey: undeformed)",
-        centre=0j,
+        centre=room,
         half_side=reach,
         patches=tuple(
             _patch(field, field.places + scale * field.elastic, 1e3 * np.abs(field.elastic)) for field in fields

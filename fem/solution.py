@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.contact_results import ContactResults, summarise_contacts
+from fem.contact_results import ContactResults, open_gaps, summarise_contacts
 from fem.drive_condensation import condense_drive
 from fem.drive_mesh import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
 from fem.drive_model import DriveModel, DrivePose
@@ -28,6 +28,7 @@ from fem.grading import grade_contacts, measure_gaps
 from fem.memory import require_memory, solution_memory
 from fem.meshing import estimate_unknowns
 from fem.pose import PoseSolution, solve_pose
+from fem.shaft_pins import mesh_shaft_pins
 from ltca.drive import Drive
 from ltca.errors import ConvergenceError
 
@@ -37,6 +38,7 @@ FloatArray = NDArray[np.float64]
 # much as bodies approach each other, sized for at least a quarter of the largest load.
 COARSE_SCALE = 3.5
 COARSE_SHARE = 0.25
+COARSE_MARGIN = 1.0
 FINE_SHARE = 0.05
 # Open contacts within this part of the largest approach stay candidates of the fine stage.
 FINE_MARGIN = 0.15
@@ -85,7 +87,47 @@ class FullSolution:
     @property
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies and pressure unknowns."""
-        return self.model.meshes.unknowns + self.model.unknown_count
+        pins = sum(body.unknowns for body in self.model.shaft_pins)
+        return self.model.meshes.unknowns + pins + self.model.unknown_count
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Task:
+    """What stays the same through all stages of one solution."""
+
+    drive: Drive
+    shapes: DriveShapes
+    moment: float
+    state: PlaneState
+    elastic_shaft_pins: bool
+    approach: float
+
+    def condense(self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch) -> DriveModel:
+        meshes = mesh_drive(self.shapes, contacts, scale=scale)
+        pins = mesh_shaft_pins(self.shapes, contacts, scale) if self.elastic_shaft_pins else ()
+        watch.lap("mesh")
+        return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins)
+
+    def grade(
+        self,
+        crank_angle: float,
+        pose: tuple[complex, float, float],
+        loads: tuple[FloatArray, FloatArray, FloatArray],
+        *,
+        margin: float,
+        share: float,
+        gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
+    ) -> ExpectedContacts:
+        return grade_contacts(
+            self.drive,
+            crank_angle,
+            *pose,
+            loads,
+            margin=margin * self.approach,
+            smallest_share=share,
+            elastic_shaft_pins=self.elastic_shaft_pins,
+            open_gaps=gaps,
+        )
 
 
 class _Stopwatch:
@@ -106,6 +148,7 @@ def solve_drive(
     torque: float | None = None,
     scale: float = 1.0,
     state: PlaneState = "strain",
+    elastic_shaft_pins: bool = False,
     start: tuple[float, float, float, float] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
@@ -123,6 +166,8 @@ def solve_drive(
         Element edge as a multiple of an eighth of each Hertz half-width.
     state : {"strain", "stress"}
         Plane strain or plane stress.
+    elastic_shaft_pins : bool
+        Whether shaft pins yield, too; rigid circles on their springs by default.
     start : tuple of four floats, optional
         First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
     progress : callable, optional
@@ -144,38 +189,54 @@ def solve_drive(
     watch = _Stopwatch()
     shapes = DriveShapes.of_drive(drive)
     guess = expect_contacts(drive, crank_angle, torque=torque)
-    approach = _largest_approach(drive, guess)
+    task = _Task(
+        drive=drive,
+        shapes=shapes,
+        moment=drive.wheel_moment(torque),
+        state=state,
+        elastic_shaft_pins=elastic_shaft_pins,
+        approach=_largest_approach(drive, guess),
+    )
     _refuse_too_large(shapes, guess, scale)
-    contacts = _regrade(drive, guess, _loads_of(guess), margin=approach, share=COARSE_SHARE)
+    place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
+    loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
+    contacts = task.grade(crank_angle, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
     watch.lap("guess")
     say("coarse meshes")
-    coarse = mesh_drive(shapes, contacts, scale=max(COARSE_SCALE, scale))
-    model = condense_drive(drive, shapes, contacts, coarse, state=state)
-    first = None
-    if start is not None:
-        first = model.start_pose(start)
-    solution = solve_pose(model, drive.wheel_moment(torque), start=first, progress=say)
+    model = task.condense(contacts, max(COARSE_SCALE, scale), _Stopwatch())
+    first = None if start is None else model.start_pose(start)
+    solution = solve_pose(model, task.moment, start=first, progress=say)
     watch.lap("coarse")
-    size = scale * RESERVE
+    complaint = ""
     for grading in range(1, LARGEST_GRADINGS + 1):
-        results = summarise_contacts(model, solution)
-        contacts = _graded_for(drive, contacts, solution, results, approach)
-        model, solution = _solve_fine(drive, shapes, contacts, size, torque, state, solution, watch, say)
+        results, pose = summarise_contacts(model, solution), solution.pose
+        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+        loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
+        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
+        margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
+        contacts = task.grade(crank_angle, place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
+        say("meshes")
+        model = task.condense(contacts, scale * RESERVE, watch)
+        watch.lap("assembly and factorisation")
+        solution = solve_pose(model, task.moment, start=solution.pose, progress=say)
+        watch.lap("contact and pose")
         complaint = find_shortcoming(model, solution, scale)
+        results = summarise_contacts(model, solution)
         watch.lap("check")
         if not complaint:
             watch.seconds["total"] = sum(watch.seconds.values())
             return FullSolution(
                 model=model,
                 state=solution,
-                contacts=summarise_contacts(model, solution),
+                contacts=results,
                 scale=scale,
                 plane_state=state,
                 pose_iterations=solution.iterations,
                 seconds=watch.seconds,
             )
         say(f"meshes graded anew ({grading}): {complaint}")
-    raise ConvergenceError(f"meshes do not fit the contacts after {LARGEST_GRADINGS} gradings: {complaint}")
+    hint = "; use smaller elements" if scale > COARSE_SCALE else ""
+    raise ConvergenceError(f"meshes do not fit the contacts after {LARGEST_GRADINGS} gradings: {complaint}{hint}")
 
 
 def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
@@ -212,6 +273,7 @@ def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str
             torque=torque,
             scale=previous.scale,
             state=previous.plane_state,
+            elastic_shaft_pins=bool(model.shaft_pins),
             progress=progress,
         )
     watch.seconds["total"] = sum(watch.seconds.values())
@@ -268,68 +330,6 @@ def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
             if left < 0.0:
                 return f"{kind.replace('_outer', '')} {index} closes by {-1e3 * left:.3g} µm and has no contact zone"
     return ""
-
-
-def _solve_fine(
-    drive: Drive,
-    shapes: DriveShapes,
-    contacts: ExpectedContacts,
-    scale: float,
-    torque: float | None,
-    state: PlaneState,
-    before: PoseSolution,
-    watch: _Stopwatch,
-    say: Callable[[str], None],
-) -> tuple[DriveModel, PoseSolution]:
-    say("meshes")
-    meshes = mesh_drive(shapes, contacts, scale=scale)
-    watch.lap("mesh")
-    say(f"condensation of {meshes.unknowns:,} unknowns")
-    model = condense_drive(drive, shapes, contacts, meshes, state=state)
-    watch.lap("assembly and factorisation")
-    solution = solve_pose(model, drive.wheel_moment(torque), start=before.pose, progress=say)
-    watch.lap("contact and pose")
-    return model, solution
-
-
-def _graded_for(
-    drive: Drive, contacts: ExpectedContacts, solution: PoseSolution, results: ContactResults, approach: float
-) -> ExpectedContacts:
-    pose = solution.pose
-    return grade_contacts(
-        drive,
-        contacts.crank_angle,
-        pose.disc_displacement,
-        pose.disc_rotation,
-        pose.wheel_angle,
-        (results.pin_load, 0.5 * (results.roller_load_outer + results.roller_load_inner), results.pin_shaft_load),
-        margin=FINE_MARGIN * approach,
-        smallest_share=FINE_SHARE,
-    )
-
-
-def _regrade(
-    drive: Drive,
-    guess: ExpectedContacts,
-    loads: tuple[FloatArray, FloatArray, FloatArray],
-    *,
-    margin: float,
-    share: float,
-) -> ExpectedContacts:
-    return grade_contacts(
-        drive,
-        guess.crank_angle,
-        complex(guess.disc_x, guess.disc_y),
-        guess.disc_rotation,
-        guess.wheel_angle,
-        loads,
-        margin=margin,
-        smallest_share=share,
-    )
-
-
-def _loads_of(contacts: ExpectedContacts) -> tuple[FloatArray, FloatArray, FloatArray]:
-    return contacts.pins.load, contacts.rollers_outer.load, contacts.holes.load
 
 
 def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:

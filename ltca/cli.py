@@ -17,7 +17,7 @@ from typing import Any
 from ltca.errors import CycloError
 
 GROUP = "cyclo.commands"
-ORDER = ("run", "show", "init", "mesh", "fem", "derive", "validate")
+ORDER = ("run", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
 USAGE_ERROR = 2
 
 
@@ -29,8 +29,14 @@ class _Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """Return the parser of ``cyclo`` with the commands of all installed packages."""
+def build_parser(wanted: str = "") -> argparse.ArgumentParser:
+    """Return the parser of ``cyclo``.
+
+    Parameters
+    ----------
+    wanted : str
+        Command to be run: if it is installed, it alone is loaded; otherwise all are, for the help.
+    """
     parser = _Parser(
         prog="cyclo",
         description="Loaded tooth contact analysis of cycloidal gear drives, checked against finite elements.",
@@ -38,6 +44,8 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"cyclo {version('cyclo-ltca')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=_Parser)
     found = {entry.name: entry for entry in entry_points(group=GROUP)}
+    if wanted in found:
+        found = {wanted: found[wanted]}
     known = [name for name in ORDER if name in found]
     for name in known + sorted(set(found) - set(known)):
         module = found[name].load()
@@ -49,7 +57,11 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``cyclo`` and return its exit status: 0 done, 1 a check failed, 2 bad input or no convergence."""
-    arguments = build_parser().parse_args(argv)
+    words = list(sys.argv[1:] if argv is None else argv)
+    # One thread each: the matrices of a batch are small, and threads that share two cores slow each other down.
+    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(variable, "1")
+    arguments = build_parser(words[0] if words else "").parse_args(words)
     try:
         return int(arguments.execute(arguments))
     except CycloError as error:

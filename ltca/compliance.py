@@ -6,6 +6,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium` asks no
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -104,6 +105,14 @@ class ComplianceModel(Protocol):
         ...
 
 
+class BatchModel(ComplianceModel, Protocol):
+    """A model whose positions may belong to different drives (`ltca.placement.Placement.is_batch`)."""
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> BatchModel:
+        """Return the model of some of the positions."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
     """Inner unknowns of a neighbouring pose, to start from.
@@ -159,18 +168,52 @@ class HalfSpaceCompliance:
     geometry: ContactGeometry
     pin_law: ContactLaw
     roller_laws: RollerLaws[ContactLaw]
-    hole_stiffness: float
+    hole_stiffness: float | FloatArray
     kinds: ContactKinds
 
     @classmethod
     def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
         """Return the half-space model of a drive."""
         geometry = ContactGeometry.of_drive(drive)
+        turn = np.linspace(0.0, 2.0 * np.pi / geometry.profile.reduction_ratio, 181)
+        pin_radii = geometry.profile.effective_radius(turn[:, None], geometry.placement.wheel_pin_radii)
+        return cls._of_geometry(geometry, drive, pin_radii, drive.pin_shaft.stiffness)
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
+        """Return the model of a batch: every drive at the same number of positions, drive by drive.
+
+        Parameters
+        ----------
+        drives : sequence of Drive
+            Drives that agree in what `batch_signature` tells.
+        positions : int
+            Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
+        """
+        geometry = ContactGeometry.of_drives(drives, positions)
+        stiffness = np.repeat([[drive.pin_shaft.stiffness] for drive in drives], positions, axis=0)
+        each = geometry.take(np.arange(len(drives)) * positions)
+        turn = np.linspace(0.0, 2.0 * np.pi, 181 * drives[0].pin_wheel.number_of_pins)
+        pin_radii = np.ones((1, 1))
+        if not drives[0].pin_wheel.pin_profile.is_cylinder:
+            radii = each.placement.wheel_pin_radii
+            pin_radii = np.stack(
+                [
+                    each.profile.effective_radius(turn[None, :], r(radii, axis=1, keepdims=True))
+                    for r in (np.min, np.max)
+                ]
+            )
+        return cls._of_geometry(geometry, drives[0], pin_radii, stiffness)
+
+    @classmethod
+    def _of_geometry(
+        cls, geometry: ContactGeometry, drive: Drive, pin_radii: FloatArray, hole_stiffness: float | FloatArray
+    ) -> HalfSpaceCompliance:
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
         inner_radius = 1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius)
         outer_radius = 1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius)
-        turn = np.linspace(0.0, 2.0 * np.pi / geometry.profile.reduction_ratio, 181)
-        pin_radii = geometry.profile.effective_radius(turn[:, None], place.wheel_pin_radii)
+        # Batches differ little from each other: on a ladder they share the tables of profiled parts.
+        rungs = _rungs if place.is_batch else np.asarray
         return cls(
             geometry=geometry,
             pin_law=law_for_profile(
@@ -178,7 +221,7 @@ class HalfSpaceCompliance:
                 length=drive.disc.thickness,
                 radius=drive.pin_wheel.pin_radius,
                 contact_modulus=contact_modulus(parts.disc, parts.wheel_pin),
-                effective_radii=pin_radii,
+                effective_radii=rungs(pin_radii),
             ),
             roller_laws=RollerLaws(
                 inner=law_for_profile(
@@ -186,20 +229,38 @@ class HalfSpaceCompliance:
                     length=bearing.roller_length,
                     radius=bearing.roller_radius,
                     contact_modulus=contact_modulus(parts.inner_race, parts.roller),
-                    effective_radii=inner_radius,
+                    effective_radii=rungs(inner_radius),
                 ),
                 outer=law_for_profile(
                     bearing.roller_profile,
                     length=bearing.roller_length,
                     radius=bearing.roller_radius,
                     contact_modulus=contact_modulus(parts.disc, parts.roller),
-                    effective_radii=outer_radius,
+                    effective_radii=rungs(outer_radius),
                 ),
                 inner_radius=inner_radius,
                 outer_radius=outer_radius,
             ),
-            hole_stiffness=drive.pin_shaft.stiffness,
+            hole_stiffness=hole_stiffness,
             kinds=ContactKinds.of_drive(drive),
+        )
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> HalfSpaceCompliance:
+        """Return the model of some positions: itself for one drive, these rows of a batch."""
+        if not self.geometry.placement.is_batch:
+            return self
+        laws = self.roller_laws
+        return HalfSpaceCompliance(
+            geometry=self.geometry.take(rows),
+            pin_law=self.pin_law,
+            roller_laws=RollerLaws(
+                inner=laws.inner,
+                outer=laws.outer,
+                inner_radius=laws.inner_radius[rows],
+                outer_radius=laws.outer_radius[rows],
+            ),
+            hole_stiffness=np.asarray(self.hole_stiffness)[rows],
+            kinds=self.kinds,
         )
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
@@ -257,6 +318,24 @@ def _read_law(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: 
     )
 
 
+def batch_signature(drive: Drive) -> tuple[object, ...]:
+    """Return what drives of one batch have in common: numbers of parts, contact laws, shape of the deviations."""
+    wheel, disc, bearing, errors = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.disc.profile_errors
+    # A logarithmic profile scales with the diameter of its part.
+    pin = None if wheel.pin_profile.is_cylinder else (wheel.pin_profile, wheel.pin_radius)
+    roller = None if bearing.roller_profile.is_cylinder else (bearing.roller_profile, bearing.roller_radius)
+    numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.pin_shaft.number_of_pins)
+    lengths = (disc.thickness, bearing.roller_length)
+    return (*numbers, *lengths, pin, roller, drive.materials, errors.orders, errors.parameter, errors.deviation)
+
+
+def _rungs(radii: FloatArray) -> FloatArray:
+    """Range of radii rounded outward to powers of 1.25."""
+    step = np.log(1.25)
+    ends = np.log([np.min(radii), np.max(radii)]) / step
+    return np.asarray(np.exp(step * np.array([np.floor(ends[0]), np.ceil(ends[1])])))
+
+
 def assemble_response(
     flank: FlankMotion,
     pin_load: FloatArray,
@@ -293,7 +372,7 @@ def assemble_response(
     )
 
 
-def spring_load_and_stiffness(approach: FloatArray, stiffness: float) -> tuple[FloatArray, FloatArray]:
+def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the load of unilateral springs and its derivative, N and N/mm (Eq. 77)."""
     return stiffness * np.maximum(approach, 0.0), np.where(approach > 0.0, stiffness, 0.0)
 
@@ -312,7 +391,4 @@ def resultant(
 
 def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:
     scaled = stiffness[..., None] * motion.gradient
-    tangent = np.matmul(motion.gradient.swapaxes(1, 2), scaled)
-    positions, pairs = load.shape
-    bend = np.matmul(load[:, None, :], motion.curvature.reshape(positions, pairs, 16))
-    return np.asarray(tangent + bend.reshape(positions, 4, 4))
+    return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))

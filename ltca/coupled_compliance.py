@@ -18,12 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.coefficients import InfluenceCoefficients, logarithm_factor
+from ltca.body_part import NearField, OwnParts
+from ltca.coefficients import InfluenceCoefficients
 from ltca.compliance import ContactPressures, KindPressures, Response, Start, resultant
 from ltca.contact_law import ContactLaw, LoadLaw
 from ltca.drive import Drive, contact_modulus
@@ -36,8 +37,6 @@ from ltca.series_law import SeriesLaw, SpringLaw, approach_at_load
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
-NearField = Literal["fe", "hybrid"]
 
 ITERATIONS = 60
 CHUNK = 128
@@ -165,57 +164,6 @@ class CoupledCompliance:
             pins=_pressures(self.pin_law, near[:, :pins], response.flank.effective_radius),
             outer=_pressures(self.outer_law, near[:, pins : pins + rollers], self.outer_radius),
             inner=_pressures(self.inner_law, inner, self.inner_radius),
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OwnParts:
-    """Diagonal body parts of the contacts, mm/N: what FE has beyond the near field of each contact itself.
-
-    Attributes
-    ----------
-    pin, outer, inner, hole : float
-        Added to the interpolated diagonal of disc (pin, outer, hole) and race (inner).
-    """
-
-    pin: float
-    outer: float
-    inner: float
-    hole: float
-
-    @classmethod
-    def of_drive(
-        cls, drive: Drive, coefficients: InfluenceCoefficients, near_field: NearField, datum: float
-    ) -> OwnParts:
-        """Return the diagonal parts.
-
-        With A = smooth + κ (−ln(b/2) + 1/4) the approach of a patch, the plane-strain law holds κ (ln(2D/b) + 1/4)
-        of it, which leaves smooth − κ ln D. The half-space of length L holds κ (ln(4L/b) − 3/4) for the same patch,
-        which leaves smooth − κ (ln 2L − 1). A plane-stress body part joins the plane-strain near field at D.
-        """
-        parts, thickness = drive.materials, drive.disc.thickness
-        c = coefficients
-
-        def remove(body: float, material_factor: float, length: float) -> float:
-            if body == 0.0:
-                return 0.0
-            joined = -body * np.log(datum)
-            if near_field == "fe":
-                return float(joined)
-            return float(joined + material_factor * (np.log(datum) - np.log(2.0 * length) + 1.0))
-
-        disc = logarithm_factor(parts.disc, thickness)
-        pin, roller = logarithm_factor(parts.wheel_pin, thickness), logarithm_factor(parts.roller, thickness)
-        race = logarithm_factor(parts.inner_race, thickness)
-        length = drive.crank_bearing.roller_length
-        on_flank = remove(c.disc_logarithm, disc, thickness)
-        on_bore = remove(c.disc_logarithm, disc, length)
-        of_roller = remove(c.roller_logarithm, roller, length)
-        return cls(
-            pin=on_flank + c.pin + remove(c.pin_logarithm, pin, thickness),
-            outer=on_bore + float(c.roller[1, 1]) + of_roller,
-            inner=remove(c.race_logarithm, race, length) + float(c.roller[0, 0]) + of_roller,
-            hole=on_flank,
         )
 
 

@@ -10,17 +10,26 @@ import hashlib
 from dataclasses import asdict, field
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from ltca.deviations import (
+    STRICT,
+    AxisOffset,
+    ProfileErrors,
+    Runout,
+    SignedLength,
+)
+from ltca.deviations import (
+    PlacementErrors as PlacementErrors,
+)
+from ltca.deviations import (
+    RollerErrors as RollerErrors,
+)
 from ltca.units import quantity
 
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
 NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
-SignedLength = Annotated[float, quantity("mm")]
-Errors = tuple[SignedLength, ...]
-
-STRICT = ConfigDict(extra="forbid", strict=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -87,58 +96,38 @@ class LengthProfile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class PlacementErrors:
-    """Errors of each pin or hole of a circle; an empty tuple means zero for all.
-
-    Attributes
-    ----------
-    radial : tuple of float
-        Outward along the radius of the circle the part stands on, mm.
-    tangential : tuple of float
-        Counter-clockwise, at a right angle to that radius, mm.
-    diameter : tuple of float
-        Actual less nominal diameter, mm.
-    """
-
-    radial: Errors = ()
-    tangential: Errors = ()
-    diameter: Errors = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class RollerErrors:
-    """Errors of each roller; an empty tuple means zero for all.
-
-    A roller floats along its cage ray, so a radial error has no meaning for it.
-
-    Attributes
-    ----------
-    tangential : tuple of float
-        Counter-clockwise shift of the cage pocket on the roller pitch circle, mm.
-    diameter : tuple of float
-        Actual less nominal diameter, mm.
-    """
-
-    tangential: Errors = ()
-    diameter: Errors = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Crank:
-    """Crankshaft; `eccentricity` e in mm is the distance from the crank axis to the inner-race centre."""
+    """Crankshaft.
+
+    Attributes
+    ----------
+    eccentricity : float
+        e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
+    eccentricity_error : float
+        Actual less design eccentricity, mm.
+    axis_offset : AxisOffset
+        Crank axis against the centre of the pin shaft.
+    """
 
     eccentricity: PositiveLength
+    eccentricity_error: SignedLength = 0.0
+    axis_offset: AxisOffset = field(default_factory=AxisOffset)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class PinWheel:
-    """Pin wheel: `number_of_pins` z_P, `pin_circle_radius` R_C and `pin_radius` r_P in mm."""
+    """Pin wheel: `number_of_pins` z_P, `pin_circle_radius` R_C and `pin_radius` r_P in mm.
+
+    `axis_offset` is the axis the wheel turns about against the centre of the pin shaft; a pin circle eccentric to
+    that axis is a matter of `pin_errors`.
+    """
 
     number_of_pins: Annotated[int, Field(ge=4, le=1000)]
     pin_circle_radius: PositiveLength
     pin_radius: PositiveLength
     pin_profile: LengthProfile = field(default_factory=LengthProfile)
     pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
+    axis_offset: AxisOffset = field(default_factory=AxisOffset)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -161,6 +150,10 @@ class Disc:
         ΔR_C: the flank is generated on the pin circle R_C + ΔR_C, mm (Eq. 1).
     hole_errors : PlacementErrors
         Errors of the pin holes.
+    profile_errors : ProfileErrors
+        Deviation of the flank along its normal.
+    runout : Runout
+        Centre of the flank against the bore.
     """
 
     number_of_teeth: Annotated[int, Field(ge=3, le=1000)]
@@ -170,6 +163,8 @@ class Disc:
     equidistant_offset: SignedLength = 0.0
     shifting_offset: SignedLength = 0.0
     hole_errors: PlacementErrors = field(default_factory=PlacementErrors)
+    profile_errors: ProfileErrors = field(default_factory=ProfileErrors)
+    runout: Runout = field(default_factory=Runout)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

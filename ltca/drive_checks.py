@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from math import pi, sin
 
 import numpy as np
 
+from ltca.deviation_checks import find_deviation_problems, find_flank_problems
 from ltca.drive import Drive, LengthProfile
 from ltca.profile import FlankProfile
 
@@ -27,43 +29,18 @@ def find_contradictions(drive: Drive) -> list[str]:
     list of str
         One sentence each, with field, value, bound and unit; empty for a sound drive.
     """
-    problems = list(_array_lengths(drive))
+    problems = list(find_deviation_problems(drive))
     problems += _tooth_numbers(drive)
     if problems:
         return problems  # the geometry below needs them
     problems += _flank(drive)
+    if not problems:
+        problems += find_flank_problems(drive)
     problems += _pins(drive)
     problems += _bearing(drive)
     problems += _holes(drive)
     problems += _length_profiles(drive)
     return problems
-
-
-def _array_lengths(drive: Drive) -> Iterator[str]:
-    parts = [
-        ("pin_wheel.pin_errors", drive.pin_wheel.pin_errors, drive.pin_wheel.number_of_pins, "pins"),
-        ("disc.hole_errors", drive.disc.hole_errors, drive.pin_shaft.number_of_pins, "holes"),
-        ("pin_shaft.pin_errors", drive.pin_shaft.pin_errors, drive.pin_shaft.number_of_pins, "pins"),
-        (
-            "crank_bearing.roller_errors",
-            drive.crank_bearing.roller_errors,
-            drive.crank_bearing.number_of_rollers,
-            "rollers",
-        ),
-    ]
-    # A placement error is a deviation; beyond a tenth of the part's radius it is a different design.
-    bound = 0.1 * min(drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius, drive.pin_shaft.pin_radius)
-    for path, errors, count, things in parts:
-        for name in ("radial", "tangential", "diameter"):
-            values = getattr(errors, name, ())
-            if values and len(values) != count:
-                yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
-            worst = max(values, key=abs, default=0.0)
-            if abs(worst) > bound:
-                yield (
-                    f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
-                    "a tenth of the smallest pin or roller radius"
-                )
 
 
 def _tooth_numbers(drive: Drive) -> Iterator[str]:
@@ -92,9 +69,7 @@ def _flank(drive: Drive) -> Iterator[str]:
             f"{-wheel.pin_radius:g} mm (minus the pin radius)"
         )
         return
-    parameter = np.linspace(0.0, 2.0 * pi / drive.reduction_ratio, 4001)
-    curvature = profile.locus_curvature(parameter)
-    smallest_radius = 1.0 / float(np.max(curvature)) if np.max(curvature) > 0.0 else np.inf
+    smallest_radius = _smallest_path_radius(wheel.pin_circle_radius + disc.shifting_offset, e, drive.reduction_ratio)
     if smallest_radius <= profile.offset:
         yield (
             f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than "
@@ -107,13 +82,21 @@ def _flank(drive: Drive) -> Iterator[str]:
             f"{profile.root_radius:.6g} mm, must be greater than 0 mm"
         )
     # Gap of every pin in the nominal position: Δr_P − ΔR_C cos ψ, ψ between 0 and asin(e z_P/R).
-    steepest = np.sqrt(1.0 - (pitch_radius / profile.generating_radius) ** 2)
+    steepest = float(np.sqrt(1.0 - (pitch_radius / profile.generating_radius) ** 2))
     gap = disc.equidistant_offset - max(disc.shifting_offset, disc.shifting_offset * steepest)
     if gap < -ROUNDING:
         yield (
             f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
             f"{disc.equidistant_offset - gap:.6g} mm with this shifting offset, or disc and pins interfere"
         )
+
+
+@lru_cache(maxsize=64)
+def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
+    """Smallest convex radius of the pin-centre path, mm; kept, since studies check one design thousands of times."""
+    path = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
+    largest = float(np.max(path.locus_curvature(np.linspace(0.0, 2.0 * pi / ratio, 4001))))
+    return 1.0 / largest if largest > 0.0 else float("inf")
 
 
 def _pins(drive: Drive) -> Iterator[str]:

@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from ltca.drive import Drive
 from ltca.drive_checks import find_contradictions
 from ltca.errors import DriveError
+from ltca.tolerances import Tolerances, parse_tolerances
 
 NOMINAL_CASE = "nominal"
 
@@ -29,11 +30,14 @@ class DriveFile:
         Where it was read from.
     cases : dict of str to Drive
         One complete drive for each case, in the order of the file.
+    tolerances : dict of str to Distribution
+        How fields scatter, by dotted path; for studies alone.
     """
 
     name: str
     source: str
     cases: dict[str, Drive]
+    tolerances: Tolerances
 
     def select(self, names: list[str] | None) -> dict[str, Drive]:
         """Return some of the cases, all for None.
@@ -104,8 +108,10 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     except tomllib.TOMLDecodeError as error:
         raise DriveError([f"is not valid TOML: {error}"], source) from error
     cases = table.pop("case", [])
+    scatter = table.pop("tolerances", {})
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
+    tolerances = parse_tolerances(scatter, problems)
     named = _named_cases(cases, problems)
     drives: dict[str, Drive] = {}
     # Mistakes of the common part come back in every case: the base is validated alone, first.
@@ -134,7 +140,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
         problems += [f"case {name}: {problem}" for problem in found if problem not in common]
     if problems:
         raise DriveError(problems, source)
-    return DriveFile(name=str(table["name"]), source=source, cases=drives)
+    return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances)
 
 
 def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
@@ -174,13 +180,15 @@ _ADAPTER = TypeAdapter(Drive)
 def build_drive(table: dict[str, Any]) -> Drive:
     """Return the drive of nested plain tables (as in a drive file without cases), fully checked.
 
+    Tolerances are no part of a drive and are passed over.
+
     Raises
     ------
     DriveError
         With every mistake.
     """
     problems: list[str] = []
-    drive = _validate(table, problems)
+    drive = _validate({name: value for name, value in table.items() if name != "tolerances"}, problems)
     if drive is not None:
         problems += find_contradictions(drive)
     if problems or drive is None:
@@ -197,11 +205,12 @@ def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
     try:
         return _ADAPTER.validate_python(table)
     except ValidationError as error:
-        problems += [_sentence(detail) for detail in error.errors()]
+        problems += [describe_mistake(detail) for detail in error.errors()]
         return None
 
 
-def _sentence(detail: Any) -> str:
+def describe_mistake(detail: Any) -> str:
+    """Return one mistake pydantic found as a sentence with field, value and bound."""
     path = ".".join(str(part) for part in detail["loc"])
     match detail["type"]:
         case "missing" | "missing_argument" | "missing_keyword_only_argument":

@@ -10,13 +10,15 @@ falls in every iteration and no cycle is possible between contacts that take tur
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import ComplianceModel, Response, Start
+from ltca.compliance import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
-from ltca.tooth_contact import WHEEL_ANGLE, first_contact
+from ltca.pairs import ContactGeometry
+from ltca.tooth_contact import WHEEL_ANGLE, turn_to_contact
 
 FloatArray = NDArray[np.float64]
 
@@ -28,8 +30,9 @@ ROUND_OFF_BOUND = 1e-5
 """Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
 
 ITERATIONS = 200
-STEP_BOUND = 0.05
-"""Largest first step of a mode, mm: long against elastic approaches (µm), short against the radius of a flank (mm).
+STEP_BOUND = 1e-3
+"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
+(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
 It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
 LINE_TRIALS = 12
 SLOPE_LEFT = 0.3
@@ -65,10 +68,11 @@ class Equilibrium:
 
 
 def lever_arms(model: ComplianceModel) -> FloatArray:
-    """Return the lengths that turn the residual into forces: 1, 1, e z_C and e z_P (mm)."""
+    """Return the lengths that turn the residual into forces: 1, 1, e z_C and e z_P (mm), shape (4,) or (positions, 4)."""
     place = model.geometry.placement
     wheel = place.eccentricity * place.reduction_ratio
-    return np.array([1.0, 1.0, wheel - place.eccentricity, wheel])
+    one = np.ones_like(wheel)
+    return np.concatenate(np.atleast_1d(one, one, wheel - place.eccentricity, wheel), axis=-1)
 
 
 def solve_equilibrium(
@@ -103,25 +107,27 @@ def solve_equilibrium(
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     lever = lever_arms(model)
-    load = np.abs(moment) / lever[3]
+    load = np.abs(moment) / lever[..., 3]
     if start is None:
         start = np.zeros((angle.size, 4))
         sense = np.where(moment < 0.0, -1, 1)
         for value in np.unique(sense):
             rows = sense == value
-            start[rows, WHEEL_ANGLE] = _take_up(model, angle[rows], int(value))
+            start[rows, WHEEL_ANGLE] = _take_up(model.geometry.take(rows), angle[rows], int(value))
     search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
     return search.run()
 
 
-def _take_up(model: ComplianceModel, angle: FloatArray, sense: int) -> FloatArray:
+def _take_up(geometry: ContactGeometry, angle: FloatArray, sense: int) -> FloatArray:
     """Wheel angles at first contact; zero where pins interfere so that turning the wheel alone cannot find it."""
     try:
-        return first_contact(model.geometry, angle, WHEEL_ANGLE, sense)[0]
+        turned = turn_to_contact(geometry, angle, WHEEL_ANGLE, sense)[0]
+        return np.where(np.abs(turned) < np.pi / geometry.placement.reduction_ratio, turned, 0.0)
     except ConvergenceError:
         if angle.size == 1:
             return np.zeros(1)
-        return np.concatenate([_take_up(model, part, sense) for part in np.array_split(angle, 2)])
+        halves = np.array_split(np.arange(angle.size), 2)
+        return np.concatenate([_take_up(geometry.take(half), angle[half], sense) for half in halves])
 
 
 class _Search:
@@ -139,24 +145,36 @@ class _Search:
         self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
         self.pose = pose
         self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
+        self.batch = model.geometry.placement.is_batch
         self.history: list[FloatArray] = []
+
+    def levers(self, rows: NDArray[np.intp]) -> FloatArray:
+        """Return the lever arms of some positions: one row for all where the drives are the same."""
+        return self.lever[rows] if self.batch else self.lever
 
     def evaluate(
         self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None
     ) -> tuple[Response, FloatArray, FloatArray]:
         """Return the response, the scaled gradient and the scaled tangent (forces and lengths only)."""
-        response = self.model.respond(self.angle[rows], pose, start)
+        whole = not self.batch or rows.size == self.angle.size
+        lever = self.levers(rows)
+        model = self.model if whole else cast(BatchModel, self.model).take(rows)
+        response = model.respond(self.angle[rows], pose, start)
         gradient = response.force.copy()
         gradient[:, 3] -= self.moment[rows]
-        gradient /= self.lever
-        tangent = response.tangent / (self.lever[:, None] * self.lever)
+        gradient /= lever
+        if np.isnan(gradient).any():
+            row = rows[np.isnan(gradient).any(axis=1)][0]
+            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
+        tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
         return response, gradient, tangent
 
     def run(self) -> Equilibrium:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        damping, bound = np.full(count, 1e-6), np.full(count, STEP_BOUND)
+        first_bound = STEP_BOUND * float(np.max(self.lever[..., 3]))
+        damping, bound = np.full(count, 1e-6), np.full(count, first_bound)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
         residual = np.max(np.abs(gradient), axis=1)
@@ -172,9 +190,10 @@ class _Search:
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
             taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
             self.pose[active] = taken
+            self.refuse_slip(active, residual)
             residual[active] = np.max(np.abs(gradient), axis=1)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
-            bound[active] = bound[active].clip(1e-3 * STEP_BOUND, max(STEP_BOUND, 0.1 * self.smallest_pin))
+            bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
             known = known.replaced(active, start)
@@ -186,12 +205,26 @@ class _Search:
             [float(values[worst]) for values in self.history],
         )
 
+    def refuse_slip(self, rows: NDArray[np.intp], residual: FloatArray) -> None:
+        """Stop where wheel or disc has turned by half a pin pitch: the teeth have slipped, other pins would carry."""
+        turned = np.max(np.abs(self.pose[rows][:, 2:]), axis=1)
+        pitch = np.pi / self.model.geometry.placement.reduction_ratio
+        if np.max(turned) > pitch:
+            worst = rows[int(np.argmax(turned))]
+            self.history.append(residual.copy())
+            raise ConvergenceError(
+                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): "
+                f"the teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
+                f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
+                [float(values[worst]) for values in self.history],
+            )
+
     def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
         size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
         round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
         load = self.load[rows]
-        return np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load))
+        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
@@ -200,7 +233,8 @@ class _Search:
         low, high = np.zeros(rows.size), np.ones(rows.size)
         low_slope, high_slope = slope.copy(), np.zeros(rows.size)
         fraction = np.ones(rows.size)
-        pose = self.pose[rows] + step / self.lever
+        step_pose = step / self.levers(rows)
+        pose = self.pose[rows] + step_pose
         response, gradient, tangent = self.evaluate(rows, pose, start)
         start = Start.after(response)
         # Longer than the minimum: round-off of the slope must not send a step back.
@@ -215,7 +249,7 @@ class _Search:
             width = high[back] - low[back]
             place = -low_slope[back] / (high_slope[back] - low_slope[back])
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
-            pose[back] = self.pose[rows[back]] + fraction[back, None] * step[back] / self.lever
+            pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
             response, gradient[back], tangent[back] = self.evaluate(rows[back], pose[back], start.take(back))
             start = start.replaced(back, Start.after(response))
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])

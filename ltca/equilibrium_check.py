@@ -161,21 +161,26 @@ def find_imbalance(
     # How far the least stiff contact yields under the load sets the scale of the displacements.
     scale = max(1e-6, float(np.max(contacts.flank.approach[position])), float(np.max(rollers.outer_approach[position])))
     # Contacts that just open or close bend the slope: of several steps the best tells; a wrong pose fails with all.
-    steps = scale * np.array([1e-3, 1e-4, 1e-5])
+    steps = scale * np.array([1e-3, 1e-4, 1e-5, 1e-6])
     offsets = (steps[:, None, None] * np.concatenate([np.eye(4), -np.eye(4)])).reshape(-1, 4)
     directions = np.random.default_rng(seed).normal(size=(12, 4))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     sizes = scale * np.repeat([1e-2, 1e-1, 1.0], 4)
     moves = np.concatenate([np.zeros((1, 4)), offsets, sizes[:, None] * directions])
     value = potential.at(pose + moves / lever)
-    pairs = value[1:25].reshape(3, 2, 4)
+    pairs = value[1:33].reshape(4, 2, 4)
     slope = np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps)
-    # Round-off of Π: of the stored energy and of T·angle, and of the search along the rays.
-    noise = 1e-11 * (abs(moment * pose[3]) + abs(value[0]) + load * scale)
+    # Round-off of Π: of the stored energy and of T·angle, of the search along the rays, and of approaches (parts of
+    # the pin circle radius) under the forces of preloaded pins.
+    size = 4.0 * np.finfo(float).eps * drive.pin_wheel.pin_circle_radius
+    forces = float(
+        contacts.pin_load[position].sum() + contacts.hole_load[position].sum() + rollers.outer_load[position].sum()
+    )
+    noise = 1e-11 * (abs(moment * pose[3]) + abs(value[0]) + load * scale) + size * forces
     best = int(np.argmin(slope - noise / steps))
     if slope[best] > 1e-3 * load + noise / steps[best]:
         problems.append(f"slope of the potential {slope[best]:.3g} N against a load of {load:.3g} N")
-    rise = value[25:] - value[0]
+    rise = value[33:] - value[0]
     if np.any(rise < -noise - 1e-4 * load * sizes):
         problems.append(f"a displacement lowers the potential by {-np.min(rise):.3g} N·mm")
     return problems

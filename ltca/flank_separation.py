@@ -71,14 +71,9 @@ def flank_departure(
     bound = 0.4 * np.pi / profile.reduction_ratio
     history: list[float] = []
     for _ in range(limit):
-        c, first, _ = profile.locus(theta)
-        speed = np.abs(first)
-        outward = -1j * first / speed
-        point = c - profile.offset * outward
-        # The flank moves along its own tangent with |c′| (1 − offset κ); undercut flanks are no drives.
-        rate = (1.0 - profile.offset * profile.locus_curvature(theta)) * (first * np.conj(tangent)).real
-        away = ((point - origin) * np.conj(tangent)).real - tangent_distance
-        floor = 0.05 * speed
+        rate = (profile.flank_tangent(theta) * np.conj(tangent)).real
+        away = ((profile.flank(theta) - origin) * np.conj(tangent)).real - tangent_distance
+        floor = 0.05 * np.abs(profile.locus(theta).tangent)
         step = np.clip(away / np.where(rate > floor, rate, floor), -bound, bound)
         theta -= step
         history.append(float(np.max(np.abs(step), initial=0.0)))

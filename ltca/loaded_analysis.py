@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.coefficients import InfluenceCoefficients
-from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance
+from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, Response
 from ltca.coupled_compliance import CoupledCompliance
 from ltca.drive import Drive
 from ltca.equilibrium import Equilibrium, solve_equilibrium
@@ -124,7 +124,7 @@ def analyse(
     >>> from ltca.drive_file import load_drive
     >>> result = analyse(load_drive("paper").cases["CS-1"], np.array([0.5]))
     >>> print(f"{result.bearing_tangential[0]:.0f} N")
-    6740 N
+    6738 N
     """
     torque = drive.load.torque if torque is None else torque
     used = _contacts_of(method, contacts)
@@ -142,6 +142,8 @@ def analyse(
             return solve_equilibrium(laws, crank_angle, moment, start)
         if method in ("tables", "direct"):
             near = solve_equilibrium(laws, crank_angle, moment, start)
+            # Grids wider than the bodies are curved have no separation: refused before they are laid.
+            _check_half_widths(drive, torque, near.response, laws.pressures(near.response))
             return solve_equilibrium(model, crank_angle, moment, near.pose)
         near = solve_equilibrium(laws, crank_angle, PAPER_START * moment, start)
         return solve_paper_equilibrium(model, crank_angle, moment, near.pose)
@@ -150,7 +152,9 @@ def analyse(
     light = solve(drive.wheel_moment(drive.load.light_torque), full.pose)
     rollers = full.response.rollers
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1) * np.exp(-1j * full.crank_angle)
-    analysis = LoadedAnalysis(
+    pressures = model.pressures(full.response)
+    _check_half_widths(drive, torque, full.response, pressures)
+    return LoadedAnalysis(
         drive=drive,
         torque=torque,
         method=method,
@@ -159,12 +163,10 @@ def analyse(
         full=full,
         light=light,
         model=model,
-        pressures=model.pressures(full.response),
+        pressures=pressures,
         bearing_radial=push.real,
         bearing_tangential=push.imag,
     )
-    _check_half_widths(analysis)
-    return analysis
 
 
 def _contacts_of(method: Method, contacts: Contacts | None) -> Contacts:
@@ -176,17 +178,16 @@ def _contacts_of(method: Method, contacts: Contacts | None) -> Contacts:
     return own
 
 
-def _check_half_widths(analysis: LoadedAnalysis) -> None:
-    drive = analysis.drive
-    flank = analysis.full.response.flank
+def _check_half_widths(drive: Drive, torque: float, contacts: Response, pressures: ContactPressures) -> None:
+    flank = contacts.flank
     # 1/ρ = 1/r_pin + κ: the flank's own radius is a bound as well as the pin's.
     curvature = 1.0 / flank.effective_radius - 1.0 / drive.pin_wheel.pin_radius
     flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
     roller = drive.crank_bearing.roller_radius
     found: list[tuple[str, FloatArray, FloatArray | float]] = [
-        ("wheel pin", analysis.pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
-        ("roller on the bore", analysis.pressures.outer.half_width, roller),
-        ("roller on the inner race", analysis.pressures.inner.half_width, roller),
+        ("wheel pin", pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
+        ("roller on the bore", pressures.outer.half_width, roller),
+        ("roller on the inner race", pressures.inner.half_width, roller),
     ]
     problems = []
     for name, half_width, radius in found:
@@ -195,7 +196,7 @@ def _check_half_widths(analysis: LoadedAnalysis) -> None:
             worst = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             bound = float(half_width[worst] / ratio[worst])
             problems.append(
-                f"load.torque = {analysis.torque:g} N·mm cannot be carried: contact half-width "
+                f"load.torque = {torque:g} N·mm cannot be carried: contact half-width "
                 f"{half_width[worst]:.4g} mm of {name} {worst[1]}, must be at most {bound:.4g} mm "
                 f"({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
             )

@@ -8,6 +8,7 @@ Approaches are positive where the bodies are pressed together.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from ltca.drive import Drive
 from ltca.placement import Placement
 from ltca.profile import FlankProfile
+from ltca.unit_circle import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -25,9 +27,16 @@ def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
     return first.real * second.real + first.imag * second.imag
 
 
+def _cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
+    return first.real * second.imag - first.imag * second.real
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairMotion:
     """Approach of pairs of one kind, with first and second derivatives by the pose.
+
+    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its
+    tangent, and turning terms made of s again. They are only formed summed over the pairs, see `bend`.
 
     Attributes
     ----------
@@ -35,13 +44,39 @@ class PairMotion:
         δ, mm.
     gradient : array, shape (positions, pairs, 4)
         ∂δ/∂q, in mm/mm and mm/rad.
-    curvature : array, shape (positions, pairs, 4, 4)
-        ∂²δ/∂q², the geometric part of the tangent.
+    along : array, shape (positions, pairs, 4)
+        Slip along the tangent by the pose, in mm/mm and mm/rad.
+    bending : array, shape (positions, pairs)
+        κ of the path of equal approach, 1/mm.
     """
 
     approach: FloatArray
     gradient: FloatArray
-    curvature: FloatArray
+    along: FloatArray
+    bending: FloatArray
+
+    def bend(self, load: FloatArray) -> FloatArray:
+        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, 4, 4).
+
+        Parameters
+        ----------
+        load : array, shape (positions, pairs)
+            F, N.
+        """
+        return self._sum(load, self.bending, self.along)
+
+    @property
+    def curvature(self) -> FloatArray:
+        """∂²δ/∂q² of every pair, shape (positions, pairs, 4, 4)."""
+        one = np.ones((*self.bending.shape, 1))
+        return self._sum(one, self.bending[..., None], self.along[..., None, :])
+
+    @staticmethod
+    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
+        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ with the disc rotation as coordinate 2."""
+        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
+        total[..., 2, 2] += (load * along[..., 2]).sum(axis=-1)
+        return np.asarray(total)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +93,17 @@ class FlankMotion(PairMotion):
 
     parameter: FloatArray
     effective_radius: FloatArray
+
+    @staticmethod
+    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
+        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s₃ e₃e₃ᵀ), wheel angle as coordinate 3."""
+        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
+        slip = np.matmul(load[..., None, :], along)[..., 0, :]
+        total[..., 2, :] += slip
+        total[..., :, 2] += slip
+        total[..., 2, 2] -= slip[..., 2]
+        total[..., 3, 3] -= slip[..., 3]
+        return np.asarray(-total)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +134,8 @@ class RollerRays:
         """
         along = _dot(self.direction, displacement[:, None])
         across = (self.direction.conjugate() * displacement[:, None]).imag
-        return np.asarray(along + np.sqrt(self.bore_play**2 - across**2))
+        # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
+        return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,6 +149,18 @@ class ContactGeometry:
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive."""
         return cls(placement=Placement.of_drive(drive), profile=FlankProfile.of_drive(drive))
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], positions: int) -> ContactGeometry:
+        """Return the contact geometry of a batch: every drive at the same number of positions, drive by drive."""
+        places = [Placement.of_drive(drive) for drive in drives]
+        return cls(placement=Placement.stack(places, positions), profile=FlankProfile.stack(drives, positions))
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ContactGeometry:
+        """Return the geometry of some positions: itself for one drive, these rows of a batch."""
+        if not self.placement.is_batch:
+            return self
+        return ContactGeometry(placement=self.placement.take(rows), profile=self.profile.take(rows))
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, rad.
@@ -129,43 +188,36 @@ class ContactGeometry:
         place = self.placement
         rotation, wheel_angle = pose[:, 2, None], pose[:, 3, None]
         disc_centre = (place.race_centre(crank_angle) + pose[:, 0] + 1j * pose[:, 1])[:, None]
-        turned = np.exp(1j * (place.wheel_rotation(crank_angle)[:, None] + wheel_angle))
-        pin = place.wheel_pin_centres * turned
-        arm = pin - disc_centre
-        back = np.exp(-1j * rotation)
-        point = arm * back
+        pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
+        arm = place.wheel_axis + pin - disc_centre
+        turn = unit(rotation)
+        point = arm * turn.conjugate()
         if start is None:
             start = self.nominal_parameter(crank_angle) + wheel_angle - rotation
-        parameter = self.profile.nearest_parameter(point, start)
-        centre, tangent, second = self.profile.locus(parameter)
-        speed = np.abs(tangent)
+        parameter, curve = self.profile.nearest_point(point, start)
+        tangent, second = curve.tangent, curve.second
+        speed = np.sqrt(tangent.real**2 + tangent.imag**2)
         normal = -1j * tangent / speed
-        locus_distance = _dot(normal, point - centre)
-        locus_curvature = (tangent.conjugate() * second).imag / speed**3
-        offset = self.profile.offset
-        approach = place.wheel_pin_radii - offset - locus_distance
-        flank_curvature = locus_curvature / (1.0 - offset * locus_curvature)
+        distance = _dot(normal, point - curve.point)
+        curvature = _cross(tangent, second) / speed**3
+        offset = self.profile.contact_offset
+        approach = place.wheel_pin_radii - offset - distance
+        flank_curvature = curvature / (1.0 - offset * curvature)
         effective_radius = 1.0 / (1.0 / place.wheel_pin_radii + flank_curvature)
 
-        # Distance = f(point(q)): its Hessian is n·∂²point + κ (t·∂point)(t·∂point), κ of the parallel curve
-        # through the pin centre. Vectors are taken in the fixed frame.
-        outward = normal / back
-        sideways = 1j * outward
-        kappa = locus_curvature / (1.0 + locus_curvature * locus_distance)
-        by_pose = np.stack(np.broadcast_arrays(-1.0 + 0j, -1j, -1j * arm, 1j * pin), axis=-1)
-        gradient = -_dot(outward[..., None], by_pose)
-        along = _dot(sideways[..., None], by_pose)
-        hessian = kappa[..., None, None] * along[..., :, None] * along[..., None, :]
-        turning = _dot(outward[..., None], np.stack(np.broadcast_arrays(1j, -1.0 + 0j, pin), axis=-1))
-        for column, index in enumerate((0, 1, 3)):
-            hessian[..., index, 2] += turning[..., column]
-            hessian[..., 2, index] += turning[..., column]
-        hessian[..., 2, 2] -= _dot(outward, arm)
-        hessian[..., 3, 3] -= _dot(outward, pin)
+        # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
+        # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
+        outward = normal * turn
+        gradient, along = np.empty((*approach.shape, 4)), np.empty((*approach.shape, 4))
+        gradient[..., 0], gradient[..., 1] = outward.real, outward.imag
+        gradient[..., 2], gradient[..., 3] = _cross(arm, outward), -_cross(pin, outward)
+        along[..., 0], along[..., 1] = outward.imag, -outward.real
+        along[..., 2], along[..., 3] = -_dot(outward, arm), _dot(outward, pin)
         return FlankMotion(
             approach=approach,
             gradient=gradient,
-            curvature=-hessian,
+            along=along,
+            bending=curvature / (1.0 + curvature * distance),
             parameter=parameter,
             effective_radius=effective_radius,
         )
@@ -174,26 +226,23 @@ class ContactGeometry:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
         disc_centre = (place.race_centre(crank_angle) + pose[:, 0] + 1j * pose[:, 1])[:, None]
-        arm = place.hole_centres * np.exp(1j * pose[:, 2, None])
+        arm = place.hole_centres * unit(pose[:, 2, None])
         play = place.shaft_pin_centres - disc_centre - arm
-        distance = np.abs(play)
+        distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
-        by_pose = np.stack(np.broadcast_arrays(1.0 + 0j, 1j, 1j * arm), axis=-1)
-        positions, pairs = distance.shape
-        gradient = np.zeros((positions, pairs, 4))
-        gradient[..., :3] = -_dot(direction[..., None], by_pose)
-        across = _dot(1j * direction[..., None], by_pose)
-        curvature = np.zeros((positions, pairs, 4, 4))
-        curvature[..., :3, :3] = across[..., :, None] * across[..., None, :] / distance[..., None, None]
-        curvature[..., 2, 2] += _dot(direction, arm)
+        gradient, along = np.zeros((*distance.shape, 4)), np.zeros((*distance.shape, 4))
+        gradient[..., 0], gradient[..., 1] = -direction.real, -direction.imag
+        gradient[..., 2] = -_cross(arm, direction)
+        along[..., 0], along[..., 1] = -direction.imag, direction.real
+        along[..., 2] = _dot(direction, arm)
         approach = distance - (place.hole_radii - place.shaft_pin_radii)
-        return PairMotion(approach=approach, gradient=gradient, curvature=curvature)
+        return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 
     def rollers(self, crank_angle: FloatArray) -> RollerRays:
         """Return the cage rays of the rollers (Eq. 48); they depend on the crank angle alone."""
         place = self.placement
         return RollerRays(
-            direction=np.exp(1j * place.roller_angles(crank_angle)),
+            direction=place.roller_rays(crank_angle),
             outermost=place.inner_race_radius + place.roller_radii,
             bore_play=place.bore_radius - place.roller_radii,
         )

@@ -23,7 +23,7 @@ from ltca.errors import ConvergenceError
 FloatArray = NDArray[np.float64]
 
 SELF_ENERGY = 0.25
-"""−⟨ln|x − x′|⟩ − … over a semi-elliptic pressure of half-width b is −ln(b/2) + 1/4."""
+"""−⟨ln|x − x′|⟩ over a semi-elliptic pressure of half-width b is −ln(b/2) + 1/4."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

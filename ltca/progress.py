@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Protocol
+
+
+class Advance(Protocol):
+    """Told of every finished part."""
+
+    def __call__(self, name: str, size: int = 1) -> None:
+        """Show the name and move on by the size."""
+        ...
 
 
 @contextmanager
-def progress(title: str, total: int) -> Iterator[Callable[[str], None]]:
+def progress(title: str, total: int) -> Iterator[Advance]:
     """Show a bar with rate and time left on stderr while the block runs, if stderr is a terminal.
 
     Parameters
@@ -21,10 +30,10 @@ def progress(title: str, total: int) -> Iterator[Callable[[str], None]]:
     Yields
     ------
     callable
-        To be called with the name of each finished part.
+        To be called with the name of each finished part, and its size when it is not 1.
     """
     if not sys.stderr.isatty():
-        yield lambda name: None
+        yield lambda name, size=1: None
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -33,7 +42,7 @@ def progress(title: str, total: int) -> Iterator[Callable[[str], None]]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=total)
 
-        def advance(name: str) -> None:
-            bar.update(task, advance=1, description=f"{title}: {name}")
+        def advance(name: str, size: int = 1) -> None:
+            bar.update(task, advance=size, description=f"{title}: {name}")
 
         yield advance

@@ -13,6 +13,7 @@ from ltca.drive import Drive
 from ltca.errors import DriveError
 from ltca.loaded_analysis import LoadedAnalysis
 from ltca.pairs import ContactGeometry
+from ltca.placement import position_angles as position_angles
 from ltca.tooth_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
 
 FloatArray = NDArray[np.float64]
@@ -57,11 +58,6 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "equilibrium_residual": ("", "N", "largest unbalanced force, moments by their lever arms"),
     "iterations": ("", "1", "Newton iterations at the torque of the run"),
 }
-
-
-def position_angles(positions: int) -> FloatArray:
-    """Return the crank angles of a run of N positions over one turn: 2πk/N, rad."""
-    return 2.0 * np.pi * np.arange(positions) / positions
 
 
 def _values(analysis: LoadedAnalysis) -> dict[str, Any]:

@@ -43,26 +43,56 @@ def first_contact(
     Raises
     ------
     ConvergenceError
-        When no pin can touch in that sense.
+        When no pin can touch in that sense, or pins interfere at every rotation.
+    """
+    rotation, pin, settled, history = turn_to_contact(geometry, crank_angle, coordinate, sense)
+    if not np.all(settled):
+        raise ConvergenceError(
+            "no pin touches the flank, or some interfere at every rotation, the disc in its nominal place; last "
+            "rotations in rad",
+            history,
+        )
+    return rotation, pin
+
+
+def turn_to_contact(
+    geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
+) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_], list[float]]:
+    """Turn as `first_contact` does and tell where that found contact.
+
+    Returns
+    -------
+    rotation : array, shape (positions,)
+        rad, zero where no contact was found.
+    pin : array of int, shape (positions,)
+        The pin that touches first.
+    settled : array of bool, shape (positions,)
+        Whether contact was found.
+    history : list of float
+        Largest rotation of each round, rad.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     pose = np.zeros((angle.size, 4))
+    lever = geometry.placement.eccentricity * geometry.placement.reduction_ratio
     history: list[float] = []
+    settled = np.zeros(angle.size, dtype=bool)
+    pin = np.zeros(angle.size, dtype=np.intp)
     for _ in range(60):
         motion = geometry.flank(angle, pose)
         rate = sense * motion.gradient[..., coordinate]
-        lever = geometry.placement.eccentricity * geometry.placement.reduction_ratio
         closing = rate > 1e-3 * lever
         travel = np.where(closing, -motion.approach / np.where(closing, rate, 1.0), np.inf)
         pin = np.argmin(travel, axis=1)
         step = np.take_along_axis(travel, pin[:, None], axis=1)[:, 0]
-        if not np.all(np.isfinite(step)):
-            break
+        reachable = np.isfinite(step)
+        step = np.where(reachable, step, 0.0)
         pose[:, coordinate] += sense * step
+        settled = reachable & (np.abs(step) < 1e-14)
         history.append(float(np.max(np.abs(step))))
-        if history[-1] < 1e-14:
-            return pose[:, coordinate], pin
-    raise ConvergenceError("no pin touches the flank; remaining rotation in rad", history)
+        if np.all(settled | ~reachable):
+            break
+    pose[~settled, coordinate] = 0.0
+    return pose[:, coordinate], pin, settled, history
 
 
 def backlash(geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int) -> FloatArray:

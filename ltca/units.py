@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BeforeValidator
@@ -78,12 +79,31 @@ def quantity(
     pydantic.BeforeValidator
         To be used in ``Annotated[float, quantity("mm", gt=0)]``.
     """
-    bounds = [("greater than", gt), ("at least", ge), ("less than", lt), ("at most", le)]
+    bounds = (("greater than", gt), ("at least", ge), ("less than", lt), ("at most", le))
+    return BeforeValidator(QuantityCheck(unit=unit, bounds=bounds))
 
-    def check(value: Any) -> float:
-        number = _number(value, unit)
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuantityCheck:
+    """What `quantity` asks of a value; keeps the unit of the field for whoever reads the definition.
+
+    Attributes
+    ----------
+    unit : str
+        The unit inside the suite.
+    bounds : tuple of (str, float or None)
+        Greater than, at least, less than, at most.
+    """
+
+    unit: str
+    bounds: tuple[tuple[str, float | None], ...]
+
+    def __call__(self, value: Any) -> float:
+        """Return the value in the unit of the field, or refuse it."""
+        number = _number(value, self.unit)
         if not math.isfinite(number):
-            raise PydanticCustomError("quantity", "must be finite{unit}", {"unit": _in(unit)})
+            raise PydanticCustomError("quantity", "must be finite{unit}", {"unit": _in(self.unit)})
+        gt, ge, lt, le = (bound for _, bound in self.bounds)
         holds = (
             (gt is None or number > gt)
             and (ge is None or number >= ge)
@@ -91,13 +111,11 @@ def quantity(
             and (le is None or number <= le)
         )
         if not holds:
-            text = " and ".join(f"{word} {bound:g}" for word, bound in bounds if bound is not None)
+            text = " and ".join(f"{word} {bound:g}" for word, bound in self.bounds if bound is not None)
             raise PydanticCustomError(
-                "quantity", "must be {text}{unit}", {"text": text, "unit": f" {label(unit)}".rstrip()}
+                "quantity", "must be {text}{unit}", {"text": text, "unit": f" {label(self.unit)}".rstrip()}
             )
         return number
-
-    return BeforeValidator(check)
 
 
 def parse_quantity(text: str, unit: str, name: str) -> float:

@@ -79,7 +79,8 @@ def test_documented_parameters_equal_the_signature(path):
 def test_the_check_itself_can_fail():
     tree = ast.parse(
         '"""M."""\nclass A:\n    """A.\n\n    Attributes\n    ----------\n    x : int\n    """\n    y: int\n'
-        '    def f(self, a, b):\n        """F.\n\n        Parameters\n        ----------\n        a : int\n        """\n'
+        '    def f(self, a, b):\n        """F.\n\n'
+        '        Parameters\n        ----------\n        a : int\n        """\n'
         "def g():\n    pass\n"
     )
     assert [problem.split(":")[0] for problem in problems_of(tree)] == ["A", "A.f", "g"]

@@ -145,9 +145,7 @@ def _two_cylinders() -> list[Row]:
         relative_row(
             1, "half-width of two cylinders pressed together", contact.half_width, width, "mm", 5e-3, reason, **where
         ),
-        relative_row(
-            1, "peak pressure of two cylinders", contact.peak_pressure, peak, "MPa", 5e-3, reason, **where
-        ),
+        relative_row(1, "peak pressure of two cylinders", contact.peak_pressure, peak, "MPa", 5e-3, reason, **where),
         relative_row(
             1,
             "resultant of the contact pressure",

@@ -6,6 +6,8 @@ positions. Bounds allow for curves read from a print to about 1 % and difference
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from ltca.drive_file import load_drive
@@ -133,7 +135,7 @@ def _contacts(summary: Summary) -> list[Row]:
 def _meshing(analyses: dict[str, LoadedAnalysis], summary: Summary) -> list[Row]:
     ranges = {case: values["pin_shaft_loaded_range_deg"] for case, values in summary.items()}
     names = list(ranges)
-    drops = {case: ranges[before] - ranges[case] for before, case in zip(names, names[1:], strict=False)}
+    drops = {case: ranges[before] - ranges[case] for before, case in itertools.pairwise(names)}
     centre = {case: _centre_of_range(analysis) for case, analysis in analyses.items()}
     loaded = {case: values["mean_loaded_pins"] for case, values in summary.items()}
     return [

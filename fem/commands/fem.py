@@ -33,6 +33,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
     )
+    parser.add_argument(
+        "--elastic-shaft-pins", action="store_true", help="shaft pins yield, too (default: rigid circles on springs)"
+    )
     parser.add_argument("--out", metavar="DIR", default="fem", help="folder for the files (default: fem)")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
     parser.add_argument(
@@ -74,6 +77,7 @@ def execute(arguments: argparse.Namespace) -> int:
         torque=arguments.torque,
         scale=arguments.size,
         state=arguments.plane,
+        elastic_shaft_pins=arguments.elastic_shaft_pins,
         progress=_progress(),
     )
     fields = recover_fields(solution.model, solution.state, state=arguments.plane)

@@ -187,6 +187,5 @@ def test_nafems_cylinder_on_block(block_of, flat):
         zone, below, opposite, above,
         pose=Pose(centre=1j * radius), radius=radius, load=load, direction=1j, expected_half_width=width,
     )  # fmt: skip
-    print("NAFEMS", contact.peak_pressure, contact.half_width)
     assert contact.peak_pressure == pytest.approx(3585.0, rel=0.03)
     assert contact.half_width == pytest.approx(6.21, rel=0.03)

@@ -139,8 +139,8 @@ def test_unit_invariance(paper_table, length, stress):
     np.testing.assert_allclose(other.full.pose[:, :2] / length, plain.full.pose[:, :2], atol=1e-9)
     np.testing.assert_allclose(other.full.pose[:, 2:], plain.full.pose[:, 2:], atol=1e-11)
     np.testing.assert_allclose(other.light.pose[:, 2:], plain.light.pose[:, 2:], atol=1e-11)
-    np.testing.assert_allclose(other.pin_pressure_mid / stress, plain.pin_pressure_mid, atol=1e-5)
-    np.testing.assert_allclose(other.pin_half_width / length, plain.pin_half_width, atol=1e-9)
+    np.testing.assert_allclose(other.pressures.pins.mid / stress, plain.pressures.pins.mid, atol=1e-5)
+    np.testing.assert_allclose(other.pressures.pins.half_width / length, plain.pressures.pins.half_width, atol=1e-9)
 
 
 def test_torque_share_scales_the_torque_of_one_disc(vary):

@@ -200,3 +200,19 @@ def test_rigid_body_limit_comes_near_the_half_space_drive():
         flexible = np.max(np.abs(getattr(elastic, name) - theirs)) / theirs.max()
         assert away < limit, name
         assert away < 0.5 * flexible, name
+
+
+@pytest.mark.slow
+def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
+    """Disc and pin alike: E* is half that of a rigid pin, so at one load b grows and p0 falls by √2 (Hertz)."""
+    yielding = solve_drive(drive(), 0.5, scale=3.0, elastic_shaft_pins=True)
+    check_balance(yielding)
+    rigid, soft = coarse.contacts, yielding.contacts
+    on = rigid.pin_shaft_load > 0.0
+    loads = np.sqrt(soft.pin_shaft_load[on] / rigid.pin_shaft_load[on])
+    # Three elements for each half-width: half-widths good to 2 %, pressures to 3 %.
+    np.testing.assert_allclose(soft.hole_half_width[on] / rigid.hole_half_width[on], np.sqrt(2.0) * loads, rtol=0.03)
+    # The pins give way locally by some micrometres, so the wheel turns back further.
+    assert yielding.pose.wheel_angle < coarse.pose.wheel_angle
+    kinds = [field.kind for field in recover_fields(yielding.model, yielding.state)]
+    assert kinds.count("shaft_pin") == 8

@@ -14,12 +14,15 @@ shared/paper/notes.md, "Results the paper prints", with the bounds of issue 2:
 [7] Fig. 34: largest roller load in CS-3 larger than in CS-1, little change beyond.
 [8] Fig. 23: peak-to-peak TE 3.2″ (CS-1), 3.7″ (CS-3), CS-6 about twice CS-3. The absolute values are not met
     (5.4″, 6.1″): reported, not asserted.
-[9] Fig. 24: start of contact. Fig. 25: more loaded pins in CS-3 than in CS-1. Fig. 26: largest flank pressure +1 % in CS-3.
+[9] Fig. 24: start of contact. Fig. 25: more loaded pins in CS-3 than in CS-1. Fig. 26: largest flank pressure
+    +1 % in CS-3.
 
 Bounds are the issue's: curves read from a print to about 1 %, differences of them to about one or two per cent.
 """
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 import pytest
@@ -91,7 +94,7 @@ def test_pin_shaft_loaded_range(summary):
     ranges = {case: summary[case]["pin_shaft_loaded_range_deg"] for case in CASES}
     assert ranges["CS-1"] == pytest.approx(98.0, abs=1.5)  # [6]
     assert ranges["CS-6"] == pytest.approx(62.0, abs=2.0)  # [6]
-    drops = {case: ranges[before] - ranges[case] for before, case in zip(CASES, CASES[1:], strict=False)}
+    drops = {case: ranges[before] - ranges[case] for before, case in itertools.pairwise(CASES)}
     assert max(drops, key=drops.get) == "CS-4"  # [6] drops sharply with the first pin-hole clearance
 
 
@@ -134,8 +137,8 @@ def test_mesh_of_a_pin_shifts_with_the_bearing_clearance(analyses):
 
 def test_residual_below_a_millionth_of_the_load(summary):
     for case in CASES:
-        # of the light load, the smaller of the two: 10 N·m/56 mm
-        assert summary[case]["max_equilibrium_residual_N"] < 1e-6 * 377_300.0 / 56.0
+        # the larger residual of both torques against the smaller load, 10 N·m/56 mm
+        assert summary[case]["max_equilibrium_residual_N"] < 1e-6 * 10_000.0 / 56.0
 
 
 def test_light_transmission_error_has_the_period_of_the_flank(analyses):

@@ -124,10 +124,8 @@ def test_start_does_not_matter(drives):
     model = HalfSpaceCompliance.of_drive(drive)
     angles, poses, _ = pressed_poses(drive, 4, 5)
     plain = model.respond(angles, poses)
-    start = Start(
-        parameter=plain.flank.parameter + 0.01,
-        share=np.full_like(plain.rollers.share, 0.9),
-        memory=plain.memory,
+    start = replace(
+        Start.after(plain), parameter=plain.flank.parameter + 0.01, share=np.full_like(plain.rollers.share, 0.9)
     )
     other = model.respond(angles, poses, start)
     np.testing.assert_allclose(other.force, plain.force, atol=1e-8 * np.abs(plain.force).max())

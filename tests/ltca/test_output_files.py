@@ -34,6 +34,17 @@ def test_interrupted_write_leaves_the_old_file(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_old_file_is_replaced_not_written_over(tmp_path):
+    """Whoever has the old file open or linked keeps it whole; a kill between two writes cannot halve the new one."""
+    path, link = tmp_path / "file.txt", tmp_path / "link.txt"
+    path.write_text("old")
+    link.hardlink_to(path)
+    with whole_file(path) as part:
+        part.write_text("new")
+    assert path.read_text() == "new"
+    assert link.read_text() == "old"
+
+
 def test_suffix_is_kept_for_writers_that_choose_by_it(tmp_path):
     with whole_file(tmp_path / "a.svg") as part:
         assert part.suffix == ".svg"

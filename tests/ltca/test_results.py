@@ -24,26 +24,15 @@ POSITION_VARIABLES = {
     "bearing_radial": "N", "bearing_tangential": "N", "transmission_error": "rad", "transmission_error_light": "rad",
     "disc_radial": "mm", "disc_tangential": "mm", "disc_rotation": "rad", "equilibrium_residual": "N",
 }  # fmt: skip
-SUMMARY_KEYS = [
-    "backlash_disc_arcmin",
-    "backlash_wheel_arcmin",
-    "mean_bearing_load_N",
-    "mean_radial_bearing_load_N",
-    "mean_tangential_bearing_load_N",
-    "ptp_tangential_bearing_load_N",
-    "max_pin_load_N",
-    "max_pin_pressure_mid_MPa",
-    "max_roller_load_N",
-    "max_roller_pressure_mid_MPa",
-    "max_pin_shaft_load_N",
-    "pin_shaft_loaded_range_deg",
-    "mean_loaded_pins",
-    "mean_loaded_rollers",
-    "mean_loaded_pin_shaft_pins",
-    "ptp_transmission_error_arcsec",
-    "ptp_transmission_error_light_arcsec",
-    "max_equilibrium_residual_N",
-]
+SUMMARY_KEYS = set(
+    """
+backlash_disc_arcmin backlash_wheel_arcmin mean_bearing_load_N mean_radial_bearing_load_N
+mean_tangential_bearing_load_N ptp_tangential_bearing_load_N max_pin_load_N max_pin_pressure_mid_MPa
+max_roller_load_N max_roller_pressure_mid_MPa max_pin_shaft_load_N pin_shaft_loaded_range_deg mean_loaded_pins
+mean_loaded_rollers mean_loaded_pin_shaft_pins ptp_transmission_error_arcsec ptp_transmission_error_light_arcsec
+max_equilibrium_residual_N
+""".split()  # noqa: SIM905
+)
 
 ANGLES = np.array([0.1, 1.3, -4.0, 25.0, 3.3])
 
@@ -190,7 +179,8 @@ def test_equilibrium_of_the_reverse_drive_and_another_torque(vary):
 def test_summary_keys_and_scalars_from_the_dataset(analyses, dataset):
     for case, analysis in analyses.items():
         summary = summarise(analysis)
-        assert sorted(summary) == sorted(SUMMARY_KEYS)
+        assert set(summary) >= SUMMARY_KEYS  # others may be added, none renamed
+        assert all(math.isfinite(value) for value in summary.values())
         at = dataset.sel(case=case)
         radial, tangential = at["bearing_radial"].values, at["bearing_tangential"].values
         total = [math.hypot(a, b) for a, b in zip(radial, tangential, strict=True)]

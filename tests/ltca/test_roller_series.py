@@ -169,6 +169,27 @@ def test_eliminated_energy_its_gradient_and_tangent():
         np.testing.assert_allclose(bend.imag[clear], column[..., 1][clear], atol=1e-6 * size)
 
 
+def test_tangent_where_the_normals_differ_much():
+    """Rays and outer normals at 20° and more, loads that bend: every term of the eliminated tangent counts."""
+    rng = np.random.default_rng(7)
+    angles = rng.uniform(0.0, 2.0 * np.pi, (1, 40))
+    case = RollerRays(direction=np.exp(1j * angles), outermost=np.full(40, 2.0), bore_play=np.full(40, 1.6))
+    law = PowerLaw(50.0, 1.5)
+    laws = RollerLaws(inner=law, outer=PowerLaw(80.0, 1.2), inner_radius=np.ones(40), outer_radius=np.ones(40))
+    displacement = np.array([0.6 - 0.4j])
+    here = balance_rollers(case, displacement, laws)
+    pressed = here.outer_approach > 0.01
+    cosine = (here.outer_direction * case.direction.conjugate()).real
+    assert np.min(cosine[pressed]) < 0.94
+    h = 1e-5
+    for axis, move in enumerate((h, 1j * h)):
+        ahead, behind = (balance_rollers(case, displacement + sign * move, laws) for sign in (1, -1))
+        bend = -(ahead.outer_load * ahead.outer_direction - behind.outer_load * behind.outer_direction) / (2.0 * h)
+        found = here.tangent[..., 0, axis] + 1j * here.tangent[..., 1, axis]
+        # h² times third derivatives: (1e-5/0.01)² of some per cent
+        np.testing.assert_allclose(found[pressed], bend[pressed], atol=1e-6 * np.abs(here.tangent).max())
+
+
 def test_start_does_not_matter(half_space_laws):
     rng = np.random.default_rng(5)
     case = rays(rng, rollers=11, clearance=0.02)

@@ -22,7 +22,7 @@ from ltca.tooth_contact import (
 
 
 def smallest_gap(drive, crank, disc_rotation, wheel_angle):
-    """Least distance of any pin from Eq. 1's flank: samples in two rounds, then the parabola through the lowest three."""
+    """Least distance of any pin from Eq. 1's flank: samples in two rounds, a parabola through the lowest three."""
     wheel, e = drive.pin_wheel, drive.crank.eccentricity
     z = wheel.number_of_pins
     R = wheel.pin_circle_radius + drive.disc.shifting_offset

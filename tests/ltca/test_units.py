@@ -65,6 +65,7 @@ def test_bounds_are_where_they_are_said_to_be():
         (2.0, {"lt": 2.0}, "must be less than 2 mm"),
         ("3 mm", {"gt": 0.0, "le": 2.0}, "must be greater than 0 and at most 2 mm"),
         (math.nan, {}, "must be finite in mm"),
+        (math.inf, {}, "must be finite in mm"),
         (True, {}, "must be a number in mm"),
         ([1.0], {}, "must be a number in mm"),
     ):

@@ -1,0 +1,81 @@
+"""Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
+
+Every answer is either confirmed by `ltca.equilibrium_check` (residual, complementarity, minimum of the potential) or a
+`ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
+written as JSON, also in between, so that a long run may be watched or stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from ltca.compliance import HalfSpaceCompliance
+from ltca.equilibrium import solve_equilibrium
+from ltca.equilibrium_check import find_imbalance
+from ltca.errors import ConvergenceError
+from ltca.random_drives import COORDINATES, random_drive
+
+
+def try_drive(seed: int) -> tuple[str, str, int]:
+    """Return outcome, detail and iterations of the drive of a seed."""
+    drawn = random_drive(np.random.default_rng(seed).random(COORDINATES))
+    if drawn is None:
+        return "no drive fits", "", 0
+    drive, angle = drawn
+    model = HalfSpaceCompliance.of_drive(drive)
+    try:
+        balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
+    except ConvergenceError as error:
+        return ("convergence error" if error.history else "error without history"), str(error), 0
+    problems = find_imbalance(drive, model, balanced)
+    return ("wrong" if problems else "balanced"), "; ".join(problems), int(balanced.iterations[0])
+
+
+def main() -> int:
+    """Run the count asked for; exit status 1 when an answer was wrong."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=2000, help="drives to draw; default 2000")
+    parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
+    parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
+    arguments = parser.parse_args()
+    outcomes: Counter[str] = Counter()
+    remarks: list[str] = []
+    iterations: Counter[int] = Counter()
+    began, slowest, slowest_seed = time.perf_counter(), 0.0, -1
+    arguments.out.parent.mkdir(parents=True, exist_ok=True)
+    for number, seed in enumerate(range(arguments.first, arguments.first + arguments.count), start=1):
+        start = time.perf_counter()
+        outcome, detail, steps = try_drive(seed)
+        taken = time.perf_counter() - start
+        if number > 1 and taken > slowest:  # the first one builds the table of the contact law
+            slowest, slowest_seed = taken, seed
+        outcomes[outcome] += 1
+        iterations[steps] += 1
+        if detail:
+            remarks.append(f"seed {seed}: {outcome}: {detail}")
+        if number % 1000 == 0 or number == arguments.count:
+            counts = np.array(sorted(iterations.elements()))
+            report = {
+                "drawn": number,
+                "outcomes": dict(outcomes),
+                "iterations_median": float(np.median(counts)),
+                "iterations_max": int(counts.max()),
+                "seconds": round(time.perf_counter() - began, 1),
+                "slowest_drive_s": round(slowest, 3),
+                "slowest_seed": slowest_seed,
+                "remarks": remarks,
+            }
+            arguments.out.write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            print(f"{number}: {dict(outcomes)}, {report['seconds']} s", flush=True)
+    return 1 if outcomes["wrong"] + outcomes["error without history"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

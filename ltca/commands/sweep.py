@@ -1,0 +1,27 @@
+"""``cyclo sweep``: any fields of a drive varied over a grid, a list, a Latin hypercube or a Sobol sequence."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ltca.commands.study_arguments import add_study_arguments
+
+SUMMARY = "vary any fields of a drive: grid, list, Latin hypercube, Sobol"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML): drive, factors, design")
+    add_study_arguments(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Solve the samples, write and print the results."""
+    from ltca.commands.study_arguments import execute_study
+    from ltca.studies.storage import StudyFolder
+    from ltca.studies.sweep_file import load_sweep
+
+    study = load_sweep(arguments.study)
+    out = arguments.out or Path("out") / arguments.study.stem
+    return execute_study(study, StudyFolder(path=out), arguments)

@@ -1,0 +1,75 @@
+"""Safety of the flank pressure against a limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PressureSafety:
+    """Least safety of a run.
+
+    Attributes
+    ----------
+    limit, largest : float
+        Given limit and largest pressure, MPa.
+    safety : float
+        Limit by largest pressure.
+    load_factor : float
+        Factor on the load of that contact that would reach the limit: pressure of a line contact grows as √load.
+    position, pin : int
+        Where the largest pressure is.
+    per_pin : array, shape (pins,)
+        Least safety of each pin; infinite where it carries nothing.
+    """
+
+    limit: float
+    largest: float
+    safety: float
+    load_factor: float
+    position: int
+    pin: int
+    per_pin: FloatArray
+
+
+def pressure_safety(pressure: FloatArray, limit: float) -> PressureSafety:
+    """Return the safety of pressures against a limit.
+
+    Parameters
+    ----------
+    pressure : array, shape (positions, pins)
+        Pressures at mid-width, MPa.
+    limit : float
+        Permissible pressure, MPa, positive.
+
+    Raises
+    ------
+    ValueError
+        When the limit is not positive or nothing is pressed.
+
+    Examples
+    --------
+    >>> pressure_safety(np.array([[500.0, 0.0], [0.0, 800.0]]), 1600.0).safety
+    2.0
+    """
+    if not limit > 0.0:
+        raise ValueError(f"the limit must be greater than 0 MPa, not {limit:g}")
+    largest = float(np.max(pressure))
+    if not largest > 0.0:
+        raise ValueError("no pin is pressed on the flank")
+    position, pin = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    worst = pressure.max(axis=0)
+    return PressureSafety(
+        limit=limit,
+        largest=largest,
+        safety=limit / largest,
+        load_factor=(limit / largest) ** 2,
+        position=int(position),
+        pin=int(pin),
+        per_pin=np.where(worst > 0.0, limit / np.where(worst > 0.0, worst, 1.0), np.inf),
+    )

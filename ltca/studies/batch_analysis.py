@@ -1,0 +1,201 @@
+"""The quantities of many drives at once; a sample that cannot be solved says why and stops nobody else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance import BatchModel, ContactPressures, HalfSpaceCompliance, batch_signature
+from ltca.drive import Drive
+from ltca.equilibrium import Equilibrium, solve_equilibrium
+from ltca.errors import CycloError, DriveError
+from ltca.loaded_analysis import HALF_WIDTH_BOUND
+from ltca.studies.quantities import QUANTITIES, SampleBatch
+from ltca.tooth_contact import WHEEL_ANGLE, backlash
+
+FloatArray = NDArray[np.float64]
+ModelBuilder = Callable[[Sequence[Drive], int], BatchModel]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nominal:
+    """Solution of the drive the samples scatter about: where they start from.
+
+    Attributes
+    ----------
+    full, light : array, shape (positions, 4)
+        Poses at its torque and its light torque.
+    """
+
+    full: FloatArray
+    light: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BatchSettings:
+    """How samples are analysed.
+
+    Attributes
+    ----------
+    crank_angle : array, shape (positions,)
+        φ_C of every sample, rad.
+    quantities : tuple of str
+        Names of `ltca.studies.quantities`.
+    build : callable
+        Compliance model of several drives at a number of positions each.
+    nominal : Nominal or None
+        Starting poses; by default every sample starts from first contact.
+    """
+
+    crank_angle: FloatArray
+    quantities: tuple[str, ...]
+    build: ModelBuilder = HalfSpaceCompliance.of_drives
+    nominal: Nominal | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SampleResults:
+    """Quantities of samples.
+
+    Attributes
+    ----------
+    values : array, shape (samples, quantities)
+        Units of `ltca.studies.quantities`; not a number where the sample failed.
+    messages : tuple of str
+        Why each sample failed, empty where it did not.
+    """
+
+    values: FloatArray
+    messages: tuple[str, ...]
+
+
+def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
+    """Return the solution of one drive at the angles of the settings.
+
+    Raises
+    ------
+    ConvergenceError
+        When it does not balance.
+    """
+    angle = settings.crank_angle
+    model = settings.build([drive], angle.size)
+    full = solve_equilibrium(model, angle, drive.wheel_moment()).pose
+    light = full
+    if any(QUANTITIES[name].stage == "light" for name in settings.quantities):
+        light = solve_equilibrium(model, angle, drive.wheel_moment(drive.load.light_torque), full).pose
+    return Nominal(full=full, light=light)
+
+
+def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
+    """Return the quantities of every drive.
+
+    Drives that agree in their `ltca.compliance.batch_signature` are solved together. What fails is halved until
+    the sample is found, which is tried once more from first contact before it counts as failed.
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+        One for each sample.
+    settings : BatchSettings
+        Angles, quantities, model.
+    """
+    values = np.full((len(drives), len(settings.quantities)), np.nan)
+    messages = [""] * len(drives)
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for number, drive in enumerate(drives):
+        groups.setdefault(batch_signature(drive), []).append(number)
+    for members in groups.values():
+        _solve_group(drives, members, settings, values, messages)
+    return SampleResults(values=values, messages=tuple(messages))
+
+
+def _solve_group(
+    drives: Sequence[Drive], members: list[int], settings: BatchSettings, values: FloatArray, messages: list[str]
+) -> None:
+    try:
+        values[members] = _quantities([drives[number] for number in members], settings, settings.nominal)
+    except CycloError as error:
+        if len(members) > 1:
+            half = len(members) // 2
+            _solve_group(drives, members[:half], settings, values, messages)
+            _solve_group(drives, members[half:], settings, values, messages)
+            return
+        if settings.nominal is not None:
+            try:
+                values[members] = _quantities([drives[members[0]]], settings, None)
+            except CycloError as second:
+                messages[members[0]] = str(second)
+        else:
+            messages[members[0]] = str(error)
+
+
+def _quantities(drives: list[Drive], settings: BatchSettings, nominal: Nominal | None) -> FloatArray:
+    batch = solve_batch(drives, settings, nominal)
+    return np.stack([QUANTITIES[name].evaluate(batch) for name in settings.quantities], axis=1)
+
+
+def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nominal | None = None) -> SampleBatch:
+    """Solve several drives at all angles as one batch.
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+        Drives of one `ltca.compliance.batch_signature`.
+    settings : BatchSettings
+        Angles, quantities, model.
+    nominal : Nominal, optional
+        Starting poses.
+
+    Raises
+    ------
+    ConvergenceError
+        When a position of any of them does not balance.
+    DriveError
+        When a torque cannot be carried (`ltca.loaded_analysis.HALF_WIDTH_BOUND`).
+    """
+    samples, positions = len(drives), settings.crank_angle.size
+    stages = {QUANTITIES[name].stage for name in settings.quantities}
+    model = settings.build(drives, positions)
+    angle = np.tile(settings.crank_angle, samples)
+
+    def moments(torques: list[float]) -> FloatArray:
+        return np.repeat(torques, positions)
+
+    start = None if nominal is None else np.tile(nominal.full, (samples, 1))
+    full = solve_equilibrium(model, angle, moments([drive.wheel_moment() for drive in drives]), start)
+    pressures = model.pressures(full.response)
+    _check_half_widths(drives[0], full, pressures)
+    light, play = None, None
+    if "light" in stages:
+        moment = moments([drive.wheel_moment(drive.load.light_torque) for drive in drives])
+        start = full.pose if nominal is None else np.tile(nominal.light, (samples, 1))
+        light = solve_equilibrium(model, angle, moment, start)
+    if "backlash" in stages:
+        play = backlash(model.geometry, angle, WHEEL_ANGLE)
+    return SampleBatch(samples=samples, full=full, pressures=pressures, light=light, backlash=play)
+
+
+def _check_half_widths(drive: Drive, full: Equilibrium, pressures: ContactPressures) -> None:
+    """Refuse batches with a contact wider than half-spaces stand for; the halving of the batch finds the sample."""
+    flank = full.response.flank
+    pin_radius = drive.pin_wheel.pin_radius
+    curvature = 1.0 / flank.effective_radius - 1.0 / pin_radius
+    smallest = np.minimum(1.0 / np.maximum(np.abs(curvature), 1e-9), pin_radius)
+    roller = drive.crank_bearing.roller_radius
+    kinds = (
+        ("wheel pin", pressures.pins.half_width, smallest),
+        ("roller on the bore", pressures.outer.half_width, roller),
+        ("roller on the inner race", pressures.inner.half_width, roller),
+    )
+    for name, half_width, radius in kinds:
+        worst = float(np.max(half_width / radius))
+        if worst > HALF_WIDTH_BOUND:
+            raise DriveError(
+                [
+                    f"load.torque cannot be carried: contact half-width of a {name} is {worst:.3g} of the smallest "
+                    f"radius in contact, must be at most {HALF_WIDTH_BOUND:g}"
+                ]
+            )

@@ -1,0 +1,365 @@
+"""Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two aims.
+
+A generation is one batch. Candidates that break a limit or are no sound drive rank behind every one that is fine, by how
+far they break it (the feasibility rule of Deb, Comput. Methods Appl. Mech. Eng. 186, 2000); the best one is refined by
+Nelder and Mead's simplex.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive import Drive
+from ltca.drive_fields import field_kinds, read_field, with_fields
+from ltca.errors import CycloError, DriveError
+from ltca.placement import position_angles
+from ltca.studies.batch_analysis import BatchSettings, ModelBuilder, analyse_samples
+from ltca.studies.quantities import QUANTITIES, check_quantities
+from ltca.units import label, parse_quantity
+
+FloatArray = NDArray[np.float64]
+Analysis = Callable[[Sequence[Drive]], FloatArray]
+"""Quantities of drives, shape (drives, quantities), not a number where one fails."""
+
+BROKEN = 1e3
+"""Rank of a candidate just beyond a limit; aims are scaled to the drive's own value, so all sound ones stay below."""
+UNSOUND = 1e6
+WEIGHTS = 9
+"""Weighted problems behind a Pareto front."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variable:
+    """One field to vary between two values, in its unit."""
+
+    path: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """Bound of a quantity: at most (sense +1) or at least (−1) a value in its unit."""
+
+    quantity: str
+    sense: int
+    value: float
+
+
+def parse_variable(text: str, drive: Drive) -> Variable:
+    """Read ``name``, ``path`` or either with ``=low:high``; half to one and a half of its value without a range.
+
+    Raises
+    ------
+    DriveError
+        When the name is none or several fields, or the range is missing or wrong.
+    """
+    name, _, span = text.partition("=")
+    kinds = field_kinds()
+    parent = name.rpartition(".")[0]
+    element = parent in kinds and kinds[parent].is_array
+    found = [name] if name in kinds or element else [path for path in kinds if path.rpartition(".")[2] == name]
+    if len(found) != 1:
+        hint = (
+            f"may be {' or '.join(found)}: give the whole path" if found else "is not a field of the drive definition"
+        )
+        raise DriveError([f"--vary {name}: {hint}"])
+    path = found[0]
+    unit = kinds[parent if element else path].unit
+    if not unit or (kinds.get(path) is not None and kinds[path].is_array):
+        raise DriveError([f"--vary {path}: is not a single quantity"])
+    if span:
+        ends = span.split(":")
+        if len(ends) != 2:
+            raise DriveError([f"--vary {text}: write the range as {name}=low:high"])
+        low, high = (parse_quantity(end, unit, f"--vary {path}") for end in ends)
+    else:
+        value = float(read_field(drive, path))
+        low, high = sorted((0.5 * value, 1.5 * value))
+    if not low < high:
+        raise DriveError([f"--vary {path}: needs a range, as {name}=low:high with low less than high"])
+    return Variable(path=path, low=low, high=high)
+
+
+def parse_limit(text: str) -> Limit:
+    """Read ``quantity <= value unit`` or ``quantity >= value unit``.
+
+    Raises
+    ------
+    DriveError
+        When it reads otherwise.
+
+    Examples
+    --------
+    >>> parse_limit("max_pin_pressure_mid <= 1.5 GPa").value
+    1500.0
+    """
+    match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", text)
+    if match is None:
+        raise DriveError([f"--subject {text!r}: write it as 'quantity <= value unit'"])
+    name, sign, value = match.groups()
+    check_quantities((name,))
+    unit = QUANTITIES[name].unit
+    number = parse_quantity(value, "dimensionless" if unit == "1" else unit, f"--subject {name}")
+    return Limit(quantity=name, sense=1 if sign in ("<=", "≤") else -1, value=number)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """What is to be optimised.
+
+    Attributes
+    ----------
+    drive : Drive
+        Where everything else comes from.
+    variables : tuple of Variable
+        What varies.
+    aims : tuple of str
+        One or two quantities to make small.
+    limits : tuple of Limit
+        What must hold.
+    """
+
+    drive: Drive
+    variables: tuple[Variable, ...]
+    aims: tuple[str, ...]
+    limits: tuple[Limit, ...]
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Aims, then the quantities of the limits."""
+        return tuple(dict.fromkeys((*self.aims, *(limit.quantity for limit in self.limits))))
+
+
+def batch_analysis(problem: Problem, positions: int, build: ModelBuilder | None = None) -> Analysis:
+    """Return the analysis of candidates by the batch solver over one turn.
+
+    Parameters
+    ----------
+    problem : Problem
+        For its quantities.
+    positions : int
+        Crank angles 2πk/N.
+    build : callable, optional
+        Compliance model of several drives; half-space tables by default.
+    """
+    settings = BatchSettings(crank_angle=position_angles(positions), quantities=problem.quantities)
+    if build is not None:
+        settings = BatchSettings(crank_angle=settings.crank_angle, quantities=problem.quantities, build=build)
+    return lambda drives: analyse_samples(drives, settings).values
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Optimum:
+    """Outcome.
+
+    Attributes
+    ----------
+    problem : Problem
+        What was asked.
+    variables : array, shape (candidates, variables)
+        Every candidate that was solved, in its units.
+    values : array, shape (candidates, quantities)
+        Its quantities; not a number where it failed.
+    feasible : array of bool, shape (candidates,)
+        Whether it is sound and within the limits.
+    start : array, shape (quantities,)
+        Quantities of the drive as it is.
+    best : int
+        The best candidate by the first aim, or the front's compromise of two (nearest to both single optima, scaled).
+    front : array of int
+        Candidates that no other beats in both aims, by the first; the best alone for one aim.
+    generations : int
+        Batches solved.
+    """
+
+    problem: Problem
+    variables: FloatArray
+    values: FloatArray
+    feasible: NDArray[np.bool_]
+    start: FloatArray
+    best: int
+    front: NDArray[np.intp]
+    generations: int
+
+    def drive(self, candidate: int) -> Drive:
+        """Return the drive of a candidate."""
+        return with_fields(self.problem.drive, _fields(self.problem, self.variables[candidate]))
+
+
+def _fields(problem: Problem, row: FloatArray) -> dict[str, Any]:
+    return {variable.path: float(value) for variable, value in zip(problem.variables, row, strict=True)}
+
+
+@dataclass(slots=True, kw_only=True)
+class _Archive:
+    """Every candidate solved so far; scalar ranks for the optimiser."""
+
+    problem: Problem
+    analysis: Analysis
+    scale: FloatArray
+    told: Callable[[int], None]
+    rows: list[FloatArray] = field(default_factory=list)
+    values: list[FloatArray] = field(default_factory=list)
+    batches: int = 0
+
+    def solve(self, places: FloatArray) -> FloatArray:
+        """Solve candidates at places 0 … 1 of every range, shape (candidates, variables); return the quantities."""
+        low = np.array([variable.low for variable in self.problem.variables])
+        high = np.array([variable.high for variable in self.problem.variables])
+        rows = low + (high - low) * np.clip(places, 0.0, 1.0)
+        values = np.full((len(rows), len(self.problem.quantities)), np.nan)
+        drives, sound = [], []
+        for number, row in enumerate(rows):
+            try:
+                drives.append(with_fields(self.problem.drive, _fields(self.problem, row)))
+                sound.append(number)
+            except DriveError:
+                continue  # a design that cannot be built: it ranks as unsound and stays in the record without values
+        if drives:
+            values[sound] = self.analysis(drives)
+        self.rows += list(rows)
+        self.values += list(values)
+        self.batches += 1
+        self.told(len(rows))
+        return values
+
+    def violation(self, values: FloatArray) -> FloatArray:
+        """How far candidates break the limits, as a part of each; infinite where they failed."""
+        columns = {name: number for number, name in enumerate(self.problem.quantities)}
+        total = np.zeros(len(values))
+        for limit in self.problem.limits:
+            excess = limit.sense * (values[:, columns[limit.quantity]] - limit.value)
+            total += np.maximum(excess, 0.0) / max(abs(limit.value), 1e-300)
+        return np.where(np.isfinite(values).all(axis=1), total, np.inf)
+
+    def rank(self, places: FloatArray, weights: FloatArray) -> FloatArray:
+        """Return the number to make small: the larger of the weighted aims, then by what breaks."""
+        values = self.solve(places)
+        aims = values[:, : len(weights)] / self.scale
+        # Chebyshev's distance reaches every point of a front, hollow ones too; the small sum keeps off its flats.
+        merit = np.max(weights * aims, axis=1) + 1e-3 * aims @ weights
+        broken = self.violation(values)
+        return np.where(np.isinf(broken), UNSOUND, np.where(broken > 0.0, BROKEN + broken, merit))
+
+
+def optimise(
+    problem: Problem,
+    analysis: Analysis,
+    *,
+    seed: int = 0,
+    generations: int = 40,
+    told: Callable[[int], None] = lambda candidates: None,
+) -> Optimum:
+    """Find the best candidate, for two aims the Pareto front.
+
+    Parameters
+    ----------
+    problem : Problem
+        Variables, aims and limits.
+    analysis : callable
+        Quantities of drives, see `batch_analysis`.
+    seed : int
+        Of the random numbers.
+    generations : int
+        Of differential evolution, for each of the weighted problems of a front a third of them.
+    told : callable
+        Told the number of candidates of each solved batch.
+
+    Returns
+    -------
+    Optimum
+
+    Raises
+    ------
+    CycloError
+        When the drive itself cannot be solved, or no candidate is sound and within the limits.
+    """
+    from scipy.optimize import differential_evolution, minimize
+
+    start = analysis([problem.drive])[0]
+    if not np.isfinite(start).all():
+        raise CycloError("the drive to start from cannot be solved; 'cyclo run' says why")
+    aims = len(problem.aims)
+    scale = np.maximum(np.abs(start[:aims]), 1e-300)
+    archive = _Archive(problem=problem, analysis=analysis, scale=scale, told=told)
+    count = len(problem.variables)
+    shares = [1.0] if aims == 1 else np.linspace(0.03, 0.97, WEIGHTS)
+    for number, share in enumerate(shares):
+        weights = np.ones(1) if aims == 1 else np.array([share, 1.0 - share])
+
+        def rank(places: FloatArray, weights: FloatArray = weights) -> FloatArray:
+            return archive.rank(np.atleast_2d(places.T), weights)
+
+        found = differential_evolution(
+            rank,
+            [(0.0, 1.0)] * count,
+            maxiter=generations if aims == 1 else max(4, generations // 3),
+            popsize=max(5, 24 // count),
+            tol=1e-4,
+            rng=np.random.default_rng([seed, number]),
+            polish=False,
+            updating="deferred",
+            vectorized=True,
+            init="sobol",
+        )
+        if aims == 1:
+            minimize(
+                lambda place: float(rank(np.asarray(place)[:, None])[0]),
+                found.x,
+                method="Nelder-Mead",
+                bounds=[(0.0, 1.0)] * count,
+                options={"maxfev": 40 * count, "xatol": 1e-4, "fatol": 1e-7, "initial_simplex": _simplex(found.x)},
+            )
+    return _outcome(archive, start, aims)
+
+
+def _simplex(place: FloatArray) -> FloatArray:
+    """Corners one per cent of the ranges around a place, inside of them."""
+    corners = np.tile(place, (place.size + 1, 1))
+    for number in range(place.size):
+        corners[number + 1, number] += 0.01 if place[number] < 0.5 else -0.01
+    return corners
+
+
+def _outcome(archive: _Archive, start: FloatArray, aims: int) -> Optimum:
+    values, rows = np.array(archive.values), np.array(archive.rows)
+    feasible = archive.violation(values) == 0.0
+    if not feasible.any():
+        raise CycloError(
+            f"none of {len(rows)} candidates is sound and within the limits; widen --vary or relax --subject"
+        )
+    numbers = np.flatnonzero(feasible)
+    if aims == 1:
+        front = numbers[np.argmin(values[numbers, 0])][None]
+        best = int(front[0])
+    else:
+        order = numbers[np.lexsort((values[numbers, 1], values[numbers, 0]))]
+        least = np.minimum.accumulate(np.concatenate([[np.inf], values[order[:-1], 1]]))
+        front = order[values[order, 1] < least]
+        points = values[front][:, :2]
+        spread = np.maximum(np.ptp(points, axis=0), 1e-300)
+        best = int(front[np.argmin(np.hypot(*((points - points.min(axis=0)) / spread).T))])
+    return Optimum(
+        problem=archive.problem,
+        variables=rows,
+        values=values,
+        feasible=feasible,
+        start=start,
+        best=best,
+        front=np.asarray(front, dtype=np.intp),
+        generations=archive.batches,
+    )
+
+
+def describe_limit(limit: Limit) -> str:
+    """Return a limit as it is written on the command line."""
+    unit = QUANTITIES[limit.quantity].unit
+    text = label(unit) if unit != "1" else ""
+    return f"{limit.quantity} {'<=' if limit.sense > 0 else '>='} {limit.value:g} {text}".rstrip()

@@ -1,0 +1,183 @@
+"""What a study keeps of each sample: scalars over its positions, by the names of the summary without their units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance import ContactPressures
+from ltca.equilibrium import Equilibrium
+from ltca.errors import DriveError
+from ltca.tooth_contact import WHEEL_ANGLE
+
+FloatArray = NDArray[np.float64]
+
+LOADED_FRACTION = 1e-3
+"""As in `ltca.results`: loaded = more than this part of the largest load of its kind in the sample."""
+
+Stage = Literal["full", "light", "backlash"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SampleBatch:
+    """Solved samples, each at the same positions; rows of `full` and `light` run sample by sample.
+
+    Attributes
+    ----------
+    samples : int
+        How many.
+    full : Equilibrium
+        At the torque of each drive.
+    pressures : ContactPressures
+        There.
+    light : Equilibrium or None
+        At the light torque, when a quantity needs it.
+    backlash : array, shape (samples · positions,), or None
+        Of the wheel, rad, when a quantity needs it.
+    """
+
+    samples: int
+    full: Equilibrium
+    pressures: ContactPressures
+    light: Equilibrium | None
+    backlash: FloatArray | None
+
+    def by_sample(self, values: FloatArray) -> FloatArray:
+        """Return values of all rows with the sample on axis 0 and everything else behind it in one row."""
+        return np.asarray(values).reshape(self.samples, -1)
+
+    @property
+    def bearing(self) -> tuple[FloatArray, FloatArray]:
+        """Radial and tangential bearing force, N, shape (samples, positions)."""
+        rollers = self.full.response.rollers
+        push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
+        push = push * np.exp(-1j * self.full.crank_angle)
+        return self.by_sample(push.real), self.by_sample(push.imag)
+
+    def wheel_angle(self) -> FloatArray:
+        """Wheel angle at the torque of each drive, rad."""
+        return self.by_sample(self.full.pose[:, WHEEL_ANGLE])
+
+    def light_wheel_angle(self) -> FloatArray:
+        """Wheel angle at the light torque, rad."""
+        if self.light is None:
+            raise ValueError("the light torque was not solved")
+        return self.by_sample(self.light.pose[:, WHEEL_ANGLE])
+
+    def backlashes(self) -> FloatArray:
+        """Backlash of the wheel, disc held, rad."""
+        if self.backlash is None:
+            raise ValueError("the backlash was not asked for")
+        return self.by_sample(self.backlash)
+
+    def loaded(self, load: FloatArray) -> FloatArray:
+        """Mean number of loaded pairs over the positions."""
+        largest = self.by_sample(load).max(axis=1)
+        rows = load.reshape(self.samples, -1, load.shape[1]) > LOADED_FRACTION * largest[:, None, None]
+        return np.asarray(rows.sum(axis=2).mean(axis=1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quantity:
+    """One scalar of a sample.
+
+    Attributes
+    ----------
+    unit : str
+        Inside the suite.
+    stage : {"full", "light", "backlash"}
+        What has to be solved for it.
+    description : str
+        For labels.
+    evaluate : callable
+        From the solved batch, shape (samples,).
+    """
+
+    unit: str
+    stage: Stage
+    description: str
+    evaluate: Callable[[SampleBatch], FloatArray]
+
+
+def _quantity(
+    unit: str, description: str, evaluate: Callable[[SampleBatch], FloatArray], stage: Stage = "full"
+) -> Quantity:
+    return Quantity(unit=unit, stage=stage, description=description, evaluate=evaluate)
+
+
+QUANTITIES: dict[str, Quantity] = {
+    "ptp_transmission_error": _quantity(
+        "rad", "transmission error, peak to peak", lambda b: np.ptp(b.wheel_angle(), axis=1)
+    ),
+    "mean_transmission_error": _quantity("rad", "transmission error, mean", lambda b: b.wheel_angle().mean(axis=1)),
+    "max_pin_load": _quantity(
+        "N", "largest load of a wheel pin", lambda b: b.by_sample(b.full.response.pin_load).max(axis=1)
+    ),
+    "max_pin_pressure_mid": _quantity(
+        "MPa", "largest flank pressure at mid-width", lambda b: b.by_sample(b.pressures.pins.mid).max(axis=1)
+    ),
+    "max_roller_load": _quantity(
+        "N", "largest load of a roller", lambda b: b.by_sample(b.full.response.rollers.outer_load).max(axis=1)
+    ),
+    "max_roller_pressure_mid": _quantity(
+        "MPa",
+        "largest roller pressure at mid-width",
+        lambda b: np.maximum(
+            b.by_sample(b.pressures.outer.mid).max(axis=1), b.by_sample(b.pressures.inner.mid).max(axis=1)
+        ),
+    ),
+    "max_pin_shaft_load": _quantity(
+        "N", "largest load of a shaft pin", lambda b: b.by_sample(b.full.response.hole_load).max(axis=1)
+    ),
+    "mean_bearing_load": _quantity("N", "bearing load, mean", lambda b: np.hypot(*b.bearing).mean(axis=1)),
+    "max_bearing_load": _quantity("N", "bearing load, largest", lambda b: np.hypot(*b.bearing).max(axis=1)),
+    "mean_radial_bearing_load": _quantity("N", "radial bearing load, mean", lambda b: b.bearing[0].mean(axis=1)),
+    "mean_tangential_bearing_load": _quantity(
+        "N", "tangential bearing load, mean", lambda b: b.bearing[1].mean(axis=1)
+    ),
+    "ptp_tangential_bearing_load": _quantity(
+        "N", "tangential bearing load, peak to peak", lambda b: np.ptp(b.bearing[1], axis=1)
+    ),
+    "mean_loaded_pins": _quantity("1", "loaded wheel pins, mean", lambda b: b.loaded(b.full.response.pin_load)),
+    "mean_loaded_rollers": _quantity(
+        "1", "loaded rollers, mean", lambda b: b.loaded(b.full.response.rollers.outer_load)
+    ),
+    "mean_loaded_pin_shaft_pins": _quantity(
+        "1", "loaded shaft pins, mean", lambda b: b.loaded(b.full.response.hole_load)
+    ),
+    "ptp_transmission_error_light": _quantity(
+        "rad",
+        "transmission error at the light torque, peak to peak",
+        lambda b: np.ptp(b.light_wheel_angle(), axis=1),
+        "light",
+    ),
+    "mean_backlash_wheel": _quantity(
+        "rad", "backlash at the wheel, disc held, mean", lambda b: b.backlashes().mean(axis=1), "backlash"
+    ),
+    "min_backlash_wheel": _quantity(
+        "rad", "backlash at the wheel, disc held, least", lambda b: b.backlashes().min(axis=1), "backlash"
+    ),
+}
+
+DEFAULT_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.stage == "full")
+"""What the solution at the torque of the drive gives; the others cost another solution and come when named."""
+
+
+def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names in the order of `QUANTITIES`, ``all`` meaning every one.
+
+    Raises
+    ------
+    DriveError
+        When a name is not one of them.
+    """
+    if "all" in names:
+        return tuple(QUANTITIES)
+    unknown = [name for name in names if name not in QUANTITIES]
+    if unknown:
+        raise DriveError([f"{name}: is no quantity of a study; there are {', '.join(QUANTITIES)}" for name in unknown])
+    return tuple(name for name in QUANTITIES if name in names)

@@ -1,0 +1,156 @@
+"""A study from start to files: solve what is left, finish the dataset, sum it up, draw it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ltca.drive_fields import drive_text
+from ltca.errors import CycloError
+from ltca.output_files import whole_file, write_json
+from ltca.placement import position_angles
+from ltca.studies.batch_analysis import BatchSettings, analyse_samples
+from ltca.studies.engine import Engine, solve_batches
+from ltca.studies.storage import StudyFolder
+from ltca.studies.study import Study
+from ltca.studies.study_results import PERCENTILES, QuantitySummary, rank, read_quantity, summarise_quantity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudySummary:
+    """What a finished study says.
+
+    Attributes
+    ----------
+    quantities : dict of str to QuantitySummary
+        Quantities with at least one sound sample.
+    nominal : dict of str to float
+        Quantities of the first case without deviations; empty when it cannot be solved.
+    ranking : dict
+        Of `ltca.studies.study_results.rank`.
+    failures : tuple of (int, str)
+        Failed samples and why.
+    solved_positions : int
+        Positions solved in this call, without those a resumed study had.
+    seconds : float
+        Wall time of solving them.
+    """
+
+    quantities: dict[str, QuantitySummary]
+    nominal: dict[str, float]
+    ranking: dict[str, Any]
+    failures: tuple[tuple[int, str], ...]
+    solved_positions: int
+    seconds: float
+
+
+def run_study(
+    study: Study,
+    folder: StudyFolder,
+    engine: Engine,
+    *,
+    resume: bool = False,
+    advance: Callable[[int, float], None] = lambda samples, rate: None,
+) -> StudySummary:
+    """Run a study, or what is left of it, and write its files.
+
+    Parameters
+    ----------
+    study : Study
+        What to solve.
+    folder : StudyFolder
+        Where its files go.
+    engine : Engine
+        Who solves it.
+    resume : bool
+        Whether to continue what the folder holds.
+    advance : callable
+        Told the samples of every finished batch and the rate so far in positions per second.
+
+    Returns
+    -------
+    StudySummary
+
+    Raises
+    ------
+    CycloError
+        When the folder holds something else, or workers die again and again.
+    """
+    left = folder.prepare(study, resume)
+    size, samples = study.batch_samples, study.design.samples
+
+    def samples_of(number: int) -> int:
+        return min(size, samples - number * size)
+
+    advance(samples - sum(map(samples_of, left)), 0.0)
+    began, solved = time.perf_counter(), 0
+    for result in solve_batches(study, left, engine):
+        folder.store(result)
+        solved += len(result.messages) * study.positions
+        advance(len(result.messages), solved / (time.perf_counter() - began))
+    seconds = time.perf_counter() - began
+    failures = folder.failures(study) if not left and folder.results.exists() else folder.finish(study)
+    quantities = {}
+    for name in study.quantities:
+        summary = summarise_quantity(read_quantity(folder.results, name))
+        if summary is not None:
+            quantities[name] = summary
+    found = StudySummary(
+        quantities=quantities,
+        nominal=_nominal(study),
+        ranking=rank(folder.results, study),
+        failures=tuple(failures),
+        solved_positions=solved,
+        seconds=seconds,
+    )
+    _write_summary(study, folder, found)
+    return found
+
+
+def _nominal(study: Study) -> dict[str, float]:
+    settings = BatchSettings(
+        crank_angle=position_angles(study.positions), quantities=study.quantities, build=study.build
+    )
+    solved = analyse_samples([study.cases[0][1]], settings)
+    if solved.messages[0]:
+        return {}
+    return dict(zip(study.quantities, map(float, solved.values[0]), strict=True))
+
+
+def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+    """Write ``summary.json`` and the drives of failed samples; nothing in them depends on time."""
+    write_json(
+        folder.path / "summary.json",
+        {
+            "study": study.name,
+            "samples": study.design.samples,
+            "positions": study.positions,
+            "failed": len(found.failures),
+            "percentiles": list(PERCENTILES),
+            "nominal": found.nominal,
+            "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
+            "sensitivity": found.ranking,
+        },
+    )
+    for sample, _ in found.failures:
+        write_sample(study, folder, sample)
+
+
+def write_sample(study: Study, folder: StudyFolder, sample: int) -> str:
+    """Write the drive of one sample as a drive file, ready for ``cyclo run``; return where it is.
+
+    A sample that is no sound drive is written as a list of its fields with the reason.
+    """
+    path = folder.path / "samples" / f"sample_{sample:08d}.toml"
+    try:
+        text = drive_text(study.sample_drive(sample))
+    except CycloError as error:
+        fields = study.design.fields(study.design.rows(sample, sample + 1)[0])
+        reason = "\n".join(f"# {line}" for line in str(error).splitlines())
+        lines = [f"# {name} = {list(value) if isinstance(value, tuple) else value}" for name, value in fields.items()]
+        text = f"# Sample {sample} of {study.name} is no sound drive:\n{reason}\n" + "\n".join(lines) + "\n"
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
+    return str(path)

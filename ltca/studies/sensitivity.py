@@ -1,0 +1,123 @@
+r"""Which tolerances matter: standardised regression over random samples, Sobol indices over Saltelli blocks.
+
+Regression of a quantity y on the drawn numbers x gives :math:`\mathrm{SRC}_j = b_j \sigma_j/\sigma_y`; for independent factors
+SRC² is the part of the variance of y that x_j explains linearly (Saltelli et al., *Global Sensitivity Analysis*, 2008,
+Sect. 1.2.5), and what all of them leave, 1 − R², is curved or mutual. Sobol indices see that too: S is the part of
+the variance that vanishes with a factor known, S_T the part left with all others known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Chunks = Callable[[], Iterator[tuple[FloatArray, FloatArray]]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Regression:
+    """Linear shares of the variance.
+
+    Attributes
+    ----------
+    coefficients : array, shape (factors, quantities)
+        Standardised regression coefficients.
+    shares : array, shape (factors, quantities)
+        SRC² less what chance alone gives on so many samples, not below zero.
+    explained : array, shape (quantities,)
+        R², adjusted for the number of factors.
+    """
+
+    coefficients: FloatArray
+    shares: FloatArray
+    explained: FloatArray
+
+
+def regress(chunks: Chunks) -> Regression | None:
+    """Regress every quantity on all factors at once, reading the samples in chunks.
+
+    Parameters
+    ----------
+    chunks : callable
+        Gives the samples anew at every call: factors (n, f) and quantities (n, q), failed samples left out.
+
+    Returns
+    -------
+    Regression or None
+        None with fewer than two samples for each factor: chance would decide.
+    """
+    count, sum_x, sum_y = 0, np.zeros(1), np.zeros(1)
+    for x, y in chunks():
+        count += len(x)
+        sum_x, sum_y = sum_x + x.sum(axis=0), sum_y + y.sum(axis=0)
+    if count == 0 or count < 2 * (sum_x.size + 1):
+        return None
+    mean_x, mean_y = sum_x / count, sum_y / count
+    xx, xy, yy = np.zeros((mean_x.size, mean_x.size)), np.zeros((mean_x.size, mean_y.size)), np.zeros(mean_y.size)
+    for x, y in chunks():
+        dx, dy = x - mean_x, y - mean_y
+        xx += dx.T @ dx
+        xy += dx.T @ dy
+        yy += (dy**2).sum(axis=0)
+    spread_x, spread_y = np.sqrt(np.diag(xx)), np.sqrt(yy)
+    spread_x = np.where(spread_x > 0.0, spread_x, np.inf)  # a factor that does not vary explains nothing
+    spread_y = np.where(spread_y > 0.0, spread_y, np.inf)
+    correlation = xx / (spread_x[:, None] * spread_x)
+    np.fill_diagonal(correlation, 1.0)
+    coefficients = np.linalg.solve(correlation, xy / (spread_x[:, None] * spread_y))
+    explained = np.einsum("fq,fq->q", coefficients, xy / (spread_x[:, None] * spread_y))
+    freedom = count - mean_x.size - 1
+    chance = (1.0 - explained) / freedom
+    return Regression(
+        coefficients=coefficients,
+        shares=np.maximum(coefficients**2 - chance, 0.0),
+        explained=1.0 - (1.0 - explained) * (count - 1) / freedom,
+    )
+
+
+def grouped(shares: FloatArray, groups: Sequence[tuple[str, slice]]) -> FloatArray:
+    """Return the shares of fields: the elements of an array added up, shape (groups, quantities)."""
+    return np.stack([shares[columns].sum(axis=0) for _, columns in groups])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SobolIndices:
+    """Variance-based shares.
+
+    Attributes
+    ----------
+    first, total : array, shape (groups, quantities)
+        S and S_T.
+    blocks : int
+        Complete blocks behind them.
+    """
+
+    first: FloatArray
+    total: FloatArray
+    blocks: int
+
+
+def sobol_indices(blocks: FloatArray) -> SobolIndices:
+    """Return the indices from Saltelli blocks.
+
+    Parameters
+    ----------
+    blocks : array, shape (blocks, groups + 2, quantities)
+        f(A), f(B), and f(A with one group from B); blocks with a failed sample left out.
+
+    Notes
+    -----
+    S: Saltelli et al. 2010 (Comput. Phys. Commun. 181), Table 2 (b); S_T: Jansen 1999, there (f).
+    """
+    a, b, mixed = blocks[:, 0], blocks[:, 1], blocks[:, 2:]
+    variance = np.var(np.concatenate([a, b]), axis=0)
+    variance = np.where(variance > 0.0, variance, np.inf)
+    # Centred first: the estimator of S multiplies values and would drown in their mean.
+    mean = np.concatenate([a, b]).mean(axis=0)
+    first = ((b - mean)[:, None] * (mixed - a[:, None])).mean(axis=0) / variance
+    total = 0.5 * ((a[:, None] - mixed) ** 2).mean(axis=0) / variance
+    return SobolIndices(first=first, total=total, blocks=len(blocks))

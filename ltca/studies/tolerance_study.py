@@ -1,0 +1,57 @@
+"""Samples drawn from the tolerances of a drive."""
+
+from __future__ import annotations
+
+from ltca.drive_file import DriveFile
+from ltca.studies.designs import ToleranceDesign
+from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
+from ltca.studies.study import Study
+from ltca.tolerances import Factors
+
+
+def tolerance_study(
+    file: DriveFile,
+    *,
+    case: str | None = None,
+    samples: int,
+    positions: int,
+    seed: int = 0,
+    sequence: str = "random",
+    quantities: tuple[str, ...] | None = None,
+) -> Study:
+    """Return the tolerance study of one case of a drive.
+
+    Parameters
+    ----------
+    file : DriveFile
+        Drive with tolerances.
+    case : str, optional
+        The case; the first by default.
+    samples, positions, seed : int
+        Samples, crank angles of each over one turn, seed of the random numbers.
+    sequence : {"random", "sobol", "saltelli"}
+        See `ltca.studies.designs.ToleranceDesign`.
+    quantities : tuple of str, optional
+        What is kept; by default `DEFAULT_QUANTITIES`.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    DriveError
+        When the case, a quantity or the tolerances are wrong.
+    """
+    name = case or next(iter(file.cases))
+    drive = file.select([name])[name]
+    return Study(
+        name=f"{file.name} {name}",
+        cases=((name, drive),),
+        design=ToleranceDesign(
+            factors=Factors.of_tolerances(drive, file.tolerances), samples=samples, seed=seed, sequence=sequence
+        ),
+        positions=positions,
+        quantities=DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities),
+        near_nominal=True,
+    )
