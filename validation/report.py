@@ -163,7 +163,9 @@ def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
     for row in rows:
         groups.setdefault((row.model, row.against, row.quantity, row.case), []).append(row)
     order = {model: place for place, model in enumerate(("fe", "hybrid", "half-space"))}
-    found = [(max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()]
+    found = [
+        (max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()
+    ]
     return sorted(found, key=lambda item: order.get(item[0].model, len(order)))
 
 
