@@ -34,7 +34,9 @@ NAMES = {
 }
 
 
-def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline: str, folder: Path) -> str:
+def draw_solution(
+    solution: FullSolution, fields: Sequence[BodyField], headline: str, folder: Path, *, side: int = 1600
+) -> str:
     """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``.
 
     Parameters
@@ -47,6 +49,8 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
         Drive, case and angle.
     folder : Path
         Where to.
+    side : int
+        Pixels of each picture of the whole drive; texts keep their size, so they read larger on a smaller one.
 
     Returns
     -------
@@ -68,7 +72,7 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
         label="von Mises, MPa",
         limits=(0.0, limit),
     )
-    problem = render(folder / "von_mises.png", [whole], side=1600)
+    problem = render(folder / "von_mises.png", [whole], side=side)
     render(folder / "contacts.png", _zooms(solution, fields))
     largest = max(float(np.max(np.abs(field.elastic))) for field in fields)
     scale = _round_down(DEFORMED_SHARE * reach / largest)
@@ -87,7 +91,7 @@ def draw_solution(solution: FullSolution, fields: Sequence[BodyField], headline:
         label="elastic displacement, µm",
         limits=(0.0, 1e3 * largest),
     )
-    render(folder / "deformed.png", [deformed], side=1600)
+    render(folder / "deformed.png", [deformed], side=side)
     return problem
 
 

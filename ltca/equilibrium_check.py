@@ -77,11 +77,14 @@ class PotentialEnergy:
         # All poses are within micrometres of the first: one search over the whole flank serves them all.
         nearest = np.argmin(np.abs(locus[:, None] - point[:1]), axis=0)
         theta = np.broadcast_to(samples[nearest], point.shape).copy()
+        spacing = samples[1]
         for _ in range(12):
             c, dc, ddc = self._locus(theta, big, e, u)
             away = c - point
             slope = np.abs(dc) ** 2 + (np.conj(ddc) * away).real
-            theta -= (np.conj(dc) * away).real / np.where(slope > 0.0, slope, np.abs(dc) ** 2)
+            step = (np.conj(dc) * away).real / np.where(slope > 0.0, slope, np.abs(dc) ** 2)
+            # Near a centre of curvature the slope all but vanishes: the place is between the neighbouring samples.
+            theta = np.clip(theta - step, samples[nearest] - spacing, samples[nearest] + spacing)
         c, dc, ddc = self._locus(theta, big, e, u)
         normal = -1j * dc / np.abs(dc)
         distance = (np.conj(normal) * (point - c)).real

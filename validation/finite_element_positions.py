@@ -25,7 +25,8 @@ from ltca.output_files import write_json
 from validation.comparison import KindAnswer, PositionAnswer
 
 FORMAT = 1
-PICTURES = ("von_mises", "contacts", "deformed")
+PICTURES = ("von_mises", "deformed", "contacts")
+PICTURE_SIDE = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,7 +172,7 @@ def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
 def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path) -> None:
     fields = recover_fields(solution.model, solution.state, state=settings.plane)
     folder.mkdir(parents=True, exist_ok=True)
-    draw_solution(solution, fields, title, folder)
+    draw_solution(solution, fields, title, folder, side=PICTURE_SIDE)
 
 
 def answer_of_summary(summary: dict[str, Any]) -> PositionAnswer:

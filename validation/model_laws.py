@@ -139,9 +139,7 @@ def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: Influ
     gaps = []
     for width in WIDTHS:
         wide, scaled = widen(drive, coefficients, width)
-        plane, finite = (
-            pair_approaches(wide, scaled, name, angle, width * load)[loaded] for name in ("fe", "hybrid")
-        )
+        plane, finite = (pair_approaches(wide, scaled, name, angle, width * load)[loaded] for name in ("fe", "hybrid"))
         gaps.append(finite / plane - 1.0)
     worst = [float(gap[np.argmax(np.abs(gap))]) for gap in gaps]
     rows = [

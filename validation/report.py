@@ -16,7 +16,7 @@ from validation.rows import LEVELS, Row
 from validation.scene import drive_scene, position_scene
 from validation.study import Study
 
-PICTURE_WIDTHS = {"von_mises": 1100, "contacts": 1800, "deformed": 1100}
+PICTURE_WIDTHS = {"von_mises": 1000, "deformed": 1000, "contacts": 2000}
 PICTURE_TITLES = {
     "von_mises": "von Mises stress at the loaded pose",
     "contacts": "The three most loaded contacts: mesh, stress, pressure",
@@ -128,13 +128,13 @@ def _meaning_table(case: str, content: dict[str, dict[str, float | None]]) -> di
     lines = []
     for name, (title, unit) in TITLES.items():
         values = [content[model][name] for model in MODELS]
-        reference = content["fe"][name] or 0.0
+        half, fe = content["half-space"][name], content["fe"][name]
         lines.append(
             (
                 title,
                 unit.replace('"', "″"),
                 [f"{value:.4g}" if value is not None else "–" for value in values],
-                _signed_percent((values[0] or 0.0) / reference - 1.0) if reference else "–",
+                _signed_percent(fe / half - 1.0 if half and fe is not None else None),
             )
         )
     return {"case": case, "lines": lines}
@@ -163,7 +163,9 @@ def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
     for row in rows:
         groups.setdefault((row.model, row.against, row.quantity, row.case), []).append(row)
     order = {model: place for place, model in enumerate(("fe", "hybrid", "half-space"))}
-    found = [(max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()]
+    found = [
+        (max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()
+    ]
     return sorted(found, key=lambda item: order.get(item[0].model, len(order)))
 
 

@@ -17,7 +17,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
     parser.add_argument(
-        "--case", action="append", metavar="NAME", help="case, repeatable; default the first, middle and last of the file"
+        "--case",
+        action="append",
+        metavar="NAME",
+        help="case, repeatable; default the first, middle and last of the file",
     )
     parser.add_argument(
         "--angles",

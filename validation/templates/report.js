@@ -43,7 +43,10 @@
     node("path", { d: outline + openings, "fill-rule": "evenodd", fill: "#e6ecf2", stroke: "#8796a5", "stroke-width": thin, transform: `translate(${now.disc[0]},${now.disc[1]}) rotate(${turn})` }, world);
     node("circle", { cx: now.race[0], cy: now.race[1], r: scene.race, fill: "#f2f0ea", stroke: "#b3aa93", "stroke-width": thin }, world);
     for (const [list, fill] of [[now.pins, "#d7dde3"], [now.rollers, "#e9e3d3"], [now.shafts, "#dbe5dc"]])
-      for (const c of list) node("circle", { cx: c[0], cy: c[1], r: c[2], fill: fill, stroke: "#97a3af", "stroke-width": thin }, world);
+      list.forEach((c, i) => {
+        node("circle", { cx: c[0], cy: c[1], r: c[2], fill: fill, stroke: "#97a3af", "stroke-width": thin }, world);
+        node("text", { x: c[0], y: -c[1], dy: "0.35em", "font-size": Math.min(1.1 * c[2], 15 * thin), "text-anchor": "middle", fill: "#66727e", transform: "scale(1,-1)" }, world, String(i));
+      });
     node("path", { d: `M0,0L${now.race[0]},${now.race[1]}`, stroke: "#333", "stroke-width": 2 * thin }, world);
     node("circle", { cx: 0, cy: 0, r: 3 * thin, fill: "#333" }, world);
     const longest = 0.3 * reach;

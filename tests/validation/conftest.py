@@ -1,0 +1,91 @@
+"""A small study without any finite elements: the half-space's own answers, changed a little, stand for full solutions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import validation.meaning
+from ltca.coefficients import without_coupling
+from validation.compared_positions import compare_case
+from validation.finite_element_positions import FullPosition, Settings
+from validation.meaning import full_solution_rows, meaning_rows, study_case
+from validation.model_positions import answer_positions
+from validation.position_rows import compare_position_rows
+from validation.rows import Row
+from validation.study import Plan, Study
+
+ANGLES = (0.0, 0.2, 0.4)
+
+
+def perturbed(answer, factor):
+    """The answer with every load, and so the bearing force, changed by a factor."""
+    kinds = {
+        name: replace(kind, load=factor * kind.load, pressure=np.sqrt(factor) * kind.pressure)
+        for name, kind in answer.kinds.items()
+    }
+    return replace(
+        answer,
+        kinds=kinds,
+        bearing_radial=factor * answer.bearing_radial,
+        bearing_tangential=factor * answer.bearing_tangential,
+    )
+
+
+@pytest.fixture(scope="session")
+def small_study(paper_cases):
+    """Two cases, three angles; "full FE" is the half-space with loads 1 % larger; a turn of six positions."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(validation.meaning, "TURN_POSITIONS", 6)
+        return make_study(paper_cases)
+
+
+def make_study(paper_cases):
+    drives = {name: paper_cases[name] for name in ("CS-1", "CS-6")}
+    compared, meanings, coefficients, rows = {}, {}, {}, []
+    for case, drive in drives.items():
+        answers = answer_positions(drive, np.array(ANGLES), "half-space")
+        positions = [
+            FullPosition(
+                case=case,
+                crank_angle=angle,
+                answer=perturbed(answer, 1.01),
+                residual=0.0,
+                unknowns=1000,
+                seconds=1.0,
+                pictures=(),
+            )
+            for angle, answer in zip(ANGLES, answers, strict=True)
+        ]
+        coefficients[case] = without_coupling(drive)
+        compared[case] = compare_case(drive, positions, coefficients[case])
+        meanings[case] = study_case(drive, coefficients[case])
+        for item in compared[case]:
+            rows += compare_position_rows(item)
+        rows += [*full_solution_rows(case, compared[case]), *meaning_rows(case, meanings[case])]
+    for level in (1, 2, 3, 4):
+        rows.append(
+            Row(
+                level=level,
+                quantity=f"figure of level {level}",
+                value=1.001,
+                reference=1.0,
+                unit="mm",
+                difference=1e-3,
+                limit=2e-3,
+                reason="made by hand",
+            )
+        )
+    plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", settings=Settings())
+    return Study(plan=plan, rows=tuple(rows), compared=compared, meanings=meanings, coefficients=coefficients)
+
+
+@pytest.fixture(scope="session")
+def small_report(small_study, tmp_path_factory) -> Path:
+    """The page of the small study."""
+    from validation.report import write_report
+
+    return write_report(small_study, tmp_path_factory.mktemp("report") / "report.html")

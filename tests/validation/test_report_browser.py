@@ -1,0 +1,143 @@
+"""The page in a real browser (headless chromium): no network, no error, controls that work.
+
+A script added to a copy of the page works the controls as a user's events would and writes down what it sees.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+
+BROWSER = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+)
+
+pytestmark = [
+    pytest.mark.referee,
+    pytest.mark.skipif(BROWSER is None, reason="no chromium (apt install chromium)"),
+]
+
+FLAGS = (
+    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-default-apps",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+)  # fmt: skip
+
+WATCH = """<script>
+window.seen = {errors: []};
+window.addEventListener("error", e => seen.errors.push(String(e.message)));
+window.addEventListener("unhandledrejection", e => seen.errors.push(String(e.reason)));
+for (const name of ["error", "warn"]) console[name] = (...words) => seen.errors.push(name + ": " + words.join(" "));
+</script>"""
+
+DRIVE = """<script>
+addEventListener("load", () => {
+  const loads = () => [...document.querySelectorAll("#picture .load")].map(
+    n => [n.dataset.model, n.dataset.contact, Number(n.dataset.load)]);
+  const button = (group, name) => [...document.querySelectorAll(`#${group} button`)].find(b => b.textContent === name);
+  const slider = document.getElementById("angle");
+  seen.start = loads();
+  seen.startAngle = document.getElementById("angle-text").textContent;
+  slider.value = 1;
+  slider.dispatchEvent(new Event("input", {bubbles: true}));
+  seen.moved = loads();
+  seen.movedAngle = document.getElementById("angle-text").textContent;
+  seen.bars = document.querySelectorAll("#bars rect").length;
+  button("models", "full FE").click();
+  seen.model = loads();
+  button("cases", "CS-6").click();
+  seen.case = loads();
+  seen.pressed = [...document.querySelectorAll("button[aria-pressed=true]")].map(b => b.textContent);
+  const contact = document.querySelector("#picture .contact");
+  const before = document.getElementById("tip").hidden;
+  contact.dispatchEvent(new MouseEvent("mouseenter", {clientX: 200, clientY: 200}));
+  seen.tip = [before, document.getElementById("tip").hidden, document.getElementById("tip").textContent];
+  contact.dispatchEvent(new MouseEvent("mouseleave", {}));
+  seen.tipGone = document.getElementById("tip").hidden;
+  seen.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+  seen.resources = performance.getEntriesByType("resource").map(e => e.name).filter(n => !n.startsWith("data:"));
+  document.body.innerHTML = "";
+  const out = document.createElement("pre");
+  out.id = "seen";
+  out.textContent = JSON.stringify(seen);
+  document.body.appendChild(out);
+});
+</script>"""
+
+
+def visit(page, folder, size):
+    """What the scripts saw, and every address chromium asked its network for."""
+    text = page.read_text(encoding="utf-8")
+    copy = folder / "copy.html"
+    copy.write_text(text.replace("<head>", "<head>" + WATCH, 1).replace("</body>", DRIVE + "</body>"), encoding="utf-8")
+    log = folder / "net.json"
+    run = subprocess.run(
+        [
+            BROWSER, *FLAGS, f"--user-data-dir={folder / 'profile'}", f"--window-size={size}", f"--log-net-log={log}",
+            "--virtual-time-budget=5000", "--enable-logging=stderr", "--dump-dom", copy.as_uri(),
+        ],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    seen = json.loads(re.search(r'<pre id="seen">(.*?)</pre>', run.stdout, re.S).group(1).replace("&gt;", ">").replace("&lt;", "<").replace("&amp;", "&"))  # fmt: skip
+    console = [line for line in run.stderr.splitlines() if "CONSOLE" in line]
+    asked = set(re.findall(r'"url":"(https?://[^"]+)"', log.read_text(encoding="utf-8", errors="replace")))
+    return seen, console, asked
+
+
+@pytest.fixture(scope="module")
+def visited(small_report, tmp_path_factory):
+    return visit(small_report, tmp_path_factory.mktemp("browser"), "1280,900")
+
+
+def test_no_error_and_no_request(visited):
+    seen, console, asked = visited
+    assert seen["errors"] == []
+    assert console == []
+    assert seen["resources"] == []
+    # chromium itself may look for Google's hosts at every start; a page's own request would name anything else
+    assert {address for address in asked if "google" not in address} == set()
+
+
+def test_the_angle_selector_changes_the_drawn_loads(visited, small_study):
+    seen, _, _ = visited
+    assert seen["startAngle"] != seen["movedAngle"]
+    assert seen["start"] != seen["moved"]
+    for name, step in (("start", 0), ("moved", 1)):
+        item = small_study.compared["CS-1"][step]
+        drawn = {contact: load for model, contact, load in seen[name] if model == "half-space"}
+        for number, load in enumerate(item.answers["half-space"].kinds["pin"].load):
+            if load > 0.0:
+                assert drawn[f"pin {number}"] == pytest.approx(load, rel=1e-4)
+    contacts = {contact for _, contact, _ in seen["moved"]}
+    assert seen["bars"] == 4 + len(contacts) * 5  # a legend, then four bars and a background for each contact
+
+
+def test_case_and_model(visited, small_study):
+    seen, _, _ = visited
+    assert {model for model, _, _ in seen["model"]} == {"full FE"}
+    assert {model for model, _, _ in seen["moved"]} == {"full FE", "half-space"}
+    assert set(seen["pressed"]) == {"CS-6", "full FE"}
+    load = small_study.compared["CS-6"][1].full.answer.kinds["pin"].load
+    drawn = {contact: value for _, contact, value in seen["case"]}
+    assert drawn[f"pin {load.argmax()}"] == pytest.approx(load.max(), rel=1e-4)
+
+
+def test_hover_tells_all_models(visited):
+    seen, _, _ = visited
+    before, during, text = seen["tip"]
+    assert before
+    assert not during
+    assert seen["tipGone"]
+    for word in ("full FE", "half-space", "fe", "hybrid", "MPa", "µm"):
+        assert word in text
+
+
+def test_nothing_sticks_out_on_a_narrow_screen(small_report, tmp_path):
+    seen, console, _ = visit(small_report, tmp_path, "500,900")  # chromium's narrowest window
+    assert seen["errors"] == []
+    assert console == []
+    assert seen["overflow"] <= 0
