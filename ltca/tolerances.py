@@ -8,7 +8,6 @@ parts outside ±T are sorted out.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -159,8 +158,8 @@ class Factors:
     """
 
     fields: tuple[tuple[str, int | None], ...]
-    centres: tuple[float, ...] = field(repr=False)
-    distributions: tuple[Distribution, ...] = field(repr=False)
+    centres: tuple[float, ...]
+    distributions: tuple[Distribution, ...]
 
     @classmethod
     def of_tolerances(cls, drive: Drive, tolerances: Tolerances) -> Factors:

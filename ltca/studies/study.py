@@ -67,7 +67,7 @@ class Study:
 
     def fingerprint(self) -> str:
         """Return a hash of everything the results depend on (hex, 16 digits)."""
-        model = f"{self.build.__module__}.{self.build.__qualname__}"
+        model = getattr(self.build, "__qualname__", None) or repr(self.build)
         parts = (self.cases, self.design, self.positions, self.quantities, self.near_nominal, model, BATCH_POSITIONS)
         return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 

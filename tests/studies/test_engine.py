@@ -130,6 +130,24 @@ def test_resume_solves_what_is_left_and_no_more(paper, reference, tmp_path):
         StudyFolder(path=tmp_path / "empty").prepare(study, resume=True)
 
 
+def test_whatever_the_results_depend_on_is_in_the_fingerprint(paper):
+    """Else --resume would mix two studies."""
+    study = small_study(paper)
+    wider = {**paper.tolerances}
+    wider["crank.eccentricity_error"] = replace(wider["crank.eccentricity_error"], cpk=1.0)
+    others = [
+        small_study(paper, samples=31),
+        small_study(paper, positions=8),
+        small_study(paper, quantities=("max_pin_load",)),
+        small_study(replace(paper, tolerances=wider)),
+        replace(study, design=replace(study.design, seed=5)),
+        replace(study, design=replace(study.design, sequence="sobol")),
+        replace(study, cases=(("CS-5", paper.cases["CS-5"]),)),
+    ]
+    assert len({item.fingerprint() for item in [study, *others]}) == 8
+    assert small_study(paper).fingerprint() == study.fingerprint()
+
+
 def bad_sweep(paper):
     """Thickness so small that the torque cannot be carried, and a flank that interferes, among sound samples."""
     factors = (
