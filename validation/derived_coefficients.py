@@ -71,9 +71,7 @@ def coefficients_of(
     except MeshError:
         fits = False
     if not fits:
-        derived = derive_coefficients(
-            drive, case=case, size=size, state=plane, keep_clearance=kept, progress=progress
-        )
+        derived = derive_coefficients(drive, case=case, size=size, state=plane, keep_clearance=kept, progress=progress)
         write_coefficients(derived, path)
         dataset = read_coefficients(path)
     return dataset, load_coefficients(path, drive)

@@ -189,8 +189,9 @@ def _interpolation_row(compared: ComparedPosition) -> Row:
                 ours = float(compared.answers["fe"].kinds[kind].load[number])
                 theirs = float(compared.full.answer.kinds[kind].load[number])
     return _Maker(compared, "fe").row(
-        "load, worst contact a quarter of a spacing or more from every station" if name else "load between stations "
-        "(no contact there at this angle)",
+        "load, worst contact a quarter of a spacing or more from every station"
+        if name
+        else "load between stations (no contact there at this angle)",
         ours,
         theirs,
         "N",

@@ -47,7 +47,9 @@ def _change(summary: Summary, key: str, case: str, reference: str) -> float:
 def _printed(
     quantity: str, case: str, value: float, lowest: float, highest: float, unit: str, reason: str, printed: float
 ) -> Row:
-    return range_row(3, quantity, value, printed, lowest, highest, unit, reason, case=case, model=MODEL, against="paper")
+    return range_row(
+        3, quantity, value, printed, lowest, highest, unit, reason, case=case, model=MODEL, against="paper"
+    )
 
 
 def _larger(quantity: str, case: str, value: float, unit: str, reason: str) -> Row:

@@ -163,7 +163,9 @@ def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
     for row in rows:
         groups.setdefault((row.model, row.against, row.quantity, row.case), []).append(row)
     order = {model: place for place, model in enumerate(("fe", "hybrid", "half-space"))}
-    found = [(max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()]
+    found = [
+        (max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()
+    ]
     return sorted(found, key=lambda item: order.get(item[0].model, len(order)))
 
 
@@ -189,28 +191,24 @@ def _figure(value: float, unit: str) -> str:
 
 
 def _difference(value: float, unit: str, sign: str = "") -> str:
-    if unit == "" and abs(value) >= 1e-6:
-        text = f"{100.0 * value:.3g} %"
-    else:
-        text = f"{value:.3g} {unit.replace(chr(34), '″')}".strip()
+    ratio = unit == "" and abs(value) >= 1e-6
+    text = f"{100.0 * value:.3g} %" if ratio else f"{value:.3g} {unit.replace(chr(34), '″')}".strip()
     return (f"±{text}" if sign and value else text).replace("-", "−")
 
 
 def _pictures(study: Study) -> list[dict[str, str]]:
-    found = []
-    for case, items in study.compared.items():
-        for item in items:
-            for path in item.full.pictures:
-                found.append(
-                    {
-                        "case": case,
-                        "angle": f"{item.full.crank_angle:.4g}",
-                        "name": path.stem,
-                        "title": PICTURE_TITLES[path.stem],
-                        "source": _embedded(path),
-                    }
-                )
-    return found
+    return [
+        {
+            "case": case,
+            "angle": f"{item.full.crank_angle:.4g}",
+            "name": path.stem,
+            "title": PICTURE_TITLES[path.stem],
+            "source": _embedded(path),
+        }
+        for case, items in study.compared.items()
+        for item in items
+        for path in item.full.pictures
+    ]
 
 
 def _embedded(path: Path) -> str:

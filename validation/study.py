@@ -175,9 +175,7 @@ def run_study(plan: Plan, folder: Path, step: Callable[[str], None], say: Callab
     rows += compare_models(first_drive, first_case, angles, coefficients[first_case], stress)
     last_case, last_drive = list(plan.drives.items())[-1]
     if has_clearance(last_drive):
-        _, shared = coefficients_of(
-            last_drive, last_case, folder / "coefficients", keep_clearance=False, progress=say
-        )
+        _, shared = coefficients_of(last_drive, last_case, folder / "coefficients", keep_clearance=False, progress=say)
         rows += shared_file_rows(compare_case(last_drive, full[last_case], shared))
     meanings = {}
     for case, drive in plan.drives.items():

@@ -88,7 +88,9 @@ def test_schema_of_the_files(small_study, tmp_path):
         if row["limit"] is None:
             assert row["pass"] is True
         else:
-            assert row["pass"] is (row["difference"] is not None and abs(row["difference"]) <= row["limit"] * (1 + 1e-6))
+            assert row["pass"] is (
+                row["difference"] is not None and abs(row["difference"]) <= row["limit"] * (1 + 1e-6)
+            )
     with paths[1].open(encoding="utf-8", newline="") as stream:
         table = list(csv.DictReader(stream))
     assert list(table[0]) == list(COLUMNS)
