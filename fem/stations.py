@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.geometry import Curve, DiscShape, Shape
-from ltca.drive import Clearance, Drive, PlacementErrors, RollerErrors
+from ltca.drive import Clearance, Drive, PlacementErrors, ProfileErrors, RollerErrors, Runout
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -129,7 +129,7 @@ def nominal_shape(drive: Drive, *, keep_clearance: bool = False) -> Drive:
         drive,
         clearance=drive.clearance if keep_clearance else Clearance(),
         pin_wheel=replace(drive.pin_wheel, pin_errors=PlacementErrors()),
-        disc=replace(drive.disc, hole_errors=PlacementErrors()),
+        disc=replace(drive.disc, hole_errors=PlacementErrors(), profile_errors=ProfileErrors(), runout=Runout()),
         pin_shaft=replace(drive.pin_shaft, pin_errors=PlacementErrors()),
         crank_bearing=replace(drive.crank_bearing, roller_errors=RollerErrors()),
     )

@@ -16,15 +16,11 @@ from pydantic.dataclasses import dataclass
 from ltca.deviations import (
     STRICT,
     AxisOffset,
-    ProfileErrors,
-    Runout,
-    SignedLength,
-)
-from ltca.deviations import (
     PlacementErrors as PlacementErrors,
-)
-from ltca.deviations import (
+    ProfileErrors as ProfileErrors,
     RollerErrors as RollerErrors,
+    Runout as Runout,
+    SignedLength,
 )
 from ltca.units import quantity
 
@@ -337,9 +333,16 @@ class Drive:
         shape = asdict(self)
         for part in ("name", "load", "clearance"):
             del shape[part]
-        for part, errors in (("pin_wheel", "pin_errors"), ("disc", "hole_errors"), ("pin_shaft", "pin_errors")):
-            del shape[part][errors]
-        del shape["crank_bearing"]["roller_errors"]
+        deviations = {
+            "crank": ("eccentricity_error", "axis_offset"),
+            "pin_wheel": ("pin_errors", "axis_offset"),
+            "disc": ("hole_errors", "profile_errors", "runout"),
+            "pin_shaft": ("pin_errors",),
+            "crank_bearing": ("roller_errors",),
+        }
+        for part, names in deviations.items():
+            for name in names:
+                del shape[part][name]
         return _hash(shape)
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from ltca.output_files import whole_file, write_json
-from validation.comparison import PositionDifference, contact_name
 from validation.compared_positions import ComparedPosition
+from validation.comparison import PositionDifference, contact_name
 from validation.meaning import full_solution_changes
 from validation.model_positions import MODELS
 from validation.rows import LEVELS, failed_rows, rounded

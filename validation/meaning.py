@@ -114,7 +114,7 @@ def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> CaseMeaning
         Of its disc.
     """
     angles = 2.0 * np.pi * np.arange(TURN_POSITIONS) / TURN_POSITIONS
-    turn = {
+    turn: dict[str, TurnFigures] = {
         model: turn_figures(analyse(drive, angles, compliance=model, coefficients=coefficients)) for model in MODELS
     }
     by_torque = {}

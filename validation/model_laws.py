@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.coefficients import InfluenceCoefficients, without_coupling
-from ltca.coupled_compliance import CoupledCompliance, NearField
+from ltca.coupled_compliance import CoupledCompliance
 from ltca.drive import Drive
 from ltca.loaded_analysis import analyse
 from ltca.series_law import approach_at_load
@@ -107,7 +109,11 @@ def widen(drive: Drive, coefficients: InfluenceCoefficients, width: float) -> tu
 
 
 def pair_approaches(
-    drive: Drive, coefficients: InfluenceCoefficients, near_field: NearField, crank_angle: float, load: FloatArray
+    drive: Drive,
+    coefficients: InfluenceCoefficients,
+    near_field: Literal["fe", "hybrid"],
+    crank_angle: float,
+    load: FloatArray,
 ) -> FloatArray:
     """Return how far wheel pins and flank approach each other under loads of their own alone, mm.
 
@@ -139,7 +145,8 @@ def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: Influ
     gaps = []
     for width in WIDTHS:
         wide, scaled = widen(drive, coefficients, width)
-        plane, finite = (pair_approaches(wide, scaled, name, angle, width * load)[loaded] for name in ("fe", "hybrid"))
+        plane = pair_approaches(wide, scaled, "fe", angle, width * load)[loaded]
+        finite = pair_approaches(wide, scaled, "hybrid", angle, width * load)[loaded]
         gaps.append(finite / plane - 1.0)
     worst = [float(gap[np.argmax(np.abs(gap))]) for gap in gaps]
     rows = [
@@ -159,7 +166,7 @@ def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: Influ
         )
         for width, gap in zip(WIDTHS, worst, strict=True)
     ]
-    falls = min(abs(first) - abs(second) for first, second in zip(worst, worst[1:], strict=False))
+    falls = min(abs(first) - abs(second) for first, second in pairwise(worst))
     rows.append(
         positive_row(
             5, "smallest fall of that difference from width to width", falls, "", "it tends to zero",

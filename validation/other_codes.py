@@ -57,7 +57,7 @@ def compare_other_codes(progress: Callable[[str], None] | None = None) -> list[R
     figures: list[dict[str, Any]] = []
     for code, available, run in (
         ("CalculiX", _has_calculix(), run_calculix),
-        ("tamaas", importlib.util.find_spec("tamaas") is not None, run_tamaas),
+        ("tamaas", _has_tamaas(), run_tamaas),
     ):
         if available:
             say(f"{code} solves the same problem")
@@ -77,6 +77,10 @@ def _has_calculix() -> bool:
     except CycloError:
         return False
     return True
+
+
+def _has_tamaas() -> bool:
+    return importlib.util.find_spec("tamaas") is not None
 
 
 def _row(item: dict[str, Any]) -> Row:

@@ -191,28 +191,24 @@ def _figure(value: float, unit: str) -> str:
 
 
 def _difference(value: float, unit: str, sign: str = "") -> str:
-    if unit == "" and abs(value) >= 1e-6:
-        text = f"{100.0 * value:.3g} %"
-    else:
-        text = f"{value:.3g} {unit.replace(chr(34), '″')}".strip()
+    ratio = unit == "" and abs(value) >= 1e-6
+    text = f"{100.0 * value:.3g} %" if ratio else f"{value:.3g} {unit.replace(chr(34), '″')}".strip()
     return (f"±{text}" if sign and value else text).replace("-", "−")
 
 
 def _pictures(study: Study) -> list[dict[str, str]]:
-    found = []
-    for case, items in study.compared.items():
-        for item in items:
-            for path in item.full.pictures:
-                found.append(
-                    {
-                        "case": case,
-                        "angle": f"{item.full.crank_angle:.4g}",
-                        "name": path.stem,
-                        "title": PICTURE_TITLES[path.stem],
-                        "source": _embedded(path),
-                    }
-                )
-    return found
+    return [
+        {
+            "case": case,
+            "angle": f"{item.full.crank_angle:.4g}",
+            "name": path.stem,
+            "title": PICTURE_TITLES[path.stem],
+            "source": _embedded(path),
+        }
+        for case, items in study.compared.items()
+        for item in items
+        for path in item.full.pictures
+    ]
 
 
 def _embedded(path: Path) -> str:

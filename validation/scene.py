@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ltca.drive import Drive
 from ltca.pairs import ContactGeometry
 from validation.compared_positions import ComparedPosition
-from validation.comparison import ARCSECONDS, KINDS, Kind, PositionAnswer, contact_name
+from validation.comparison import ARCSECONDS, Kind, PositionAnswer, contact_name
 from validation.rows import rounded
 
 FloatArray = NDArray[np.float64]
@@ -30,7 +30,7 @@ def drive_scene(drive: Drive) -> dict[str, Any]:
         "outline": _points(outline),
         "bore": rounded(place.bore_radius),
         "race": rounded(place.inner_race_radius),
-        "holes": [[*_point(centre), rounded(radius)] for centre, radius in zip(place.hole_centres, place.hole_radii, strict=True)],
+        "holes": _circles(place.hole_centres, place.hole_radii),
         "reach": rounded(1.1 * float(np.max(np.abs(place.wheel_pin_centres) + place.wheel_pin_radii))),
     }  # fmt: skip
 
@@ -51,20 +51,17 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
     """
     answers = {"full FE": compared.full.answer, **compared.answers}
     parts = _places(compared)
-    contacts = []
-    for kind in KINDS:
-        centres, radii, towards = parts[kind]
-        loads = np.stack([answer.kinds[kind].load for answer in answers.values()])
-        for number in np.flatnonzero(loads.max(axis=0) > 0.0).tolist():
-            contacts.append(
-                {
-                    "name": contact_name(kind, number),
-                    "kind": kind,
-                    "at": _point(centres[number] + radii[number] * towards[number]),
-                    "to": _point(towards[number]),
-                    "models": {model: _numbers(answer, kind, number) for model, answer in answers.items()},
-                }
-            )
+    contacts = [
+        {
+            "name": contact_name(kind, number),
+            "kind": kind,
+            "at": _point(centres[number] + radii[number] * towards[number]),
+            "to": _point(towards[number]),
+            "models": {model: _numbers(answer, kind, number) for model, answer in answers.items()},
+        }
+        for kind, (centres, radii, towards) in parts.items()
+        for number in _loaded(list(answers.values()), kind)
+    ]
     full = compared.full.answer
     race = ContactGeometry.of_drive(compared.drive).placement.race_centre(np.array([compared.full.crank_angle]))[0]
     return {
@@ -79,6 +76,12 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
         "totals": {model: _totals(answer) for model, answer in answers.items()},
         "unknowns": compared.full.unknowns,
     }
+
+
+def _loaded(answers: list[PositionAnswer], kind: Kind) -> list[int]:
+    """Return the contacts of a kind that carry load in any answer."""
+    loads = np.stack([answer.kinds[kind].load for answer in answers])
+    return [int(number) for number in np.flatnonzero(loads.max(axis=0) > 0.0)]
 
 
 def _disc_centre(compared: ComparedPosition) -> complex:

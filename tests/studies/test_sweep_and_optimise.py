@@ -15,8 +15,15 @@ from ltca.drive_file import load_drive
 from ltca.errors import CycloError, DriveError
 from ltca.loaded_analysis import analyse
 from ltca.placement import position_angles
-from ltca.studies.optimiser import Limit, Problem, Variable, batch_analysis, parse_limit, parse_variable
-from ltca.studies.optimiser import optimise as search
+from ltca.studies.optimiser import (
+    Limit,
+    Problem,
+    Variable,
+    batch_analysis,
+    optimise as search,
+    parse_limit,
+    parse_variable,
+)
 from ltca.studies.study import run_batch
 from ltca.studies.sweep_file import load_sweep, parse_sweep
 

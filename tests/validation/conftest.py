@@ -40,6 +40,7 @@ def small_study(paper_cases):
     """Two cases, three angles; "full FE" is the half-space with loads 1 % larger; a turn of six positions."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(validation.meaning, "TURN_POSITIONS", 6)
+        patch.setattr(validation.meaning, "TORQUES", (1.0,))
         return make_study(paper_cases)
 
 

@@ -5,6 +5,7 @@ A script added to a copy of the page works the controls as a user's events would
 
 from __future__ import annotations
 
+import html
 import json
 import re
 import shutil
@@ -82,7 +83,8 @@ def visit(page, folder, size):
         ],
         capture_output=True, text=True, timeout=120, check=True,
     )  # fmt: skip
-    seen = json.loads(re.search(r'<pre id="seen">(.*?)</pre>', run.stdout, re.S).group(1).replace("&gt;", ">").replace("&lt;", "<").replace("&amp;", "&"))  # fmt: skip
+    written = re.search(r'<pre id="seen">(.*?)</pre>', run.stdout, re.S).group(1)
+    seen = json.loads(html.unescape(written))
     console = [line for line in run.stderr.splitlines() if "CONSOLE" in line]
     asked = set(re.findall(r'"url":"(https?://[^"]+)"', log.read_text(encoding="utf-8", errors="replace")))
     return seen, console, asked

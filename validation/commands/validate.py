@@ -39,7 +39,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="element edges of the full solutions as a multiple of the default (limits are for 1)",
     )
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder of report and kept solutions; default out/<drive>/validation")  # fmt: skip
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="folder of report and kept solutions; default out/<drive>/validation"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -120,10 +122,11 @@ def _print_costs(study: Study) -> None:
     from validation.costs import measure_costs
 
     costs = measure_costs(study)
-    print(
-        f"one position: full FE {costs.full:.1f} s; LTCA after derivation "
-        + ", ".join(f"{model} {1e3 * value:.2f} ms ({costs.full / value:.0f} times cheaper)" for model, value in costs.models.items())
-    )  # fmt: skip
+    cheaper = ", ".join(
+        f"{model} {1e3 * value:.2f} ms ({costs.full / value:.0f} times cheaper)"
+        for model, value in costs.models.items()
+    )
+    print(f"one position: full FE {costs.full:.1f} s; LTCA after derivation {cheaper}")
 
 
 class _Progress:

@@ -1,0 +1,95 @@
+"""The whole validation with real finite elements on coarse meshes: all levels, interrupted and resumed."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+import pytest
+
+import validation.derived_coefficients
+import validation.finite_element_positions
+import validation.meaning
+import validation.other_codes
+import validation.study
+from fem.coefficient_dataset import derive_coefficients
+from validation.commands import validate
+from validation.rows import LEVELS
+
+pytestmark = pytest.mark.slow
+
+WORDS = ("paper", "--case", "CS-3", "--angles", "0.5", "--size", "4")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse():
+    """Coefficients on coarse meshes, other codes as stored, short turns: what is tested is the run, not the figures."""
+
+    def derive(drive, *, size, **options):
+        return derive_coefficients(drive, size=2.0, **options)
+
+    with pytest.MonkeyPatch.context() as patch:
+        # These two have tests of their own and do not depend on the run: once is enough.
+        for name in ("check_closed_forms", "compare_printed_results"):
+            patch.setattr(validation.study, name, once(getattr(validation.study, name)))
+        patch.setattr(validation.meaning, "TURN_POSITIONS", 12)
+        patch.setattr(validation.meaning, "TORQUES", (1.0,))
+        patch.setattr(validation.derived_coefficients, "derive_coefficients", derive)
+        patch.setattr(validation.other_codes, "_has_calculix", lambda: False)
+        patch.setattr(validation.other_codes, "_has_tamaas", lambda: False)
+        yield
+
+
+def once(function):
+    found = []
+
+    def call(*words):
+        if not found:
+            found.extend(function(*words))
+        return list(found)
+
+    return call
+
+
+def run(out, *words):
+    parser = argparse.ArgumentParser()
+    validate.configure(parser)
+    return validate.execute(parser.parse_args([*WORDS, *words, "--out", str(out)]))
+
+
+def test_interrupted_and_resumed_gives_the_same_files(tmp_path, monkeypatch):
+    real = validation.study.study_case
+
+    def interrupt(*words):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(validation.study, "study_case", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path / "first")
+    assert list((tmp_path / "first" / "kept" / "positions").glob("*.json"))
+    assert not (tmp_path / "first" / "report.html").exists()
+    monkeypatch.setattr(validation.study, "study_case", real)
+
+    status = run(tmp_path / "second")  # from nothing
+    content = json.loads((tmp_path / "second" / "validation.json").read_text(encoding="utf-8"))
+    rows = content["rows"]
+    assert {row["level"] for row in rows} == set(LEVELS)
+    assert len(rows) >= 40
+    assert status == (0 if all(row["pass"] for row in rows) else 1)
+    # coarse as it is, the run must be about right: half-spaces are 30 to 40 % off here, fe a few per cent at most
+    worst = content["headline"]["worst_difference_from_full_fe"]
+    assert abs(worst["fe"]["load"]["difference"]) < 0.02
+    assert abs(worst["half-space"]["load"]["difference"]) > 0.1
+
+    def forbidden(*words, **options):
+        raise AssertionError("solved again")
+
+    monkeypatch.setattr(validation.finite_element_positions, "solve_drive", forbidden)
+    monkeypatch.setattr(validation.derived_coefficients, "derive_coefficients", forbidden)
+    again = run(tmp_path / "second")
+    assert again == status
+    # resumed: what was kept before the interruption carries the run to the same bytes as the run from nothing
+    monkeypatch.undo()
+    assert run(tmp_path / "first") == status
+    for name in ("report.html", "validation.json", "rows.csv"):
+        assert (tmp_path / "first" / name).read_bytes() == (tmp_path / "second" / name).read_bytes(), name
