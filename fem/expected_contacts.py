@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fem.hertz import hertz_half_width
 from ltca.drive import Drive, contact_modulus
-from ltca.errors import ConvergenceError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.placement import Placement
 from ltca.profile import FlankProfile
 
@@ -207,8 +207,18 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
     ------
     ConvergenceError
         When nothing can carry the load.
+    DriveError
+        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both.
     """
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
+    if placement.wheel_axis != 0.0:
+        offset = drive.pin_wheel.axis_offset
+        raise DriveError(
+            [
+                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
+                "the wheel about the axis of the pin shaft (the LTCA takes it)"
+            ]
+        )
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length
