@@ -26,8 +26,16 @@ line_contact           load–approach law of uncrowned cylinders, one table for
 length_profile         crown and relief along rollers and pins
 profiled_line_contact  load–approach law of crowned or relieved cylinders
 hertz                  closed forms to compare with
+free_end               factor of free ends on influence coefficients
+subsurface             stresses below a patch, largest shear and its depth
 roller_series          a roller as two laws in series (Eq. 52, 57, 66)
 compliance             loads of all pairs at a pose
+plane_contact          load–approach law in plane strain, with a datum
+series_law             springs and contacts in series
+coefficients           influence coefficients of the bodies, at any place
+coefficient_files      where coefficients come from: file, cache, derivation
+body_part              what finite elements have beyond the near fields
+coupled_compliance     loads of contacts that feel each other (fe, hybrid)
 equilibrium            the pose that balances (Eq. 43–44, 70–72, 85–89)
 clearance_free         LTCA without clearances as one linear system (Eq. 7–40)
 contact_law            what the mechanics needs of a load–approach law

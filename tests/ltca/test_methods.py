@@ -134,10 +134,9 @@ def test_methods_and_contacts_that_contradict_each_other():
 def test_flank_pressure_of_cs3_against_cs1():
     """At mid-width +3.4 %, at the unrelieved ends less than half as much more; contact moves toward the tip.
 
-    The print says about +1 %. Clearance lowers the largest load by 3.4 % and moves the contact to where the
-    effective radius is 10 % smaller. Mid-width pressure goes like √(F/ρ). The peak at the ends hardly knows ρ: it is
-    largest where the load is largest, and grows by 1.9, 1.5, 1.1 % with end cells of 1, 0.5, 0.2 % of the length.
-    A grid that is denser toward the ends, whose largest value is read, gives what is printed.
+    The print says about +1 %. At the positions of largest load the end peaks grow by 1.9, 1.5, 1.1 % with end cells of
+    1, 0.5, 0.2 % of the length: reading the largest value of a grid with fine end cells would give what is printed.
+    The paper does not say which value it reads.
     """
     angles = position_angles(180)
     first, third = (analyse(CASES[case], angles) for case in ("CS-1", "CS-3"))
