@@ -33,12 +33,16 @@ from validation.rows import Row
 
 FloatArray = NDArray[np.float64]
 
-CASE, CRANK_ANGLE, SIZE = "CS-1", 0.5, 6.0
+CASE, CRANK_ANGLE, SIZE = "CS-1", 0.5, 4.0
 COMMAND = "python -m validation.other_codes"
 STORED = "stored/other_codes.json"
 LIMITS = {
     "load": (5e-3, "of the largest load of its kind; same mesh in both codes, their contact is a penalty"),
-    "wheel": (0.3, "seconds of arc are 0.13 µm at the pins; the penalty gives way by about a tenth of that"),
+    "wheel": (
+        0.6,
+        "two elements for each half-width: there the other code's contact points miss up to 0.46″ (sizes 6, 4, 3 "
+        "measured), from 2.5 on 0.04″; at full size 0.3″ is asked for (benchmarks/fem.py --ccx)",
+    ),
     "pressure": (3e-3, "the other code's uniform cells, 96 across: finer ones halve the difference (0.15 % at worst)"),
     "approach": (3e-3, "its uniform cells at the ends: 0.05 to 0.1 % measured"),
 }
