@@ -6,10 +6,16 @@ Stored figures are ours and theirs of one run on our machine, in ``validation/st
 
 from __future__ import annotations
 
+import argparse
 import importlib.util
 import json
+import os
+import signal
+import subprocess
+import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -48,31 +54,48 @@ LIMITS = {
 }
 
 
-def compare_other_codes(progress: Callable[[str], None] | None = None) -> list[Row]:
-    """Return the rows of level 2, computed or stored.
+@contextmanager
+def asked_codes() -> Iterator[Callable[[], list[Row]]]:
+    """Let the installed codes work in a process of their own while the block runs.
+
+    Yields
+    ------
+    callable
+        Waits for their answers and returns the rows of level 2; missing codes answer as stored.
 
     Raises
     ------
     CycloError
-        When a code that is installed fails.
+        From the callable, when a code that is installed fails.
     """
-    say = progress or _silent
-    stored = json.loads((resources.files("validation") / STORED).read_text(encoding="utf-8"))
-    figures: list[dict[str, Any]] = []
-    for code, available, run in (
-        ("CalculiX", _has_calculix(), run_calculix),
-        ("tamaas", _has_tamaas(), run_tamaas),
-    ):
-        if available:
-            say(f"{code} solves the same problem")
-            figures += [{**item, "code": code} for item in run()]
-        else:
-            figures += [{**item, "code": f"{code} (stored, {COMMAND})"} for item in stored[code]]
-    return [_row(item) for item in figures]
+    installed = [code for code, found in (("CalculiX", _has_calculix()), ("tamaas", _has_tamaas())) if found]
+    with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
+        answers = Path(folder) / "answers.json"
+        words = [sys.executable, "-m", "validation.other_codes", "--out", str(answers), *installed]
+        trouble = Path(folder) / "trouble.txt"
+        process = None
+        if installed:
+            with trouble.open("wb") as stream:
+                # A session of its own: what the process started ends with it.
+                process = subprocess.Popen(words, stdout=stream, stderr=stream, start_new_session=True)
 
+        def collect() -> list[Row]:
+            figures = json.loads((resources.files("validation") / STORED).read_text(encoding="utf-8"))
+            names = {code: f"{code} (stored, {COMMAND})" for code in RUNS}
+            if process is not None:
+                if process.wait() != 0:
+                    lines = trouble.read_text(encoding="utf-8", errors="replace").strip().splitlines()
+                    raise CycloError(f"{' and '.join(installed)} failed: {lines[-1] if lines else process.returncode}")
+                figures |= json.loads(answers.read_text(encoding="utf-8"))
+                names |= {code: code for code in installed}
+            return [_row(item, names[code]) for code in RUNS for item in figures[code]]
 
-def _silent(_: str) -> None:
-    pass
+        try:
+            yield collect
+        finally:
+            if process is not None and process.poll() is None:
+                os.killpg(process.pid, signal.SIGTERM)
+                process.wait()
 
 
 def _has_calculix() -> bool:
@@ -87,7 +110,7 @@ def _has_tamaas() -> bool:
     return importlib.util.find_spec("tamaas") is not None
 
 
-def _row(item: dict[str, Any]) -> Row:
+def _row(item: dict[str, Any], code: str) -> Row:
     limit, reason = LIMITS[item["bound"]]
     scale = item["scale"]
     return Row(
@@ -104,7 +127,7 @@ def _row(item: dict[str, Any]) -> Row:
         crank_angle=item.get("angle_rad"),
         contact=item.get("contact", ""),
         model=item["model"],
-        against=item["code"],
+        against=code,
     )
 
 
@@ -215,7 +238,12 @@ def _press(
     return peak, float(np.mean((displacement - surface)[loaded]))
 
 
+RUNS: dict[str, Callable[[], list[dict[str, Any]]]] = {"CalculiX": run_calculix, "tamaas": run_tamaas}
+
+
 if __name__ == "__main__":
-    target = Path(__file__).parent / STORED
-    write_json(target, {"command": COMMAND, "CalculiX": run_calculix(), "tamaas": run_tamaas()})
-    print(target)
+    parser = argparse.ArgumentParser(prog=COMMAND, description="Let other codes solve the problems of level 2.")
+    parser.add_argument("codes", nargs="*", default=list(RUNS), help="default: all")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parent / STORED, help="default: the stored figures")
+    arguments = parser.parse_args()
+    write_json(arguments.out, {code: RUNS[code]() for code in arguments.codes})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -22,7 +23,7 @@ from validation.derived_coefficients import coefficients_of, has_clearance
 from validation.finite_element_positions import FullPosition, Settings, solve_position
 from validation.meaning import CaseMeaning, full_solution_rows, meaning_rows, study_case
 from validation.model_laws import compare_models
-from validation.other_codes import compare_other_codes
+from validation.other_codes import asked_codes
 from validation.position_rows import compare_position_rows, shared_file_rows
 from validation.printed_results import compare_printed_results
 from validation.rows import Row
@@ -145,44 +146,66 @@ def run_study(plan: Plan, folder: Path, step: Callable[[str], None], say: Callab
     CycloError
         When something does not converge or a file cannot be written.
     """
-    first_case, first_drive = next(iter(plan.drives.items()))
-    step("closed forms")
-    rows = check_closed_forms(first_drive)
-    step("other codes")
-    rows += _kept_rows(folder / "other_codes.json", lambda: compare_other_codes(say))
-    step("printed results")
-    rows += compare_printed_results()
-    coefficients: dict[str, InfluenceCoefficients] = {}
-    four: list[Row] = []
-    for case, drive in plan.drives.items():
-        step(f"coefficients of {case}")
-        dataset, coefficients[case] = coefficients_of(drive, case, folder / "coefficients", progress=say)
-        four += check_file(dataset, case, "strain")
-    step("coefficients of the bodies in plane stress")
-    stress_file, stress = coefficients_of(
-        first_drive, first_case, folder / "coefficients", plane="stress", progress=say
-    )
-    four += check_file(stress_file, first_case, "stress")
-    if plan.level == "full":
-        finer, _ = coefficients_of(first_drive, first_case, folder / "coefficients", size=0.5, progress=say)
-        four.append(halved_mesh_row(finer, first_case))
-    rows += four
-    full = _solve_positions(plan, folder / "positions", step, say)
+    kept_answers = folder / "other_codes.json"
+    with nullcontext() if _read_rows(kept_answers) else asked_codes() as answers:
+        one, three, coefficients, four = _before_positions(plan, folder / "coefficients", step, say)
+        full = _solve_positions(plan, folder / "positions", step, say)
+        if answers is not None:
+            step("other codes")
+            _write_rows(kept_answers, answers())
+    two = _read_rows(kept_answers)
     compared = {case: compare_case(plan.drives[case], full[case], coefficients[case]) for case in plan.drives}
-    angles = np.array(plan.crank_angles)
-    for position in (item for case in compared.values() for item in case):
-        rows += compare_position_rows(position)
-    rows += compare_models(first_drive, first_case, angles, coefficients[first_case], stress)
-    last_case, last_drive = list(plan.drives.items())[-1]
-    if has_clearance(last_drive):
-        _, shared = coefficients_of(last_drive, last_case, folder / "coefficients", keep_clearance=False, progress=say)
-        rows += shared_file_rows(compare_case(last_drive, full[last_case], shared))
-    meanings = {}
+    five = _model_rows(plan, compared, full, coefficients, folder / "coefficients", say)
+    meanings, six = {}, []
     for case, drive in plan.drives.items():
         step(f"one turn of {case}")
         meanings[case] = study_case(drive, coefficients[case])
-        rows += [*full_solution_rows(case, compared[case]), *meaning_rows(case, meanings[case])]
-    return Study(plan=plan, rows=tuple(rows), compared=compared, meanings=meanings, coefficients=coefficients)
+        six += [*full_solution_rows(case, compared[case]), *meaning_rows(case, meanings[case])]
+    rows = (*one, *two, *three, *four, *five, *six)
+    return Study(plan=plan, rows=rows, compared=compared, meanings=meanings, coefficients=coefficients)
+
+
+def _before_positions(
+    plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]
+) -> tuple[list[Row], list[Row], dict[str, InfluenceCoefficients], list[Row]]:
+    """Return the rows of levels 1 and 3, the coefficients of all cases and the rows of level 4."""
+    case, drive = next(iter(plan.drives.items()))
+    step("closed forms")
+    one = check_closed_forms(drive)
+    step("printed results")
+    three = compare_printed_results()
+    coefficients: dict[str, InfluenceCoefficients] = {}
+    four: list[Row] = []
+    for name, own in plan.drives.items():
+        step(f"coefficients of {name}")
+        dataset, coefficients[name] = coefficients_of(own, name, folder, progress=say)
+        four += check_file(dataset, name, "strain")
+    step("coefficients of the bodies in plane stress")
+    stress, _ = coefficients_of(drive, case, folder, plane="stress", progress=say)
+    four += check_file(stress, case, "stress")
+    if plan.level == "full":
+        finer, _ = coefficients_of(drive, case, folder, size=0.5, progress=say)
+        four.append(halved_mesh_row(finer, case))
+    return one, three, coefficients, four
+
+
+def _model_rows(
+    plan: Plan,
+    compared: dict[str, list[ComparedPosition]],
+    full: dict[str, list[FullPosition]],
+    coefficients: dict[str, InfluenceCoefficients],
+    folder: Path,
+    say: Callable[[str], None],
+) -> list[Row]:
+    """Return the rows of level 5."""
+    first, last = next(iter(plan.drives)), list(plan.drives)[-1]
+    rows = [row for items in compared.values() for item in items for row in compare_position_rows(item)]
+    _, stress = coefficients_of(plan.drives[first], first, folder, plane="stress", progress=say)
+    rows += compare_models(plan.drives[first], first, np.array(plan.crank_angles), coefficients[first], stress)
+    if has_clearance(plan.drives[last]):
+        _, shared = coefficients_of(plan.drives[last], last, folder, keep_clearance=False, progress=say)
+        rows += shared_file_rows(compare_case(plan.drives[last], full[last], shared))
+    return rows
 
 
 def _solve_positions(
@@ -209,18 +232,18 @@ def _solve_positions(
     return solved
 
 
-def _kept_rows(path: Path, make: Callable[[], list[Row]]) -> list[Row]:
-    """Return rows of other codes from their file; they are asked once, as their answers do not depend on the plan."""
-    key = {"version": version("cyclo-ltca")}
+def _read_rows(path: Path) -> list[Row]:
+    """Return rows of other codes that are kept; they are asked once, as their answers do not depend on the plan."""
     try:
         content: Any = json.loads(path.read_text(encoding="utf-8"))
-        if content["key"] == key:
-            return [Row(**item) for item in content["rows"]]
+        return [Row(**item) for item in content["rows"]] if content["key"] == _KEY else []
     except (OSError, ValueError, KeyError, TypeError):
-        pass
-    write_json(path, {"key": key, "rows": [_fields(row) for row in make()]})
-    return _kept_rows(path, make)
+        return []
 
 
-def _fields(row: Row) -> dict[str, Any]:
-    return {name: getattr(row, name) for name in Row.__dataclass_fields__}
+def _write_rows(path: Path, rows: list[Row]) -> None:
+    fields = [{name: getattr(row, name) for name in Row.__dataclass_fields__} for row in rows]
+    write_json(path, {"key": _KEY, "rows": fields})
+
+
+_KEY = {"version": version("cyclo-ltca")}

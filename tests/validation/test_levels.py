@@ -11,6 +11,7 @@ import pytest
 import validation.closed_forms as closed_forms
 import validation.other_codes as other_codes
 import validation.printed_results as printed_results
+from ltca.errors import CycloError
 from validation.rows import failed_rows
 
 
@@ -59,7 +60,8 @@ def test_a_wrong_drive_fails_the_printed_results(monkeypatch, paper_cases):
 def test_stored_figures_are_marked_with_their_command(monkeypatch):
     monkeypatch.setattr(other_codes, "_has_calculix", lambda: False)
     monkeypatch.setattr(other_codes, "_has_tamaas", lambda: False)
-    rows = other_codes.compare_other_codes()
+    with other_codes.asked_codes() as answers:
+        rows = answers()
     assert len(rows) >= 15
     assert not failed_rows(rows)
     for row in rows:
@@ -79,3 +81,32 @@ def test_stored_answers_of_the_half_space_are_still_ours():
     ours = {item["quantity"]: item["ours"] for item in stored["tamaas"]}
     approach = float(approach_at_load(law, np.array([1500.0]), 2.0)[0][0])
     assert ours["approach, uncrowned roller"] == pytest.approx(approach, rel=1e-6)
+
+
+def test_a_code_that_fails_is_one_error(monkeypatch):
+    monkeypatch.setattr(other_codes, "_has_tamaas", lambda: False)
+    monkeypatch.setattr(other_codes, "_has_calculix", lambda: True)
+    monkeypatch.setenv("PATH", "/nowhere")  # found here, gone in the process that runs it
+    with other_codes.asked_codes() as answers, pytest.raises(CycloError, match="CalculiX failed"):
+        answers()
+
+
+def test_leaving_early_ends_the_other_process(monkeypatch):
+    monkeypatch.setattr(other_codes, "_has_tamaas", lambda: False)
+    monkeypatch.setattr(other_codes, "_has_calculix", lambda: True)
+    started = []
+    real = other_codes.subprocess.Popen
+
+    def start(*words, **options):
+        started.append(real(*words, **options))
+        return started[0]
+
+    monkeypatch.setattr(other_codes.subprocess, "Popen", start)
+
+    def leave():
+        with other_codes.asked_codes():
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        leave()
+    assert started[0].returncode is not None
