@@ -23,6 +23,10 @@ from ltca.errors import CycloError
 COARSE = ("--stations", "0.25", "--size", "1.5")
 
 
+# One derivation serves them all, and takes most of a minute.
+pytestmark = pytest.mark.slow
+
+
 def run(*words: str) -> int:
     parser = argparse.ArgumentParser()
     derive.configure(parser)

@@ -72,6 +72,7 @@ def test_arrays_have_full_length(coarse):
     assert bore != area
 
 
+@pytest.mark.slow
 def test_start_pose_does_not_matter(coarse):
     """From 0.1 mm and 1 mrad away, past the backlash on the wrong side, the same loads."""
     again = solve_drive(drive(), 0.5, scale=3.0, start=(0.05, -0.08, 1.0e-3, 1.0e-3))
