@@ -76,8 +76,9 @@ def asked_codes() -> Iterator[Callable[[], list[Row]]]:
         process = None
         if installed:
             with trouble.open("wb") as stream:
-                # A session of its own: what the process started ends with it.
-                process = subprocess.Popen(words, stdout=stream, stderr=stream, start_new_session=True)
+                # A session of its own, so that what the process starts ends with it; one thread for the same digits always.
+                one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
+                process = subprocess.Popen(words, stdout=stream, stderr=stream, env=one_thread, start_new_session=True)
 
         def collect() -> list[Row]:
             figures = json.loads((resources.files("validation") / STORED).read_text(encoding="utf-8"))

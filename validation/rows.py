@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-DIGITS = 7
+DIGITS = 6
 """Significant digits of figures in files: more would be round-off of another machine or another run."""
 
 LEVELS = {
@@ -104,7 +104,7 @@ def rounded(value: float | None) -> float | None:
     Examples
     --------
     >>> rounded(1.0 / 3.0)
-    0.3333333
+    0.333333
     """
     if value is None or not math.isfinite(value):
         return None

@@ -68,7 +68,7 @@ def test_relative_row():
 def test_figures_that_are_no_numbers_become_null():
     assert rounded(math.nan) is None
     assert rounded(None) is None
-    assert rounded(-1234567.89) == -1234568.0
+    assert rounded(-1234567.89) == -1234570.0
 
 
 def test_schema_of_the_files(small_study, tmp_path):

@@ -59,6 +59,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     import math
 
+    from threadpoolctl import threadpool_limits
+
     from ltca.drive_file import load_drive
     from ltca.errors import CycloError
     from ltca.units import parse_quantity
@@ -78,7 +80,9 @@ def execute(arguments: argparse.Namespace) -> int:
         raise CycloError(f"--out {out}: is a file, not a folder")
     progress = _Progress(plan)
     try:
-        study = run_study(plan, out / "kept", progress.step, progress.say)
+        # One thread: sums in another order would change last digits, and a resumed run shall end with the same bytes.
+        with threadpool_limits(limits=1):
+            study = run_study(plan, out / "kept", progress.step, progress.say)
         progress.step("report")
         paths = [write_report(study, out / "report.html"), *write_files(study, out)]
     finally:
