@@ -26,7 +26,7 @@ from validation.comparison import KindAnswer, PositionAnswer
 
 FORMAT = 1
 PICTURES = ("von_mises", "deformed", "contacts")
-PICTURE_SIDE = 1000
+PICTURE_SIDE = 1200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,7 +16,7 @@ from validation.rows import LEVELS, Row
 from validation.scene import drive_scene, position_scene
 from validation.study import Study
 
-PICTURE_WIDTHS = {"von_mises": 1000, "deformed": 1000, "contacts": 2000}
+PICTURE_WIDTHS = {"von_mises": 1200, "deformed": 1200, "contacts": 2000}
 PICTURE_TITLES = {
     "von_mises": "von Mises stress at the loaded pose",
     "contacts": "The three most loaded contacts: mesh, stress, pressure",
