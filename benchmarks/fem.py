@@ -28,8 +28,8 @@ def measure(size: float, further: bool, ccx: bool) -> dict:
     import resource
     import time
 
-    from fem.solution import solve_drive, solve_load
-    from ltca.drive_file import load_drive
+    from fem.drive.solution import solve_drive, solve_load
+    from ltca.reading.drive_file import load_drive
 
     drive = load_drive("paper").cases[CASE]
     cpu = time.process_time()
@@ -58,8 +58,8 @@ def measure(size: float, further: bool, ccx: bool) -> dict:
     if ccx:
         import tempfile
 
-        from fem.calculix import find_calculix
-        from fem.calculix_referee import compare_with_calculix
+        from fem.referee.calculix import compare_with_calculix
+        from fem.referee.calculix_deck import find_calculix
 
         with tempfile.TemporaryDirectory() as folder:
             row["calculix"] = compare_with_calculix(solution, Path(folder), find_calculix())

@@ -18,11 +18,11 @@ import time
 
 import numpy as np
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.drive_file import load_drive
-from ltca.equilibrium import solve_equilibrium
-from ltca.grid_compliance import GridCompliance
-from ltca.results import position_angles
+from ltca.analysis.results import position_angles
+from ltca.compliance.grids import GridCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.reading.drive_file import load_drive
 
 
 def main() -> None:

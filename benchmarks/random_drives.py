@@ -1,6 +1,6 @@
 """Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
 
-Every answer is either confirmed by `ltca.equilibrium_check` (residual, complementarity, minimum of the potential) or a
+Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
 `ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
 written as JSON, also in between, so that a long run may be watched or stopped.
 """
@@ -16,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.equilibrium import solve_equilibrium
-from ltca.equilibrium_check import find_imbalance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
 from ltca.errors import ConvergenceError
-from ltca.random_drives import COORDINATES, random_drive
+from ltca.testing.balance_check import find_imbalance
+from ltca.testing.random_drives import COORDINATES, random_drive
 
 
 def try_drive(seed: int) -> tuple[str, str, int]:

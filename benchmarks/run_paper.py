@@ -24,7 +24,7 @@ import numpy as np
 def cold_run(extra: list[str]) -> float:
     """Return the wall seconds of a fresh process running the six cases."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "ltca.cli", "run", "paper", "--out", folder, *extra]
+        command = [sys.executable, "-m", "ltca.commands.program", "run", "paper", "--out", folder, *extra]
         start = time.perf_counter()
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         return time.perf_counter() - start
@@ -38,24 +38,24 @@ def main() -> None:
 
     print("\nwhere it goes, warm process")
     start = time.perf_counter()
-    import ltca.loaded_analysis
-    import ltca.results
-    from ltca.drive_file import load_drive
-    from ltca.line_contact import line_contact_table
+    import ltca.analysis.loaded_analysis
+    import ltca.analysis.results
+    from ltca.laws.line_contact import line_contact_table
+    from ltca.reading.drive_file import load_drive
 
     print(f"  {'imports (numpy, scipy, xarray …)':<34}{time.perf_counter() - start:8.2f} s")
     start = time.perf_counter()
     line_contact_table()
     print(f"  {'line-contact table':<34}{time.perf_counter() - start:8.2f} s")
     cases = load_drive("paper").cases
-    angles = ltca.results.position_angles(360)
+    angles = ltca.analysis.results.position_angles(360)
     start = time.perf_counter()
-    analyses = {name: ltca.loaded_analysis.analyse(drive, angles) for name, drive in cases.items()}
+    analyses = {name: ltca.analysis.loaded_analysis.analyse(drive, angles) for name, drive in cases.items()}
     solved = time.perf_counter() - start
     print(f"  {'equilibrium, 4320 positions':<34}{solved:8.2f} s   {4320 / solved:8.0f} positions/s")
     start = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
-        ltca.results.build_dataset("paper", analyses).to_netcdf(Path(folder) / "results.nc", engine="h5netcdf")
+        ltca.analysis.results.build_dataset("paper", analyses).to_netcdf(Path(folder) / "results.nc", engine="h5netcdf")
     print(f"  {'dataset and results.nc':<34}{time.perf_counter() - start:8.2f} s")
 
     print("\ncost against positions (CS-6, full and light torque)")
@@ -64,7 +64,9 @@ def main() -> None:
         best = np.inf
         for _ in range(3):
             start = time.perf_counter()
-            analysis = ltca.loaded_analysis.analyse(cases["CS-6"], ltca.results.position_angles(positions))
+            analysis = ltca.analysis.loaded_analysis.analyse(
+                cases["CS-6"], ltca.analysis.results.position_angles(positions)
+            )
             best = min(best, time.perf_counter() - start)
         mean = analysis.full.iterations.mean()
         print(f"  {positions:>10}{best:>10.3f}{1e6 * best / positions:>14.0f}{mean:>12.1f}")

@@ -20,10 +20,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from ltca.drive_file import load_drive
-from ltca.studies.engine import Engine, solve_batches
+from ltca.reading.drive_file import load_drive
+from ltca.studies.execution.engine import Engine, solve_batches
+from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.run_study import run_study
-from ltca.studies.storage import StudyFolder
 from ltca.studies.study import Study
 from ltca.studies.tolerance_study import tolerance_study
 

@@ -15,9 +15,9 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np
 import pytest
 
-from ltca.drive import Drive
-from ltca.drive_file import build_drive, load_drive, shipped_drive
+from ltca.drive.parts import Drive
 from ltca.errors import DriveError
+from ltca.reading.drive_file import build_drive, load_drive, shipped_drive
 
 
 def _merge(below: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

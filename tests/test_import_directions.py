@@ -1,24 +1,58 @@
-"""The arrows of the design: which package may import what, and how large a module may grow."""
+"""The arrows of the design: one ordered tuple of floors, no circle, and how large a module may grow."""
 
 from __future__ import annotations
 
 import ast
+import tomllib
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("ltca", "fem", "validation")
-FEM_MAY_IMPORT = {
-    "ltca.drive", "ltca.drive_file", "ltca.drive_checks", "ltca.profile", "ltca.placement", "ltca.errors",
-    "ltca.units", "ltca.output_files", "ltca.progress",
-}  # fmt: skip
-LIGHT_COMMANDS = {"ltca.errors", "sys", "argparse", "json", "pathlib", "typing", "__future__", "collections"}
+# The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
+FLOORS = (
+    "ltca.errors", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading", "ltca.laws",
+    "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.testing", "ltca",
+    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.coefficients", "fem.referee",
+    "fem.pictures", "fem.testing", "fem",
+    "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
+    "ltca.commands", "fem.commands", "validation.commands", "validation",
+)  # fmt: skip
+# What a package may not see at all: ltca stands alone, nothing sees validation.
+UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": set()}
+# Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
+FEM_MAY_IMPORT = (
+    "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
+)  # fmt: skip
+LIGHT_COMMANDS = {
+    "ltca.errors",
+    "sys",
+    "os",
+    "re",
+    "importlib",
+    "argparse",
+    "json",
+    "pathlib",
+    "typing",
+    "__future__",
+    "collections",
+}
+LINES, FILES = 450, 12
 MODULES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
 
+def name_of(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+NAMES = {name_of(path): path for path in MODULES}
+
+
 def imports(path, tree=None):
-    """Every module a file imports, wherever the statement stands; `from ltca import profile` is ltca.profile."""
+    """Every module a file imports, wherever the statement stands; `from ltca.geometry import pairs` is the module."""
     package = path.relative_to(ROOT).with_suffix("").parts[:-1]
     found = set()
     for node in ast.walk(tree or ast.parse(path.read_text(encoding="utf-8"))):
@@ -27,10 +61,9 @@ def imports(path, tree=None):
         elif isinstance(node, ast.ImportFrom):
             base = list(package[: len(package) - node.level + 1]) if node.level else []
             module = ".".join([*base, *([node.module] if node.module else [])])
-            if module in PACKAGES:
-                found |= {f"{module}.{alias.name}" for alias in node.names}
-            else:
-                found.add(module)
+            for alias in node.names:
+                inner = f"{module}.{alias.name}"
+                found.add(inner if inner in NAMES else module)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
             name = node.func.attr if isinstance(node.func, ast.Attribute) else node.func.id
             if name in {"import_module", "__import__"} and node.args and isinstance(node.args[0], ast.Constant):
@@ -38,32 +71,66 @@ def imports(path, tree=None):
     return found
 
 
-def test_there_is_something_to_check():
-    assert len(MODULES) > 25
-    assert "ltca.pairs" in imports(ROOT / "ltca" / "compliance.py")
+def ours(module):
+    return module.partition(".")[0] in PACKAGES
+
+
+def floor(module):
+    """Number of the floor of a module: of the longest entry of `FLOORS` that it is or lies in."""
+    entries = [entry for entry in FLOORS if module == entry or module.startswith(f"{entry}.")]
+    return FLOORS.index(max(entries, key=len))
+
+
+def circle(graph):
+    """One circle of a graph as a list, empty when there is none."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return []
 
 
 def relative(path):
     return str(path.relative_to(ROOT))
 
 
+def test_there_is_something_to_check():
+    assert len(MODULES) > 150
+    assert "ltca.geometry.pairs" in imports(NAMES["ltca.compliance.half_space"])
+
+
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_import_directions(path):
-    package = path.relative_to(ROOT).parts[0]
-    for module in imports(path):
-        top = module.partition(".")[0]
-        if package == "ltca":
-            assert top not in {"fem", "validation"}, module
-        elif package == "fem":
-            assert top != "validation", module
-            assert top != "ltca" or module in FEM_MAY_IMPORT, module
-        assert top != "tests", module
+    module = name_of(path)
+    package = module.partition(".")[0]
+    for other in sorted(filter(ours, imports(path))):
+        assert other.partition(".")[0] not in UNSEEN[package], other
+        assert floor(other) <= floor(module), f"{other} stands above"
+        if package == "fem" and other.startswith("ltca"):
+            assert any(other == allowed or other.startswith(f"{allowed}.") for allowed in FEM_MAY_IMPORT), other
+
+
+def test_no_circle():
+    graph = {name: {other for other in imports(path) if other in NAMES} for name, path in NAMES.items()}
+    assert circle(graph) == []
+    folders = {}
+    for name, others in graph.items():
+        folder = FLOORS[floor(name)]
+        folders.setdefault(folder, set()).update(FLOORS[floor(other)] for other in others)
+        folders[folder].discard(folder)
+    assert circle(folders) == []
+
+
+def test_every_floor_is_there():
+    assert len(set(FLOORS)) == len(FLOORS)
+    assert all(entry in NAMES for entry in FLOORS)
 
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_one_file_one_step(path):
     assert path.stem not in {"utils", "util", "helpers", "helper", "common", "misc"}
-    assert len(path.read_text(encoding="utf-8").splitlines()) < 450
+    assert len(path.read_text(encoding="utf-8").splitlines()) < LINES
+    assert len([other for other in path.parent.glob("*.py") if other.stem != "__init__"]) <= FILES
 
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("*/commands/*.py")), ids=relative)
@@ -77,8 +144,6 @@ def test_commands_import_lightly(path):
 
 
 def test_every_registered_command_is_there():
-    import tomllib
-
     table = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     for name, module in table["project"]["entry-points"]["cyclo.commands"].items():
         path = ROOT / (module.replace(".", "/") + ".py")
@@ -87,10 +152,15 @@ def test_every_registered_command_is_there():
         assert {"configure", "execute"} <= defined, name
 
 
-def test_the_check_itself_sees_every_kind_of_import(tmp_path):
+def test_the_check_itself_sees_every_kind_of_import():
     text = (
-        "import fem.mesh\nfrom ltca import pairs\ndef f():\n    from validation.x import y\n    import_module('fem')\n"
+        "import fem.mesh\nfrom ltca.geometry import pairs\ndef f():\n    from validation.x import y\n"
+        "    import_module('fem')\n"
     )
-    assert imports(ROOT / "ltca" / "any.py", ast.parse(text)) == {"fem.mesh", "ltca.pairs", "validation.x", "fem"}
+    path = ROOT / "ltca" / "geometry" / "any.py"
+    assert imports(path, ast.parse(text)) == {"fem.mesh", "ltca.geometry.pairs", "validation.x", "fem"}
     relative_import = ast.parse("from . import pairs\nfrom .placement import Placement\n")
-    assert imports(ROOT / "ltca" / "any.py", relative_import) == {"ltca.pairs", "ltca.placement"}
+    assert imports(path, relative_import) == {"ltca.geometry.pairs", "ltca.geometry.placement"}
+    assert circle({"a": {"b"}, "b": {"a"}})
+    assert floor("ltca.errors") == 0
+    assert floor("ltca.compliance.half_space") > floor("ltca.laws.series") > floor("ltca.drive.parts")

@@ -1,25 +1,13 @@
 """Comparison of the LTCA with closed forms, other codes, the paper and the finite-element solution.
 
-Modules in the order data passes:
+Folders in the order data passes; each one's docstring lists its modules.
 
-============================  ==============================================================
-`comparison`                  one position in any model, and all metrics of a difference
-`rows`                        a compared figure with its limit and the reason of the limit
-`closed_forms`                level 1: the codes against closed forms
-`other_codes`                 level 2: CalculiX and tamaas, run or stored
-`printed_results`             level 3: the LTCA against the paper's printed results
-`derived_coefficients`        coefficients of each case's disc, kept as files
-`coefficient_rows`            level 4: the coefficients by laws and mesh size
-`finite_element_positions`    full solutions, each kept as a file
-`model_positions`             the LTCA's answers in the same form
-`compared_positions`          every position in all models
-`position_rows`               level 5: position by position
-`model_laws`                  level 5: what the models owe each other
-`meaning`                     level 6: what the flexible disc changes
-`study`                       the plan and its execution, all levels
-`headline`                    the figures to read first; ``validation.json``, ``rows.csv``
-`scene`, `report`             the page, its drawing and its templates
-`costs`                       time of one position, for the terminal only
-`commands`                    ``cyclo validate``
-============================  ==============================================================
+========  ============================================================
+rows      Rows of the report: one compared figure each, with its limit and why the limit has that size
+compare   One position in any model, and all metrics of a difference
+levels    The levels of the validation, from closed forms to what the flexible disc changes
+study     The whole validation of a drive: which positions, in which order, and the rows of all six levels
+report    The page and files of a validation
+commands  ``cyclo validate``
+========  ============================================================
 """

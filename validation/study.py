@@ -12,20 +12,20 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ltca.coefficients import InfluenceCoefficients
-from ltca.drive import Drive
-from ltca.drive_file import DriveFile
-from ltca.output_files import write_json
-from validation.closed_forms import check_closed_forms
-from validation.coefficient_rows import check_file, halved_mesh_row
-from validation.compared_positions import ComparedPosition, compare_case
-from validation.derived_coefficients import coefficients_of, has_clearance
-from validation.finite_element_positions import FullPosition, Settings, solve_position
-from validation.meaning import CaseMeaning, full_solution_rows, meaning_rows, study_case
-from validation.model_laws import compare_models
-from validation.other_codes import asked_codes
-from validation.position_rows import compare_position_rows, shared_file_rows
-from validation.printed_results import compare_printed_results
+from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.drive.parts import Drive
+from ltca.output.files import write_json
+from ltca.reading.drive_file import DriveFile
+from validation.compare.compared_positions import ComparedPosition, compare_case
+from validation.compare.derived_coefficients import coefficients_of, has_clearance
+from validation.compare.finite_element_positions import FullPosition, Settings, solve_position
+from validation.levels.closed_forms import check_closed_forms
+from validation.levels.coefficients import check_file, halved_mesh_row
+from validation.levels.flexible_disc import CaseMeaning, full_solution_rows, meaning_rows, study_case
+from validation.levels.model_laws import compare_models
+from validation.levels.other_codes import asked_codes
+from validation.levels.positions import compare_position_rows, shared_file_rows
+from validation.levels.printed_results import compare_printed_results
 from validation.rows import Row
 
 Level = Literal["quick", "full"]

@@ -52,7 +52,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     import time
 
-    from ltca.drive_file import load_drive
+    from ltca.reading.drive_file import load_drive
 
     out = Path(arguments.out)
     if out.is_dir():
@@ -60,9 +60,9 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
 
-    from fem.coefficient_checks import check_coefficients
-    from fem.coefficient_dataset import derive_coefficients
-    from fem.coefficient_file import read_coefficients, require_writable, write_coefficients
+    from fem.coefficients.dataset import derive_coefficients
+    from fem.coefficients.file import read_coefficients, require_writable, write_coefficients
+    from fem.coefficients.laws import check_coefficients
 
     require_writable(out)
     start = time.perf_counter()

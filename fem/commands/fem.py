@@ -12,7 +12,7 @@ from ltca.errors import CycloError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem.solution import FullSolution
+    from fem.drive.solution import FullSolution
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 
@@ -59,10 +59,10 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, no convergence, or meshes that would not fit into memory.
     """
-    from fem.fields import recover_fields
-    from fem.solution import solve_drive
-    from fem.solution_files import write_solution
-    from ltca.drive_file import load_drive
+    from fem.drive.fields import recover_fields
+    from fem.drive.solution import solve_drive
+    from fem.drive.solution_files import write_solution
+    from ltca.reading.drive_file import load_drive
 
     _check_numbers(arguments)
     out = Path(arguments.out)
@@ -84,13 +84,13 @@ def execute(arguments: argparse.Namespace) -> int:
     write_solution(solution, fields, case, out)
     _print_contacts(solution)
     if not arguments.no_pictures:
-        from fem.pictures import draw_solution
+        from fem.pictures.solution_pictures import draw_solution
 
         problem = draw_solution(solution, fields, f"{file.name}, {case}, {arguments.angle:g} rad", out)
         if problem:
             print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
     if arguments.export or referee:
-        from fem.calculix import write_deck
+        from fem.referee.calculix_deck import write_deck
 
         print(f"CalculiX deck: {write_deck(solution, out / 'calculix.inp')}")
     if referee:
@@ -122,7 +122,7 @@ def _progress() -> Callable[[str], None] | None:
 
 
 def _print_contacts(solution: FullSolution) -> None:
-    from fem.solution_files import bearing_components
+    from fem.drive.solution_files import bearing_components
 
     contacts, seconds = solution.contacts, solution.seconds
     if sys.stderr.isatty():
@@ -163,8 +163,8 @@ def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:
     """Return a function that runs and prints the referee; complain before any work when it is missing."""
     if name is None:
         return None
-    from fem.calculix import find_calculix
-    from fem.calculix_referee import compare_with_calculix
+    from fem.referee.calculix import compare_with_calculix
+    from fem.referee.calculix_deck import find_calculix
 
     program = find_calculix()
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from ltca.errors import CycloError
 
 if TYPE_CHECKING:
-    from fem.body_mesh import BodyMesh
-    from fem.drive_mesh import DriveMeshes
-    from fem.expected_contacts import ExpectedContacts
-    from fem.geometry import DriveShapes
-    from ltca.drive import Drive
+    from fem.drive.expected_contacts import ExpectedContacts
+    from fem.drive.meshes import DriveMeshes
+    from fem.mesh.body_mesh import BodyMesh
+    from fem.shapes import DriveShapes
+    from ltca.drive.parts import Drive
 
 SUMMARY: str = "mesh the bodies of a drive for the contacts expected at a crank angle"
 
@@ -49,10 +49,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     import time
 
-    from fem.drive_mesh import mesh_drive
-    from fem.expected_contacts import expect_contacts
-    from fem.geometry import DriveShapes
-    from fem.quality import measure_quality
+    from fem.drive.expected_contacts import expect_contacts
+    from fem.drive.meshes import mesh_drive
+    from fem.mesh.quality import measure_quality
+    from fem.shapes import DriveShapes
 
     name, case, drive = _select(arguments.drive, arguments.case)
     _check_numbers(arguments.angle, arguments.size)
@@ -78,7 +78,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _select(source: str, case: str | None) -> tuple[str, str, Drive]:
-    from ltca.drive_file import load_drive
+    from ltca.reading.drive_file import load_drive
 
     file = load_drive(source)
     chosen, drive = next(iter(file.select([case] if case else None).items()))
@@ -95,7 +95,7 @@ def _check_numbers(angle: float, size: float) -> None:
 
 
 def _write_files(meshes: DriveMeshes, out: Path) -> None:
-    from fem.mesh_file import write_msh, write_vtu
+    from fem.mesh.mesh_file import write_msh, write_vtu
 
     for body in meshes.bodies:
         write_msh(body, out / f"{body.name}.msh")
@@ -105,8 +105,8 @@ def _write_files(meshes: DriveMeshes, out: Path) -> None:
 def _draw(
     drive: Drive, shapes: DriveShapes, contacts: ExpectedContacts, meshes: DriveMeshes, path: Path, headline: str
 ) -> None:
-    from fem.mesh_picture import choose_zooms, draw_drive_mesh, place_bodies
-    from ltca.placement import Placement
+    from fem.pictures.mesh_picture import choose_zooms, draw_drive_mesh, place_bodies
+    from ltca.geometry.placement import Placement
 
     placement = Placement.of_drive(drive)
     shaft_pins = [

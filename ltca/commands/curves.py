@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ltca.drive import Drive
+    from ltca.drive.parts import Drive
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
 POSITIONS_PER_TURN = 192
@@ -31,10 +31,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve, write curves.json and the figures, print what they say."""
-    from ltca.drive_file import load_drive
+    from ltca.drive.units import parse_quantity
     from ltca.errors import DriveError
-    from ltca.output_files import write_json
-    from ltca.units import parse_quantity
+    from ltca.output.files import write_json
+    from ltca.reading.drive_file import load_drive
 
     limit = parse_quantity(arguments.pressure_limit, "MPa", "--pressure-limit")
     if limit <= 0.0:
@@ -68,13 +68,13 @@ def _solve(
 ) -> dict[str, Any]:
     import numpy as np
 
-    from ltca import curve_figures as figures
-    from ltca.loaded_analysis import analyse
-    from ltca.pressure_safety import pressure_safety
-    from ltca.rating_life import RollerBearing, rating_life
-    from ltca.results import ARCMIN, ARCSEC
-    from ltca.torque_curve import torque_curve
-    from ltca.transmission_error_spectrum import fit_orders, known_orders
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis.pressure_safety import pressure_safety
+    from ltca.analysis.rating_life import RollerBearing, rating_life
+    from ltca.analysis.results import ARCMIN, ARCSEC
+    from ltca.analysis.torque_curve import torque_curve
+    from ltca.analysis.transmission_error_orders import fit_orders, known_orders
+    from ltca.figures import curve_figures as figures
 
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
     curve = torque_curve(drive, mesh * np.arange(ANGLES) / ANGLES)

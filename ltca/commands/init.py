@@ -17,9 +17,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the file."""
-    from ltca.drive_file import shipped_drive
     from ltca.errors import CycloError
-    from ltca.output_files import whole_file
+    from ltca.output.files import whole_file
+    from ltca.reading.drive_file import shipped_drive
 
     path = Path(arguments.file)
     if path.exists() and not arguments.force:

@@ -36,11 +36,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Search, write the drive found and all candidates, draw and print them."""
-    from ltca.drive_fields import drive_text
-    from ltca.drive_file import load_drive
     from ltca.errors import DriveError
-    from ltca.output_files import whole_file
-    from ltca.progress import progress
+    from ltca.output.files import whole_file
+    from ltca.output.progress import progress
+    from ltca.reading.drive_file import load_drive
+    from ltca.reading.writing import drive_text
     from ltca.studies.optimiser import Problem, batch_analysis, optimise, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
@@ -78,7 +78,7 @@ def execute(arguments: argparse.Namespace) -> int:
     _print(optimum)
     print(f"results: {out / 'optimum.toml'}, {out / 'candidates.parquet'}")
     if not arguments.no_figures:
-        from ltca.studies.optimum_figures import write_optimum_figure
+        from ltca.figures.optimum_figures import write_optimum_figure
 
         print(f"figure: {write_optimum_figure(optimum, out)}")
     return 0
@@ -89,7 +89,7 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet
 
-    from ltca.output_files import whole_file
+    from ltca.output.files import whole_file
 
     problem = optimum.problem
     front = np.zeros(len(optimum.variables), dtype=bool)
@@ -101,9 +101,9 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
 
 
 def _print(optimum: Optimum) -> None:
-    from ltca.drive_fields import read_field
+    from ltca.drive.fields import read_field
+    from ltca.figures.study_figures import shown
     from ltca.studies.quantities import QUANTITIES
-    from ltca.studies.study_figures import shown
 
     problem = optimum.problem
     print(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ltca.pairs import FloatArray
+    from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "loaded tooth contact analysis: loads, pressures, bearing forces, transmission error"
 DEFAULT_POSITIONS = 360
@@ -63,11 +63,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
-    from ltca.drive_file import load_drive
-    from ltca.loaded_analysis import analyse
-    from ltca.output_files import whole_file, write_json
-    from ltca.progress import progress
-    from ltca.results import build_dataset, check_common_shape, summarise
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis.results import build_dataset, check_common_shape, summarise
+    from ltca.output.files import whole_file, write_json
+    from ltca.output.progress import progress
+    from ltca.reading.drive_file import load_drive
 
     angles = _crank_angles(arguments)
     torque = _torque(arguments.torque)
@@ -89,7 +89,7 @@ def execute(arguments: argparse.Namespace) -> int:
         "hole_near_field": not arguments.no_hole_near_field,
     }
     if arguments.compliance != "half-space":
-        from ltca.coefficient_files import find_coefficients
+        from ltca.compliance.coefficient_files import find_coefficients
 
         options["coefficients"] = find_coefficients(next(iter(cases.values())), arguments.coefficients)
     analyses = {}
@@ -104,7 +104,7 @@ def execute(arguments: argparse.Namespace) -> int:
     write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
     fields = None
     if pressure_angles is not None:
-        from ltca.pressure_fields import build_pressure_dataset
+        from ltca.analysis.pressure_fields import build_pressure_dataset
 
         shown = {}
         with progress("pressure fields", len(cases)) as advance:
@@ -119,14 +119,14 @@ def execute(arguments: argparse.Namespace) -> int:
     files = ["results.nc", "summary.json"] + (["pressure.nc"] if fields is not None else [])
     print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
-        from ltca.figures import FIGURES, write_figures
+        from ltca.figures.run_figures import FIGURES, write_figures
 
         with progress("figures", len(FIGURES)) as advance:
             for path in write_figures(dataset, out / "figures"):
                 advance(path.name)
         print(f"figures: {out / 'figures'} ({len(FIGURES)} as SVG and PNG)")
         if fields is not None:
-            from ltca.pressure_figures import can_render, write_pressure_figures
+            from ltca.figures.pressure_figures import can_render, write_pressure_figures
 
             if not can_render():
                 print("pyvista cannot render here (no GL): 3-D pressures are drawn with matplotlib")
@@ -139,9 +139,9 @@ def execute(arguments: argparse.Namespace) -> int:
 def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
     import numpy as np
 
+    from ltca.analysis.results import position_angles
+    from ltca.drive.units import parse_quantity
     from ltca.errors import DriveError
-    from ltca.results import position_angles
-    from ltca.units import parse_quantity
 
     if arguments.angles is not None:
         return np.array([parse_quantity(text, "rad", "--angles") for text in arguments.angles])
@@ -154,7 +154,7 @@ def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
 def _pressure_angles(texts: list[str] | None) -> FloatArray | None:
     import numpy as np
 
-    from ltca.units import parse_quantity
+    from ltca.drive.units import parse_quantity
 
     if texts is None:
         return None
@@ -162,8 +162,8 @@ def _pressure_angles(texts: list[str] | None) -> FloatArray | None:
 
 
 def _torque(text: str | None) -> float | None:
+    from ltca.drive.units import parse_quantity
     from ltca.errors import DriveError
-    from ltca.units import parse_quantity
 
     if text is None:
         return None

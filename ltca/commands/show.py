@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ltca.drive import Drive
-    from ltca.loaded_analysis import LoadedAnalysis
-    from ltca.pairs import FloatArray
+    from ltca.analysis.loaded_analysis import LoadedAnalysis
+    from ltca.drive.parts import Drive
+    from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "derived geometry, backlash, checks and a picture with contact normals and loads"
 
@@ -26,10 +26,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print the drive and write its picture."""
     import numpy as np
 
-    from ltca.drive_file import load_drive
-    from ltca.drive_picture import draw_drive
-    from ltca.loaded_analysis import analyse
-    from ltca.units import parse_quantity
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.drive.units import parse_quantity
+    from ltca.figures.drive_picture import draw_drive
+    from ltca.reading.drive_file import load_drive
 
     angle = parse_quantity(arguments.angle, "rad", "--angle")
     file = load_drive(arguments.drive)
@@ -53,9 +53,9 @@ def execute(arguments: argparse.Namespace) -> int:
 def _properties(drive: Drive) -> list[tuple[str, str]]:
     import numpy as np
 
-    from ltca.pairs import ContactGeometry
-    from ltca.results import ARCMIN, position_angles
-    from ltca.tooth_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
+    from ltca.analysis.results import ARCMIN, position_angles
+    from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
+    from ltca.geometry.pairs import ContactGeometry
 
     geometry = ContactGeometry.of_drive(drive)
     profile, place = geometry.profile, geometry.placement
@@ -94,7 +94,7 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
 def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     import numpy as np
 
-    from ltca.results import ARCMIN
+    from ltca.analysis.results import ARCMIN
 
     contacts = analysis.full.response
     pose = analysis.full.pose[0]

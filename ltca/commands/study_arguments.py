@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ltca.studies.engine import Engine
+    from ltca.studies.execution.engine import Engine
+    from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.run_study import StudySummary
-    from ltca.studies.storage import StudyFolder
     from ltca.studies.study import Study
 
 DEFAULT_POSITIONS = 28
@@ -41,7 +41,7 @@ def engine_of(arguments: argparse.Namespace) -> Engine:
         When the number of workers is out of range.
     """
     from ltca.errors import DriveError
-    from ltca.studies.engine import Engine
+    from ltca.studies.execution.engine import Engine
 
     if not 1 <= arguments.workers <= 1024:
         raise DriveError([f"--workers = {arguments.workers}: must be from 1 to 1024"])
@@ -53,7 +53,7 @@ def engine_of(arguments: argparse.Namespace) -> Engine:
 def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespace) -> int:
     """Run a study with progress, write its figures and print what it says."""
     from ltca.errors import DriveError
-    from ltca.progress import progress
+    from ltca.output.progress import progress
     from ltca.studies.run_study import run_study, write_sample
 
     engine = engine_of(arguments)
@@ -70,7 +70,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
         found = run_study(study, folder, engine, resume=arguments.resume, advance=advance)
     _print(study, folder, found)
     if found.quantities and not arguments.no_figures:
-        from ltca.studies.study_figures import write_study_figures
+        from ltca.figures.study_figures import write_study_figures
 
         paths = list(write_study_figures(folder, study, found.ranking, found.nominal))
         print(f"figures: {folder.path / 'figures'} ({len(paths)} as SVG and PNG)")
@@ -78,9 +78,9 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
 
 
 def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+    from ltca.figures.study_figures import shown
     from ltca.studies.quantities import QUANTITIES
     from ltca.studies.run_study import write_sample
-    from ltca.studies.study_figures import shown
 
     print(f"{study.name}: {study.design.samples} samples × {study.positions} positions")
     if found.solved_positions:

@@ -19,7 +19,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Solve the samples, write and print the results."""
     from ltca.commands.study_arguments import execute_study
-    from ltca.studies.storage import StudyFolder
+    from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.sweep_file import load_sweep
 
     study = load_sweep(arguments.study)

@@ -41,10 +41,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draw the samples, solve them, write and print the results."""
-    from ltca.drive_file import load_drive
     from ltca.errors import DriveError
+    from ltca.reading.drive_file import load_drive
     from ltca.studies.designs import check_samples
-    from ltca.studies.storage import StudyFolder
+    from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.tolerance_study import tolerance_study
 
     check_samples(arguments.samples, "--samples")

@@ -5,10 +5,8 @@ quantities          what a study keeps of each sample, by name and unit
 batch_analysis      the quantities of many drives at once; a sample that fails says why
 designs             which samples there are: random, Sobol, Latin hypercube, grid, list, Saltelli
 study               drive, design, positions and quantities: everything a worker needs
-engine              batches on this process, a local pool or a dask cluster, one code path
-storage             finished batches, the final dataset and the table
+execution           who solves the batches and where their results are kept
 sensitivity         standardised regression, Sobol indices
-study_figures       histograms, ranking, responses
 tolerance_study     samples drawn from the tolerances of a drive
 sweep_file          ``study.toml`` to a study
 optimiser           best fields of a drive under bounds, Pareto front of two aims

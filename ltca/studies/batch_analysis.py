@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import ComplianceModel, ContactPressures, HalfSpaceCompliance, batch_signature
-from ltca.drive import Drive
-from ltca.equilibrium import Equilibrium, solve_equilibrium
+from ltca.analysis.loaded_analysis import HALF_WIDTH_BOUND
+from ltca.compliance.half_space import HalfSpaceCompliance, batch_signature
+from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.drive.parts import Drive
+from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.errors import CycloError, DriveError
-from ltca.loaded_analysis import HALF_WIDTH_BOUND
+from ltca.geometry.first_contact import WHEEL_ANGLE, backlash
 from ltca.studies.quantities import QUANTITIES, SampleBatch
-from ltca.tooth_contact import WHEEL_ANGLE, backlash
 
 FloatArray = NDArray[np.float64]
 ModelBuilder = Callable[[Sequence[Drive], int], ComplianceModel]
@@ -95,7 +96,7 @@ def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
     """Return the quantities of every drive.
 
-    Drives that agree in their `ltca.compliance.batch_signature` are solved together. What fails is halved until
+    Drives that agree in their `ltca.compliance.half_space.batch_signature` are solved together. What fails is halved until
     the sample is found, which is tried once more from first contact before it counts as failed.
 
     Parameters
@@ -147,7 +148,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     Parameters
     ----------
     drives : sequence of Drive
-        Drives of one `ltca.compliance.batch_signature`.
+        Drives of one `ltca.compliance.half_space.batch_signature`.
     settings : BatchSettings
         Angles, quantities, model.
     nominal : Nominal, optional
@@ -158,7 +159,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     ConvergenceError
         When a position of any of them does not balance.
     DriveError
-        When a torque cannot be carried (`ltca.loaded_analysis.HALF_WIDTH_BOUND`).
+        When a torque cannot be carried (`ltca.analysis.loaded_analysis.HALF_WIDTH_BOUND`).
     """
     samples, positions = len(drives), settings.crank_angle.size
     stages = {QUANTITIES[name].stage for name in settings.quantities}

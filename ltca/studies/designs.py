@@ -14,8 +14,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.drive.tolerances import Factors
 from ltca.errors import DriveError
-from ltca.tolerances import Factors
 
 FloatArray = NDArray[np.float64]
 

@@ -15,14 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.drive import Drive
-from ltca.drive_fields import field_kinds, read_field, with_fields
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.parts import Drive
+from ltca.drive.units import label, parse_quantity
 from ltca.errors import CycloError, DriveError
-from ltca.placement import position_angles
+from ltca.geometry.placement import position_angles
+from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, ModelBuilder, analyse_samples
 from ltca.studies.quantities import QUANTITIES, check_quantities
-from ltca.units import label, parse_quantity
 
 FloatArray = NDArray[np.float64]
 Analysis = Callable[[Sequence[Drive]], FloatArray]

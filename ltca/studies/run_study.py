@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ltca.drive_fields import drive_text
 from ltca.errors import CycloError
-from ltca.output_files import whole_file, write_json
-from ltca.placement import position_angles
+from ltca.geometry.placement import position_angles
+from ltca.output.files import whole_file, write_json
+from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
-from ltca.studies.engine import Engine, solve_batches
-from ltca.studies.storage import StudyFolder
+from ltca.studies.execution.engine import Engine, solve_batches
+from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES, QuantitySummary, rank, read_quantity, summarise_quantity
 

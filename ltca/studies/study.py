@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.drive import Drive
-from ltca.drive_fields import with_fields
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.parts import Drive
 from ltca.errors import CycloError
-from ltca.placement import position_angles
+from ltca.geometry.placement import position_angles
+from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, ModelBuilder, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design
 

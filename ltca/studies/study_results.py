@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.studies.designs import ToleranceDesign
+from ltca.studies.execution.storage import CHUNK
 from ltca.studies.sensitivity import Regression, SobolIndices, grouped, regress, sobol_indices
-from ltca.studies.storage import CHUNK
 from ltca.studies.study import Study
 
 FloatArray = NDArray[np.float64]

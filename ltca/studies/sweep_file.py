@@ -30,14 +30,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from ltca.drive import Drive
-from ltca.drive_fields import field_kinds, read_field
-from ltca.drive_file import describe_mistake, load_drive
+from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.mistakes import describe_mistake
+from ltca.drive.parts import Drive
+from ltca.drive.units import quantity
 from ltca.errors import DriveError
+from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor, check_samples
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
 from ltca.studies.study import Study
-from ltca.units import quantity
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
 KEYS = {"drive", "case", "positions", "quantities", "design", "factors"}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ltca.drive_file import DriveFile
+from ltca.drive.tolerances import Factors
+from ltca.reading.drive_file import DriveFile
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
 from ltca.studies.study import Study
-from ltca.tolerances import Factors
 
 
 def tolerance_study(

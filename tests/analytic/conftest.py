@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from skfem import MeshTri1, MeshTri2
 
-from fem.body_mesh import BodyMesh
+from fem.mesh.body_mesh import BodyMesh
 
 
 @dataclass(frozen=True)

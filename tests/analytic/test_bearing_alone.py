@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.line_contact import LineContactLaw
-from ltca.pairs import RollerRays
-from ltca.roller_series import RollerLaws, balance_rollers
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.rollers import RollerLaws, balance_rollers
+from ltca.geometry.pairs import RollerRays
+from ltca.laws.line_contact import LineContactLaw
 
 
 def bearing_force(state):

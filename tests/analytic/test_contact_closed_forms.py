@@ -7,17 +7,17 @@ between two contacts). NAFEMS: Konter, *Advanced Finite Element Contact Benchmar
 import numpy as np
 import pytest
 
-from fem.condensation import condense_body
-from fem.coupling import Pose, integrate_pair
-from fem.elasticity import assemble_stiffness, unknowns_of_boundary
-from fem.element_size import Refinement
-from fem.geometry import CircleShape
-from fem.hertz import hertz_half_width, hertz_peak_pressure
-from fem.meshing import mesh_circle
-from fem.surface import OppositeZone, PressureZone
-from fem.two_bodies import press_together
-from fem.unilateral import ContactProblem, solve_unilateral_contact
-from ltca.drive import Material, contact_modulus
+from fem.body.condensation import condense_body
+from fem.body.elasticity import assemble_stiffness, unknowns_of_boundary
+from fem.body.surface import OppositeZone, PressureZone
+from fem.contact.coupling import Pose, integrate_pair
+from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
+from fem.contact.two_bodies import press_together
+from fem.contact.unilateral import ContactProblem, solve_unilateral_contact
+from fem.mesh.element_size import Refinement
+from fem.mesh.triangulation import mesh_circle
+from fem.shapes import CircleShape
+from ltca.drive.parts import Material, contact_modulus
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 

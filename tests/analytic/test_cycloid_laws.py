@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.pairs import ContactGeometry
-from ltca.tooth_contact import carrying_pins
+from ltca.geometry.first_contact import carrying_pins
+from ltca.geometry.pairs import ContactGeometry
 
 
 @pytest.fixture(scope="module")

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.drive_fields import with_fields
-from ltca.drive_file import load_drive
-from ltca.equilibrium import solve_equilibrium
-from ltca.pairs import ContactGeometry
-from ltca.rigid_limit import rigid_play, rigid_poses
+from ltca.analysis.torque_curve import torque_curve
+from ltca.analysis.transmission_error_orders import Order, fit_orders
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.geometry.first_contact import WHEEL_ANGLE, backlash, first_contact
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import rigid_play, rigid_poses
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.tolerance_study import tolerance_study
-from ltca.tooth_contact import WHEEL_ANGLE, backlash, first_contact
-from ltca.torque_curve import torque_curve
-from ltca.transmission_error_spectrum import Order, fit_orders
 
 FEELER = 0.01  # mm: the pin moved inward by 10 µm
 

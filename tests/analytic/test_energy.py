@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.compliance import HalfSpaceCompliance
-from ltca.equilibrium import solve_equilibrium
-from ltca.loaded_analysis import analyse
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
 
 
 def stored_energy(model, response):

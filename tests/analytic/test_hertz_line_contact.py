@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca import hertz
-from ltca.line_contact import LineContactLaw
-from ltca.patch import solve_cylinder_patch
-from ltca.subsurface import find_subsurface_shear, patch_stress
+from ltca.contact import hertz
+from ltca.contact.pressure_cells import solve_cylinder_patch
+from ltca.contact.subsurface import find_subsurface_shear, patch_stress
+from ltca.laws.line_contact import LineContactLaw
 
 MODULUS = hertz.contact_modulus(206e3, 0.3, 206e3, 0.3)
 

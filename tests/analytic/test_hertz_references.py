@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad, quad
 
-from ltca import hertz
-from ltca.subsurface import max_shear_stress, rectangle_stress
+from ltca.contact import hertz
+from ltca.contact.subsurface import max_shear_stress, rectangle_stress
 
 YOUNG, POISSON = 206e3, 0.3
 

@@ -7,8 +7,8 @@ import copy
 import numpy as np
 import pytest
 
-from ltca.drive_file import build_drive
-from ltca.loaded_analysis import analyse
+from ltca.analysis.loaded_analysis import analyse
+from ltca.reading.drive_file import build_drive
 
 # analyse balances to 1e-9 of the load of some 1000 N, over stiffnesses above 1e5 N/mm
 LOAD = 1e-5  # N
@@ -171,8 +171,8 @@ def test_all_pins_larger_is_a_smaller_equidistant_offset(vary):
 
     Moving the flank changes its curvature, so only the unloaded geometry is the same.
     """
-    from ltca.pairs import ContactGeometry
-    from ltca.tooth_contact import WHEEL_ANGLE, first_contact
+    from ltca.geometry.first_contact import WHEEL_ANGLE, first_contact
+    from ltca.geometry.pairs import ContactGeometry
 
     angles = np.linspace(0.0, 6.0, 20)
     errors = {"diameter": [0.02] * 14}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.line_contact import LineContactLaw
-from ltca.patch import solve_cylinder_patch
+from ltca.contact.pressure_cells import solve_cylinder_patch
+from ltca.laws.line_contact import LineContactLaw
 
 LAW = LineContactLaw(1.0, 1.0)
 

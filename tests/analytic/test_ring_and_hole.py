@@ -1,6 +1,6 @@
 """Elasticity against closed forms: Lamé's ring and Kirsch's hole, with the order of convergence.
 
-Lamé: Timoshenko & Goodier, *Theory of Elasticity*, §28. Kirsch: §35; displacements by Muskhelishvili's
+Lamé: Timoshenko & Goodier, *Theory of Elasticity*, 28. Kirsch: 35; displacements by Muskhelishvili's
 potentials with κ = 3 − 4ν (plane strain).
 """
 
@@ -9,12 +9,12 @@ import pytest
 import scipy.sparse as sp
 from skfem import Basis, ElementTriP2, ElementVector
 
-from fem.condensation import condense_body
-from fem.elasticity import area_loads, assemble_stiffness, rigid_modes, traction_load
-from fem.geometry import RingShape
-from fem.meshing import mesh_ring
-from fem.stress import recover_stress
-from ltca.drive import Material
+from fem.body.condensation import condense_body
+from fem.body.elasticity import area_loads, assemble_stiffness, rigid_modes, traction_load
+from fem.body.stress import recover_stress
+from fem.mesh.triangulation import mesh_ring
+from fem.shapes import RingShape
+from ltca.drive.parts import Material
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 NU, MODULUS = STEEL.poisson_ratio, STEEL.youngs_modulus

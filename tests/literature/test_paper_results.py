@@ -27,8 +27,8 @@ import itertools
 import numpy as np
 import pytest
 
-from ltca.loaded_analysis import analyse
-from ltca.results import position_angles, summarise
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import position_angles, summarise
 
 CASES = ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]
 

@@ -5,11 +5,11 @@ import shutil
 import numpy as np
 import pytest
 
-from fem.calculix import pair_name, write_deck
-from fem.calculix_referee import ask_calculix
-from fem.solution import solve_drive
-from ltca.drive_file import load_drive
+from fem.drive.solution import solve_drive
+from fem.referee.calculix import ask_calculix
+from fem.referee.calculix_deck import pair_name, write_deck
 from ltca.errors import CycloError
+from ltca.reading.drive_file import load_drive
 
 pytestmark = [
     pytest.mark.referee,
@@ -36,7 +36,7 @@ def test_full_drive(tmp_path):
 
 
 def test_failure_of_ccx_is_one_error(tmp_path):
-    from fem.calculix_referee import run_calculix
+    from fem.referee.calculix import run_calculix
 
     (tmp_path / "broken.inp").write_text("*ELEMENT, TYPE=CPE6\n1,1,2,3,4,5,6\n", encoding="ascii")
     with pytest.raises(CycloError, match="ccx failed"):

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.hertz import contact_modulus, line_half_width, line_peak_pressure
-from ltca.length_profile import LogarithmicRelief
-from ltca.line_contact import LineContactLaw
-from ltca.profiled_line_contact import ProfiledLineContactLaw, solve_profiled_patch
+from ltca.contact.hertz import contact_modulus, line_half_width, line_peak_pressure
+from ltca.contact.length_profile import LogarithmicRelief
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, solve_profiled_patch
 
 tamaas = pytest.importorskip("tamaas", reason="tamaas (pip install cyclo-ltca[referee]) is not installed")
 

@@ -1,4 +1,4 @@
-"""Fields on the small meshes against stored ones; ``python -m fem.reference_fields`` writes them anew."""
+"""Fields on the small meshes against stored ones; ``python -m fem.testing.reference_fields`` writes them anew."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.reference_fields import collect
+from fem.testing.reference_fields import collect
 
 ROOT = Path(__file__).parents[2]
 

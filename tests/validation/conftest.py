@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import validation.meaning
-from ltca.coefficients import without_coupling
-from validation.compared_positions import compare_case
-from validation.finite_element_positions import FullPosition, Settings
-from validation.meaning import full_solution_rows, meaning_rows, study_case
-from validation.model_positions import answer_positions
-from validation.position_rows import compare_position_rows
+import validation.levels.flexible_disc
+from ltca.compliance.coefficients import without_coupling
+from validation.compare.compared_positions import compare_case
+from validation.compare.finite_element_positions import FullPosition, Settings
+from validation.compare.model_positions import answer_positions
+from validation.levels.flexible_disc import full_solution_rows, meaning_rows, study_case
+from validation.levels.positions import compare_position_rows
 from validation.rows import Row
 from validation.study import Plan, Study
 
@@ -39,8 +39,8 @@ def perturbed(answer, factor):
 def small_study(paper_cases):
     """Two cases, three angles; "full FE" is the half-space with loads 1 % larger; a turn of six positions."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(validation.meaning, "TURN_POSITIONS", 6)
-        patch.setattr(validation.meaning, "TORQUES", (1.0,))
+        patch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 6)
+        patch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
         return make_study(paper_cases)
 
 
@@ -87,6 +87,6 @@ def make_study(paper_cases):
 @pytest.fixture(scope="session")
 def small_report(small_study, tmp_path_factory) -> Path:
     """The page of the small study."""
-    from validation.report import write_report
+    from validation.report.page import write_report
 
     return write_report(small_study, tmp_path_factory.mktemp("report") / "report.html")

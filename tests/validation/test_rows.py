@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from validation.headline import COLUMNS, validation_content, write_files
+from validation.report.headline import COLUMNS, validation_content, write_files
 from validation.rows import Row, failed_rows, positive_row, range_row, relative_row, rounded
 
 ROW = Row(

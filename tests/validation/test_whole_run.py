@@ -8,12 +8,12 @@ import shutil
 
 import pytest
 
-import validation.derived_coefficients
-import validation.finite_element_positions
-import validation.meaning
-import validation.other_codes
+import validation.compare.derived_coefficients
+import validation.compare.finite_element_positions
+import validation.levels.flexible_disc
+import validation.levels.other_codes
 import validation.study
-from fem.coefficient_dataset import derive_coefficients
+from fem.coefficients.dataset import derive_coefficients
 from validation.commands import validate
 from validation.rows import LEVELS
 
@@ -33,11 +33,11 @@ def coarse():
         # These two have tests of their own and do not depend on the run: once is enough.
         for name in ("check_closed_forms", "compare_printed_results"):
             patch.setattr(validation.study, name, once(getattr(validation.study, name)))
-        patch.setattr(validation.meaning, "TURN_POSITIONS", 12)
-        patch.setattr(validation.meaning, "TORQUES", (1.0,))
-        patch.setattr(validation.derived_coefficients, "derive_coefficients", derive)
-        patch.setattr(validation.other_codes, "_has_calculix", lambda: False)
-        patch.setattr(validation.other_codes, "_has_tamaas", lambda: False)
+        patch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 12)
+        patch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
+        patch.setattr(validation.compare.derived_coefficients, "derive_coefficients", derive)
+        patch.setattr(validation.levels.other_codes, "_has_calculix", lambda: False)
+        patch.setattr(validation.levels.other_codes, "_has_tamaas", lambda: False)
         yield
 
 
@@ -87,8 +87,8 @@ def test_interrupted_and_resumed_gives_the_same_files(tmp_path, monkeypatch):
     def forbidden(*words, **options):
         raise AssertionError("solved again")
 
-    monkeypatch.setattr(validation.finite_element_positions, "solve_drive", forbidden)
-    monkeypatch.setattr(validation.derived_coefficients, "derive_coefficients", forbidden)
+    monkeypatch.setattr(validation.compare.finite_element_positions, "solve_drive", forbidden)
+    monkeypatch.setattr(validation.compare.derived_coefficients, "derive_coefficients", forbidden)
     again = run(tmp_path / "second")
     assert again == status
     # resumed: what was kept before the interruption carries the run to the same bytes

@@ -61,12 +61,12 @@ def execute(arguments: argparse.Namespace) -> int:
 
     from threadpoolctl import threadpool_limits
 
-    from ltca.drive_file import load_drive
+    from ltca.drive.units import parse_quantity
     from ltca.errors import CycloError
-    from ltca.units import parse_quantity
-    from validation.finite_element_positions import Settings
-    from validation.headline import write_files
-    from validation.report import write_report
+    from ltca.reading.drive_file import load_drive
+    from validation.compare.finite_element_positions import Settings
+    from validation.report.headline import write_files
+    from validation.report.page import write_report
     from validation.rows import failed_rows
     from validation.study import plan_study, run_study
 
@@ -105,7 +105,7 @@ def _angle(angle: float | None) -> str:
 
 
 def _print_headline(study: Study) -> None:
-    from validation.headline import headline
+    from validation.report.headline import headline
 
     head = headline(study)
     print(f"{'against full FE':<14}{'load':>12}{'pressure':>12}{'wheel angle':>14}")
@@ -123,7 +123,7 @@ def _print_headline(study: Study) -> None:
 
 def _print_costs(study: Study) -> None:
     """Costs stay out of the report: it shall not depend on the machine or on what was kept."""
-    from validation.costs import measure_costs
+    from validation.report.costs import measure_costs
 
     costs = measure_costs(study)
     cheaper = ", ".join(

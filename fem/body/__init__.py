@@ -1,0 +1,12 @@
+"""One meshed body: elasticity, its boundary zones, its compliance, its stresses.
+
+Modules in the order data passes:
+
+============  ============================================================
+elasticity    Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
+surface       Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
+condensation  Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
+free_body     Datum of a floating body: its displacement relative to the best-fit rigid motion of one boundary
+stress        Stress recovery: from nodal displacements to nodal Cauchy stresses
+============  ============================================================
+"""

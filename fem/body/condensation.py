@@ -1,0 +1,229 @@
+r"""Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them.
+
+With stiffness K and m load shapes B (forces for a unit of each contact unknown) the contact needs only
+:math:`S = B^T K^{-1} B`. A solve for each column of B costs far more than the factorisation itself; instead
+the loads are put behind the stiffness,
+
+.. math:: \begin{pmatrix} K & B \\ B^T & 0 \end{pmatrix} = L U, \qquad L_{BB} U_{BB} = -B^T K^{-1} B,
+
+and S is read from the trailing block of the factors. A contact zone is local, so its columns fill only the
+path of its nodes to the root of the elimination tree. Nothing pivots: K is positive definite and the Schur
+complement negative definite.
+
+A free body is fixed at three unknowns that just hold it and its loads are balanced by body forces spread
+over the area, so that the fixed unknowns carry nothing; its displacement is reported with the area mean of
+its rigid motion removed, which does not depend on the choice of those unknowns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from fem.body.elasticity import area_loads, rigid_modes
+from fem.mesh.body_mesh import BodyMesh, IntArray
+
+FloatArray = NDArray[np.float64]
+
+SYMMETRIC = {"SymmetricMode": True, "Equil": False}
+# Any diagonal above the sum of a row keeps the proxy of the node graph positive definite.
+PROXY_DIAGONAL = 200.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CondensedBody:
+    """A body as its contact sees it.
+
+    Attributes
+    ----------
+    compliance : array, shape (m, m)
+        Displacement measured by load shape i for a unit of load shape j, symmetric, positive semidefinite; of
+        a free body with area-mean rigid motion removed and loads balanced by body forces.
+    loads : csc_matrix, shape (unknowns, m)
+        Nodal forces of each unit load, N.
+    resultants : array, shape (3, m)
+        Force in x, in y (N) and moment (N·mm) about the centre of each unit load.
+    """
+
+    compliance: FloatArray
+    loads: sp.csc_matrix
+    resultants: FloatArray
+    _factor: BorderedFactor
+    _kept: IntArray
+    _modes: FloatArray | None
+    _area: FloatArray | None
+    _trailing: FloatArray
+
+    def displacement(self, amounts: FloatArray) -> FloatArray:
+        """Return the nodal displacement under amounts of the unit loads.
+
+        Parameters
+        ----------
+        amounts : array, shape (m,) or (m, k)
+            Amount of each load shape; k load cases.
+
+        Returns
+        -------
+        array, shape (unknowns,) or (unknowns, k)
+            mm; for a free body relative to its area-mean rigid motion.
+        """
+        amounts = np.asarray(amounts, dtype=float)
+        columns = amounts[:, None] if amounts.ndim == 1 else amounts
+        force = self.loads @ columns
+        full = columns
+        if self._modes is not None and self._area is not None:
+            balance = _balance(self._modes, self._area, self._modes.T @ force)
+            force = force - self._area @ balance
+            full = np.vstack([columns, -balance])
+        # The loads' own displacement as right-hand side makes the multipliers vanish: what is left is K⁻¹ f.
+        right = np.vstack([force[self._kept], self._trailing @ full])
+        found = self._factor.solve(right)[: len(self._kept)]
+        result = np.zeros((self.loads.shape[0], columns.shape[1]))
+        result[self._kept] = found
+        if self._modes is not None and self._area is not None:
+            result -= self._modes @ _balance(self._modes, self._area, self._area.T @ result)
+        return result[:, 0] if amounts.ndim == 1 else result
+
+
+def _balance(modes: FloatArray, area: FloatArray, resultant: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.solve(modes.T @ area, resultant))
+
+
+def order_nodes(body: BodyMesh) -> IntArray:
+    """Return an elimination order of the nodes that keeps the factor sparse.
+
+    Nested dissection by METIS where the extra ``fast`` is installed, else minimum degree of the node graph,
+    which SuperLU finds while it factorises a scalar matrix of that graph.
+    """
+    mesh = body.mesh
+    corners = np.vstack([mesh.t, mesh.nvertices + mesh.t2f]) if body.order == 2 else mesh.t
+    corners = corners.astype(np.int32)
+    local = len(corners)
+    rows = np.repeat(corners, local, axis=0).ravel()
+    columns = np.tile(corners, (local, 1)).ravel()
+    count = body.node_count
+    graph = sp.csc_matrix((np.ones(rows.size), (rows, columns)), shape=(count, count))
+    try:
+        import pymetis
+    except ImportError:
+        graph.data[:] = -1.0
+        graph.setdiag(PROXY_DIAGONAL)
+        factor = spla.splu(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+        return np.argsort(factor.perm_c).astype(np.int64)
+    graph.setdiag(0.0)
+    graph.eliminate_zeros()
+    order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
+    return np.asarray(order, dtype=np.int64)
+
+
+def statically_determinate(body: BodyMesh, loads: sp.csc_matrix) -> IntArray:
+    """Return three unknowns that hold a free body without straining it, at nodes far from the loads."""
+    places = body.mesh.doflocs.T
+    loaded = np.unique(loads.nonzero()[0] // 2)
+    away, _ = cKDTree(places[loaded]).query(places) if len(loaded) else (np.ones(len(places)), None)
+    first = int(np.argmax(away))
+    # A load on a held unknown would vanish: the second node, too, keeps clear of the loads.
+    span = np.linalg.norm(places - places[first], axis=1)
+    second = int(np.argmax(np.minimum(span, away) * (away > 0.0)))
+    direction = places[second] - places[first]
+    across = 1 if abs(direction[0]) >= abs(direction[1]) else 0
+    return np.array([2 * first, 2 * first + 1, 2 * second + across])
+
+
+def condense_body(
+    body: BodyMesh,
+    stiffness: sp.csc_matrix,
+    loads: sp.spmatrix,
+    *,
+    fixed: IntArray | None = None,
+    centre: complex = 0j,
+) -> CondensedBody:
+    """Factorise a body and condense it to its load shapes.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        The mesh.
+    stiffness : csc_matrix, shape (unknowns, unknowns)
+        From `fem.body.elasticity.assemble_stiffness`.
+    loads : sparse matrix, shape (unknowns, m)
+        Nodal forces of each unit load; linearly independent columns, none of them zero.
+    fixed : array of int, optional
+        Unknowns held at zero; without them the body is free and its loads are balanced by body forces.
+    centre : complex
+        Centre for moments and the rotation of a free body, mm.
+
+    Returns
+    -------
+    CondensedBody
+        Compliance and factor.
+    """
+    loads = sp.csc_matrix(loads)
+    count, number = loads.shape
+    order = order_nodes(body)
+    free = fixed is None
+    modes = rigid_modes(body, centre)
+    area = area_loads(body, centre) if free else None
+    held = np.zeros(count, dtype=bool)
+    held[statically_determinate(body, loads) if fixed is None else fixed] = True
+    unknowns = (2 * order[:, None] + np.arange(2)).reshape(-1)
+    kept = unknowns[~held[unknowns]]
+    trailing = loads if area is None else sp.hstack([loads, sp.csc_matrix(area)], format="csc")
+    schur, factor = _factorise(stiffness, trailing, kept)
+    resultants = np.asarray(modes.T @ loads)
+    compliance = schur
+    if area is not None:
+        balance = _balance(modes, area, resultants)
+        transform = np.vstack([np.eye(number), -balance])
+        compliance = transform.T @ schur @ transform
+    return CondensedBody(
+        compliance=0.5 * (compliance + compliance.T),
+        loads=loads,
+        resultants=resultants,
+        _factor=factor,
+        _kept=kept,
+        _modes=modes if free else None,
+        _area=area,
+        _trailing=schur,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BorderedFactor:
+    """Factors L D Lᵀ of a bordered matrix.
+
+    Attributes
+    ----------
+    lower : csc_matrix
+        L, unit lower triangular.
+    diagonal : array
+        D.
+    """
+
+    lower: sp.csc_matrix
+    diagonal: FloatArray
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Return the solution of L D Lᵀ x = right, shape as right."""
+        forward = spla.spsolve_triangular(self.lower, right, lower=True, unit_diagonal=True)
+        scaled = forward / self.diagonal[:, None]
+        return np.asarray(spla.spsolve_triangular(self.lower.T, scaled, lower=False, unit_diagonal=True))
+
+
+def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -> tuple[FloatArray, BorderedFactor]:
+    """Return Bᵀ K⁻¹ B over the kept unknowns and the factor of the bordered matrix."""
+    inner = stiffness.tocsr()[kept].tocsc()[:, kept]
+    border = loads.tocsr()[kept]
+    count = len(kept)
+    matrix = sp.vstack([sp.hstack([inner, border]), sp.hstack([border.T, sp.csr_matrix((loads.shape[1],) * 2)])])
+    factor = spla.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    # SuperLU's object would keep three copies of the factors alive; one of them holds all there is to know.
+    lower, diagonal = factor.L, factor.U.diagonal()
+    trailing = lower[count:, count:].toarray()
+    schur = -(trailing * diagonal[count:]) @ trailing.T
+    return schur, BorderedFactor(lower=lower, diagonal=diagonal)

@@ -1,0 +1,214 @@
+r"""Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy.
+
+Unknowns are numbered node by node: component c of node k is unknown 2k + c, with the nodes of
+`fem.mesh.body_mesh.BodyMesh` (vertices first, then mid-side nodes by facet), which is also the numbering of
+scikit-fem's ``ElementVector(ElementTriP2())``. Forces are those on the full thickness, in N.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
+from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+from fem.mesh.body_mesh import BodyMesh, IntArray
+from ltca.drive.parts import Material
+
+FloatArray = NDArray[np.float64]
+PlaneState = Literal["strain", "stress"]
+
+# Stiffness of straight quadratic triangles is a polynomial of degree 2 in the reference coordinates, exact with
+# three points; curved ones have a rational integrand, for which six points leave less than the curve itself.
+STRAIGHT_QUADRATURE = 2
+CURVED_QUADRATURE = 4
+# Relative offset of a mid-side node from the middle of its edge above which an element counts as curved.
+CURVED_OFFSET = 1e-9
+
+
+def plane_lame_parameters(material: Material, state: PlaneState) -> tuple[float, float]:
+    """Return Lamé's λ and μ of the plane problem, MPa.
+
+    Parameters
+    ----------
+    material : Material
+        E and ν.
+    state : {"strain", "stress"}
+        Plane strain, or plane stress with λ replaced by 2λμ/(λ + 2μ).
+
+    Returns
+    -------
+    lam, mu : float
+        MPa.
+    """
+    lam, mu = lame_parameters(material.youngs_modulus, material.poisson_ratio)
+    if state == "stress":
+        lam = 2.0 * lam * mu / (lam + 2.0 * mu)
+    return float(lam), float(mu)
+
+
+def _vector_element(body: BodyMesh) -> ElementVector:
+    return ElementVector(ElementTriP2() if body.order == 2 else ElementTriP1())
+
+
+def curved_elements(body: BodyMesh) -> NDArray[np.bool_]:
+    """Return which elements have a mid-side node off the middle of its edge, shape (elements,)."""
+    mesh = body.mesh
+    if not isinstance(mesh, MeshTri2):
+        return np.zeros(mesh.t.shape[1], dtype=bool)
+    ends = mesh.doflocs[:, mesh.facets]
+    middles = 0.5 * (ends[:, 0] + ends[:, 1])
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=0)
+    offset = np.linalg.norm(mesh.doflocs[:, mesh.nvertices :] - middles, axis=0)
+    curved = offset > CURVED_OFFSET * length
+    return np.asarray(np.any(curved[mesh.t2f], axis=0))
+
+
+def assemble_stiffness(
+    body: BodyMesh, material: Material, *, thickness: float, state: PlaneState = "strain"
+) -> sp.csc_matrix:
+    """Assemble the stiffness matrix.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        Mesh of order 1 or 2.
+    material : Material
+        Of the body.
+    thickness : float
+        mm.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+
+    Returns
+    -------
+    csc_matrix, shape (2 nodes, 2 nodes)
+        N/mm, symmetric, with the three rigid modes as null space.
+    """
+    lam, mu = plane_lame_parameters(material, state)
+    form = linear_elasticity(thickness * lam, thickness * mu)
+    element = _vector_element(body)
+    curved = curved_elements(body)
+    # Curved elements cost twice as many points; they lie along the boundary only.
+    total: sp.csc_matrix | None = None
+    for elements, order in (
+        (np.flatnonzero(~curved), STRAIGHT_QUADRATURE),
+        (np.flatnonzero(curved), CURVED_QUADRATURE),
+    ):
+        if len(elements):
+            part = form.assemble(Basis(body.mesh, element, intorder=order, elements=elements))
+            total = part.tocsc() if total is None else total + part.tocsc()
+    assert total is not None
+    return total
+
+
+def rigid_modes(body: BodyMesh, centre: complex = 0j) -> FloatArray:
+    """Return nodal displacements of unit translations in x and y and of a unit rotation about a centre.
+
+    Returns
+    -------
+    array, shape (2 nodes, 3)
+        mm for mm, mm for mm, mm for rad.
+    """
+    x, y = body.mesh.doflocs
+    modes = np.zeros((2 * len(x), 3))
+    modes[0::2, 0] = 1.0
+    modes[1::2, 1] = 1.0
+    modes[0::2, 2] = -(y - centre.imag)
+    modes[1::2, 2] = x - centre.real
+    return modes
+
+
+def area_loads(body: BodyMesh, centre: complex = 0j) -> FloatArray:
+    r"""Return nodal loads of body forces shaped like the rigid modes: :math:`\int N_i r_j\,dA`.
+
+    Their transpose measures the area mean of a displacement (up to the Gram matrix
+    ``rigid_modes(body).T @ area_loads(body)``); they also spread a reaction evenly over the body.
+
+    Returns
+    -------
+    array, shape (2 nodes, 3)
+        mm², mm², mm³ for each unit of body force.
+    """
+    basis = Basis(body.mesh, _vector_element(body), intorder=CURVED_QUADRATURE)
+
+    def translation_x(v, w):  # type: ignore[no-untyped-def]
+        return v[0]
+
+    def translation_y(v, w):  # type: ignore[no-untyped-def]
+        return v[1]
+
+    def rotation(v, w):  # type: ignore[no-untyped-def]
+        return -(w.x[1] - centre.imag) * v[0] + (w.x[0] - centre.real) * v[1]
+
+    return np.column_stack([LinearForm(form).assemble(basis) for form in (translation_x, translation_y, rotation)])
+
+
+def unknowns_of_nodes(nodes: IntArray) -> IntArray:
+    """Return the unknowns of nodes, both components of a node side by side, shape (2 nodes,)."""
+    return np.asarray(2 * np.asarray(nodes)[..., None] + np.arange(2)).reshape(-1)
+
+
+def unknowns_of_boundary(body: BodyMesh, name: str) -> IntArray:
+    """Return all displacement unknowns on a named boundary.
+
+    Raises
+    ------
+    MeshError
+        When the mesh has no such boundary.
+    """
+    facets = body.require_boundary(name)
+    nodes = np.unique(body.mesh.facets[:, facets])
+    if body.order == 2:
+        nodes = np.concatenate([nodes, body.mesh.nvertices + facets])
+    return unknowns_of_nodes(nodes)
+
+
+def strain_energy(stiffness: sp.csc_matrix, displacement: FloatArray) -> float:
+    """Return ½ uᵀKu, N·mm, of nodal displacements of any shape that ravels to node-by-node order."""
+    u = np.asarray(displacement).reshape(-1)
+    return float(0.5 * u @ (stiffness @ u))
+
+
+def traction_load(
+    body: BodyMesh,
+    boundary: str,
+    traction: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]],
+    *,
+    thickness: float,
+) -> FloatArray:
+    """Return nodal forces of a traction on a named boundary.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        The mesh.
+    boundary : str
+        Name of the boundary.
+    traction : callable
+        Takes places (x, y) and outward normals, arrays of shape (2, …) each, mm; returns tx, ty, MPa.
+    thickness : float
+        mm.
+
+    Returns
+    -------
+    array, shape (2 nodes,)
+        N.
+
+    Raises
+    ------
+    MeshError
+        When the mesh has no such boundary.
+    """
+    facets = body.require_boundary(boundary)
+    basis = FacetBasis(body.mesh, _vector_element(body), facets=facets, intorder=2 * CURVED_QUADRATURE)
+
+    def work(v, w):  # type: ignore[no-untyped-def]
+        tx, ty = traction(w.x, w.n)
+        return thickness * (tx * v[0] + ty * v[1])
+
+    return np.asarray(LinearForm(work).assemble(basis))

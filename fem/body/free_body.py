@@ -1,0 +1,103 @@
+r"""Datum of a floating body: its displacement relative to the best-fit rigid motion of one boundary.
+
+The motion q that fits the displacement u of the boundary best, in the mean square along its length, solves
+:math:`G q = W^T u` with :math:`W_i = \int N_i r\,ds` for the rigid modes r and :math:`G = \int r^T r\,ds`. An
+approach relative to it is :math:`B^T u - R^T G^{-1} W^T u`, R being the resultants of the patches B. The matrix of
+approaches is symmetric when the resultant of a unit load is balanced by the forces dual to that datum,
+:math:`-W G^{-1} R`, spread over the boundary; loads in equilibrium do not notice by what each of them was balanced.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem.body.surface import GAUSS_POINTS, GAUSS_WEIGHTS, quadratic_shapes, quadratic_slopes
+from fem.mesh.body_mesh import BodyMesh
+
+FloatArray = NDArray[np.float64]
+
+
+def boundary_motion_loads(body: BodyMesh, boundary: str, centre: complex = 0j) -> sp.csc_matrix:
+    r"""Return W: nodal loads shaped like the rigid modes along a boundary, :math:`\int N_i r\,ds`.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        Quadratic mesh.
+    boundary : str
+        Name of a closed boundary.
+    centre : complex
+        Centre of the rotation, mm.
+
+    Returns
+    -------
+    csc_matrix, shape (unknowns, 3)
+        mm, mm, mm²; their transpose times a displacement gives its weighted means over the boundary.
+
+    Raises
+    ------
+    MeshError
+        When the mesh has no such boundary.
+    """
+    nodes = body.boundary_nodes(boundary)
+    x, y = body.mesh.doflocs
+    places = x[nodes] + 1j * y[nodes]
+    shapes = quadratic_shapes(GAUSS_POINTS)
+    points = places @ shapes
+    length = np.abs(places @ quadratic_slopes(GAUSS_POINTS)) * GAUSS_WEIGHTS
+    lever = points - centre
+    columns = []
+    for mode_x, mode_y in (
+        (np.ones_like(length), np.zeros_like(length)),
+        (np.zeros_like(length), np.ones_like(length)),
+        (-lever.imag, lever.real),
+    ):
+        load = np.zeros(body.unknowns)
+        np.add.at(load, 2 * nodes, (length * mode_x) @ shapes.T)
+        np.add.at(load, 2 * nodes + 1, (length * mode_y) @ shapes.T)
+        columns.append(load)
+    return sp.csc_matrix(np.column_stack(columns))
+
+
+def refer_to_boundary(compliance: FloatArray, resultants: FloatArray, gram: FloatArray) -> FloatArray:
+    """Return approaches relative to the best-fit rigid motion of a boundary.
+
+    Parameters
+    ----------
+    compliance : array, shape (m + 3, m + 3)
+        Of m patches followed by the three loads W of the boundary, in any datum, each load balanced anyhow.
+    resultants : array, shape (3, m)
+        R, of the patches.
+    gram : array, shape (3, 3)
+        G, symmetric.
+
+    Returns
+    -------
+    array, shape (m, m)
+        Symmetric if `compliance` is, positive semidefinite.
+    """
+    motion = -np.linalg.solve(gram, resultants)
+    transform = np.vstack([np.eye(resultants.shape[1]), motion])
+    return np.asarray(transform.T @ compliance @ transform)
+
+
+def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> FloatArray:
+    """Return approaches with everything removed that rigid motions, or resultants, can change.
+
+    Parameters
+    ----------
+    approach : array, shape (m, m)
+        In any datum.
+    resultants : array, shape (3, m)
+        Of the unit loads.
+
+    Returns
+    -------
+    array, shape (m, m)
+        Q A Q with Q the projection onto loads without resultant; equal for all datums.
+    """
+    basis, _ = np.linalg.qr(resultants.T)
+    left = approach - basis @ (basis.T @ approach)
+    return np.asarray(left - (left @ basis) @ basis.T)

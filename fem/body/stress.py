@@ -1,0 +1,115 @@
+r"""Stress recovery: from nodal displacements to nodal Cauchy stresses.
+
+The strain of a quadratic triangle is most accurate at the three points of its degree-2 rule. The linear
+function through those values is taken to the nodes and averaged there, weighted by area (Zienkiewicz &
+Taylor, *The Finite Element Method*, 14: superconvergent points). At a contact read the pressure from the
+contact unknowns instead: there the stress changes over less than an element.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
+
+from fem.body.elasticity import PlaneState
+from fem.mesh.body_mesh import BodyMesh
+from fem.mesh.mesh_file import element_nodes
+from ltca.drive.parts import Material
+
+FloatArray = NDArray[np.float64]
+
+SAMPLES = (np.array([[1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0, np.full(3, 1.0 / 6.0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stress:
+    """Cauchy stress at points, MPa, tension positive.
+
+    Attributes
+    ----------
+    xx, yy, xy, zz : array
+        Components; zz = ν(xx + yy) in plane strain, 0 in plane stress.
+    """
+
+    xx: FloatArray
+    yy: FloatArray
+    xy: FloatArray
+    zz: FloatArray
+
+    @property
+    def principal(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Principal stresses, largest first, MPa."""
+        middle, radius = 0.5 * (self.xx + self.yy), np.hypot(0.5 * (self.xx - self.yy), self.xy)
+        ordered = np.sort(np.stack([middle + radius, middle - radius, self.zz]), axis=0)
+        return ordered[2], ordered[1], ordered[0]
+
+    @property
+    def maximum_shear(self) -> FloatArray:
+        """Half the difference of the outer principal stresses, MPa."""
+        largest, _, smallest = self.principal
+        return np.asarray(0.5 * (largest - smallest))
+
+    @property
+    def von_mises(self) -> FloatArray:
+        """Equivalent stress of von Mises, MPa."""
+        differences = (self.xx - self.yy) ** 2 + (self.yy - self.zz) ** 2 + (self.zz - self.xx) ** 2
+        return np.sqrt(0.5 * differences + 3.0 * self.xy**2)
+
+
+def stress_of_strain(
+    exx: FloatArray, eyy: FloatArray, exy: FloatArray, material: Material, state: PlaneState = "strain"
+) -> Stress:
+    """Return the stress of plane strains (exy = ½γ) by Hooke's law."""
+    modulus, nu = material.youngs_modulus, material.poisson_ratio
+    mu = 0.5 * modulus / (1.0 + nu)
+    lam = modulus * nu / (1.0 - nu**2) if state == "stress" else modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    volume = exx + eyy
+    xx, yy = lam * volume + 2.0 * mu * exx, lam * volume + 2.0 * mu * eyy
+    return Stress(xx=xx, yy=yy, xy=2.0 * mu * exy, zz=nu * (xx + yy) if state == "strain" else np.zeros_like(xx))
+
+
+def recover_stress(
+    body: BodyMesh, displacement: FloatArray, material: Material, *, state: PlaneState = "strain"
+) -> Stress:
+    """Return averaged stresses at the nodes.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        The mesh.
+    displacement : array, shape (2 nodes,)
+        Node by node, mm.
+    material : Material
+        Of the body.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+
+    Returns
+    -------
+    Stress
+        Arrays of shape (nodes,).
+    """
+    order = body.order
+    basis = Basis(body.mesh, ElementVector(ElementTriP2() if order == 2 else ElementTriP1()), quadrature=SAMPLES)
+    gradient = np.asarray(basis.interpolate(displacement).grad)
+    sampled = stress_of_strain(gradient[0, 0], gradient[1, 1], 0.5 * (gradient[0, 1] + gradient[1, 0]), material, state)
+    x, y = SAMPLES[0]
+    corners = np.array([[0, 1, 0, 0.5, 0.5, 0.0], [0, 0, 1, 0.0, 0.5, 0.5]])[:, : 6 if order == 2 else 3]
+    # Linear through three samples: values at nodes = [1 ξ η]_nodes [1 ξ η]_samples⁻¹ samples.
+    spread = np.column_stack([np.ones(corners.shape[1]), corners.T]) @ np.linalg.inv(
+        np.column_stack([np.ones(3), x, y])
+    )
+    nodes = element_nodes(body)
+    weight = np.repeat(np.abs(np.asarray(basis.dx)).sum(axis=1)[:, None], nodes.shape[1], axis=1).ravel()
+    total = np.bincount(nodes.ravel(), weights=weight, minlength=body.node_count)
+
+    def averaged(values: FloatArray) -> FloatArray:
+        at_nodes = (values @ spread.T).ravel()
+        return np.asarray(np.bincount(nodes.ravel(), weights=weight * at_nodes, minlength=body.node_count) / total)
+
+    xx, yy, xy = averaged(sampled.xx), averaged(sampled.yy), averaged(sampled.xy)
+    nu = material.poisson_ratio
+    return Stress(xx=xx, yy=yy, xy=xy, zz=nu * (xx + yy) if state == "strain" else np.zeros_like(xx))

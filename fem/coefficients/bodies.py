@@ -1,0 +1,347 @@
+"""Normal approach influence coefficients of the bodies of a drive, derived by finite elements.
+
+Every approach is the pressure-weighted mean over a patch of the displacement into the body along the inward
+normal at the middle of the patch, for each newton on a patch (`fem.coefficients.patch_loads`). The patches are far wider
+than a contact: the near field of a contact is known in closed form, and what finite elements add to it is
+smooth in the place and does not depend on the width. So a mesh far coarser than that of a contact serves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem.body.condensation import condense_body
+from fem.body.elasticity import PlaneState, assemble_stiffness, rigid_modes, unknowns_of_boundary
+from fem.body.free_body import boundary_motion_loads, project_rigid_motions, refer_to_boundary
+from fem.coefficients.patch_loads import patch_loads
+from fem.coefficients.stations import RACE_ANGLES, DiscStations, patch_half_width
+from fem.errors import MeshError
+from fem.mesh.body_mesh import BodyMesh
+from fem.mesh.element_size import Refinement
+from fem.mesh.memory_need import require_memory, solution_memory
+from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
+from fem.shapes import CircleShape, DiscShape, RingShape, Shape
+from ltca.drive.parts import Material
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+ComplexArray = NDArray[np.complex128]
+
+# Element edge at a patch for its half-width, and growth of the edge by distance, on a mesh of size 1. Measured on
+# the paper's disc: 0.3 % of the largest entry between this size and twice it, 0.05 % between it and half of it.
+EDGE_SHARE = 0.4
+GROWTH = 0.4
+# Pins, rollers and race are small: a mesh of half the size costs nothing.
+ROUND_SIZE = 0.5
+# Elements stay small to this distance from the middle of a patch, in half-widths.
+ZONE = 1.2
+# Every 16th station also gets a patch twice as wide: both together show the closed form of the near field.
+WIDE_STEP = 16
+WIDE_RATIO = 2.0
+# Stations whose displacement is solved for once more, to measure reciprocity by another way than the matrix.
+SAMPLED = 12
+# Faster growth distorts triangles (smallest angle below 15° on one of six random discs at 1.0).
+LARGEST_GROWTH = 0.7
+# Beyond this the edges are longer than the patches are wide.
+LARGEST_SIZE = 4.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DerivedDisc:
+    """Coefficients of the disc.
+
+    Attributes
+    ----------
+    approach : array, shape (stations, stations)
+        mm/N, relative to the best-fit rigid motion of the bore, symmetric positive semidefinite.
+    resultants : array, shape (3, stations)
+        Force in x, in y (N) and moment (N·mm) of each unit load on the mesh.
+    wide_stations : array of int, shape (w,)
+        Stations that also carry a patch twice as wide.
+    wide_approach : array, shape (w,)
+        Approach of the wide patch by its own load, mm/N.
+    reciprocity : float
+        Largest difference of "displacement at i by j" and "at j by i", of the largest approach.
+    rigid_residual : float
+        What is left of rigid motions of the disc once that of the bore is removed, and of the difference
+        between two datums once rigid motions are projected out; the larger of both, relative.
+    unknowns : int
+        Of the mesh.
+    """
+
+    approach: FloatArray
+    resultants: FloatArray
+    wide_stations: IntArray
+    wide_approach: FloatArray
+    reciprocity: float
+    rigid_residual: float
+    unknowns: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DerivedRound:
+    """Coefficients of a pin, a roller or the inner race.
+
+    Attributes
+    ----------
+    approach : array
+        mm/N; shape (1, 1) for a pin, (2, 2) for a roller (inner, outer), (angles,) for the race.
+    half_width : float
+        Half-width of the patches, mm.
+    wide_approach : float
+        Approach of a patch twice as wide by its own load, mm/N.
+    reciprocity : float
+        Relative, as for the disc.
+    mirror : float
+        Largest difference of "at +φ" and "at −φ" on the race before their mean is taken, of the largest approach;
+        that of both ends of a roller; an error of the mesh. 0 for a pin.
+    unknowns : int
+        Of the mesh.
+    """
+
+    approach: FloatArray
+    half_width: float
+    wide_approach: float
+    reciprocity: float
+    mirror: float
+    unknowns: int
+
+
+def _refinements(points: ComplexArray, half_width: float, size: float) -> list[Refinement]:
+    edge = EDGE_SHARE * size * half_width
+    return [Refinement(float(point.real), float(point.imag), edge, ZONE * half_width) for point in points]
+
+
+def require_element_size(size: float, largest: float = LARGEST_SIZE) -> None:
+    """Check a multiple of the default element edge.
+
+    Raises
+    ------
+    MeshError
+        When it is not positive or above the largest.
+    """
+    if not (np.isfinite(size) and 0.0 < size <= largest):
+        raise MeshError(
+            f"element size {size:g}: must be greater than 0 and at most {largest:g} (a multiple of the default edge)"
+        )
+
+
+def _growth(size: float) -> float:
+    return min(GROWTH * size, LARGEST_GROWTH)
+
+
+def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> None:
+    """Check that the disc's mesh and solution will fit into memory.
+
+    Raises
+    ------
+    MemoryLimitError
+        With the numbers.
+    """
+    refinements = _refinements(stations.points, float(stations.half_width.min()), size)
+    coarse = default_coarse_size(shape, size)
+    unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=_growth(size))
+    require_memory(unknowns, solution_memory(unknowns), "the disc for its influence coefficients")
+
+
+def mesh_disc_for_stations(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> BodyMesh:
+    """Mesh a disc for its stations.
+
+    Parameters
+    ----------
+    shape : DiscShape
+        The disc.
+    stations : DiscStations
+        Places of the patches.
+    size : float
+        Multiple of all element edges and of their growth.
+
+    Raises
+    ------
+    MeshError
+        When the size is out of bounds or meshing fails.
+    MemoryLimitError
+        When mesh and solution would not fit into memory.
+    """
+    require_element_size(size)
+    require_disc_memory(shape, stations, size)
+    refinements = _refinements(stations.points, float(stations.half_width.min()), size)
+    return mesh_disc(shape, refinements, coarse_size=default_coarse_size(shape, size), growth=_growth(size))
+
+
+def derive_disc(
+    shape: DiscShape,
+    stations: DiscStations,
+    material: Material,
+    *,
+    thickness: float,
+    state: PlaneState = "strain",
+    size: float = 1.0,
+) -> DerivedDisc:
+    """Derive the coefficients of the disc, all contacts coupled.
+
+    Parameters
+    ----------
+    shape : DiscShape
+        The disc.
+    stations : DiscStations
+        Places of the patches.
+    material : Material
+        Of the disc.
+    thickness : float
+        mm.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+    size : float
+        Multiple of the element edges.
+
+    Returns
+    -------
+    DerivedDisc
+        Coefficients.
+
+    Raises
+    ------
+    MeshError
+        When the size is out of bounds or meshing fails.
+    MemoryLimitError
+        When mesh and solution would not fit into memory.
+    """
+    body = mesh_disc_for_stations(shape, stations, size)
+    count = stations.count
+    wide = np.arange(0, count, WIDE_STEP)
+    patches, wide_patches = [], []
+    for index, curve in enumerate(shape.curves):
+        own = np.flatnonzero(stations.boundary == index)
+        patches.append(patch_loads(body, curve, stations.parameter[own], stations.half_width[own]))
+        also = wide[stations.boundary[wide] == index]
+        if len(also):
+            width = WIDE_RATIO * stations.half_width[also]
+            wide_patches.append(patch_loads(body, curve, stations.parameter[also], width))
+    motions = boundary_motion_loads(body, "bore")
+    loads = sp.hstack([*patches, *wide_patches, motions], format="csc")
+    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+    condensed = condense_body(body, stiffness, loads)
+    modes = rigid_modes(body)
+    gram = np.asarray(modes.T @ motions)
+    resultants = condensed.resultants[:, :-3]
+    referred = refer_to_boundary(condensed.compliance, resultants, 0.5 * (gram + gram.T))
+    approach, own_resultants = referred[:count, :count], resultants[:, :count]
+    diagonal = np.diag(referred)[count:]
+
+    sampled = np.unique(np.linspace(0, count - 1, SAMPLED).astype(int))
+    displacement = condensed.displacement(np.eye(loads.shape[1])[:, sampled])
+    measured = loads[:, :count].T @ displacement
+    reciprocity = np.max(np.abs(measured - condensed.compliance[sampled, :count].T)) / np.max(np.abs(approach))
+
+    left = loads[:, :count].T @ modes - own_resultants.T @ np.linalg.solve(gram, motions.T @ modes)
+    by_bore = project_rigid_motions(approach, own_resultants)
+    by_area = project_rigid_motions(condensed.compliance[:count, :count], own_resultants)
+    datums = np.max(np.abs(by_bore - by_area)) / np.max(np.abs(by_bore))
+    return DerivedDisc(
+        approach=0.5 * (approach + approach.T),
+        resultants=own_resultants,
+        wide_stations=wide,
+        wide_approach=diagonal,
+        reciprocity=float(reciprocity),
+        rigid_residual=float(max(np.max(np.abs(left)) / np.max(np.abs(own_resultants)), datums)),
+        unknowns=body.unknowns,
+    )
+
+
+def derive_pin(
+    shape: CircleShape, material: Material, *, thickness: float, state: PlaneState = "strain", size: float = 1.0
+) -> DerivedRound:
+    """Derive the coefficient of a wheel pin whose rigid core is held; parameters as for `derive_disc`."""
+    body, width = _mesh_round(shape, np.array([0.0]), size)
+    loads = _round_loads(body, shape, np.array([0.0]), width)
+    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+    condensed = condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, "core"))
+    return _round_result(condensed.compliance, condensed.displacement(np.eye(2)), loads, 1, width, body)
+
+
+def derive_roller(
+    shape: CircleShape, material: Material, *, thickness: float, state: PlaneState = "strain", size: float = 1.0
+) -> DerivedRound:
+    """Derive the coefficients of a free roller at two places opposite each other (inner, outer).
+
+    Area-mean displacement and mean rotation are removed, unit loads balanced by uniform body force; parameters as
+    for `derive_disc`.
+    """
+    angles = np.array([np.pi, 0.0])
+    body, width = _mesh_round(shape, angles, size)
+    loads = _round_loads(body, shape, angles, width)
+    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+    condensed = condense_body(body, stiffness, loads)
+    return _round_result(condensed.compliance, condensed.displacement(np.eye(3)), loads, 2, width, body)
+
+
+def derive_race(
+    shape: RingShape,
+    material: Material,
+    *,
+    thickness: float,
+    state: PlaneState = "strain",
+    size: float = 1.0,
+    angles: int = RACE_ANGLES,
+) -> DerivedRound:
+    """Derive the approach of the inner race at uniform angles from a unit load; its bore is held.
+
+    The ring is the same all around, so one load tells all; parameters as for `derive_disc`.
+    """
+    body, width = _mesh_round(shape, np.array([0.0]), size)
+    loads = _round_loads(body, shape, np.array([0.0]), width)
+    stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
+    condensed = condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, "inner"))
+    displacement = condensed.displacement(np.eye(2))
+    parameters = 2.0 * np.pi * np.arange(angles) / angles
+    everywhere = patch_loads(body, shape.curves[0], parameters, width)
+    measured = np.asarray(everywhere.T @ displacement[:, 0])
+    # Reciprocity and the symmetry of the ring make "at +φ" and "at −φ" one number; the mesh knows neither side.
+    mirrored = np.roll(measured[::-1], 1)
+    result = _round_result(condensed.compliance, displacement, loads, 1, width, body)
+    return DerivedRound(
+        approach=0.5 * (measured + mirrored),
+        half_width=width,
+        wide_approach=result.wide_approach,
+        reciprocity=result.reciprocity,
+        mirror=float(np.max(np.abs(measured - mirrored)) / np.max(np.abs(measured))),
+        unknowns=body.unknowns,
+    )
+
+
+def _mesh_round(shape: Shape, angles: FloatArray, size: float) -> tuple[BodyMesh, float]:
+    require_element_size(size)
+    finer = ROUND_SIZE * size
+    width = patch_half_width(shape)
+    refinements = _refinements(shape.curves[0].points(angles), width, finer)
+    coarse = default_coarse_size(shape, finer)
+    if isinstance(shape, RingShape):
+        return mesh_ring(shape, refinements, coarse_size=coarse, growth=_growth(finer)), width
+    assert isinstance(shape, CircleShape)
+    return mesh_circle(shape, refinements, coarse_size=coarse, growth=_growth(finer)), width
+
+
+def _round_loads(body: BodyMesh, shape: Shape, angles: FloatArray, width: float) -> sp.csc_matrix:
+    """Return the patches at the angles and, last, a wide one at the first angle."""
+    curve = shape.curves[0]
+    wide = patch_loads(body, curve, angles[:1], WIDE_RATIO * width)
+    return sp.hstack([patch_loads(body, curve, angles, width), wide], format="csc")
+
+
+def _round_result(
+    compliance: FloatArray, displacement: FloatArray, loads: sp.csc_matrix, places: int, width: float, body: BodyMesh
+) -> DerivedRound:
+    measured = np.asarray(loads.T @ displacement)
+    return DerivedRound(
+        approach=compliance[:places, :places],
+        half_width=width,
+        wide_approach=float(compliance[-1, -1]),
+        reciprocity=float(np.max(np.abs(measured - compliance.T)) / np.max(np.abs(compliance))),
+        mirror=float(np.ptp(np.diag(compliance)[:places]) / np.max(compliance)),
+        unknowns=body.unknowns,
+    )

@@ -1,0 +1,202 @@
+"""All influence coefficients of a drive as one labelled dataset, the content of ``coefficients.nc``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.metadata import version
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.elasticity import PlaneState
+from fem.body.free_body import project_rigid_motions
+from fem.coefficients.bodies import (
+    EDGE_SHARE,
+    GROWTH,
+    LARGEST_SIZE,
+    ROUND_SIZE,
+    WIDE_RATIO,
+    DerivedDisc,
+    DerivedRound,
+    derive_disc,
+    derive_pin,
+    derive_race,
+    derive_roller,
+    require_disc_memory,
+    require_element_size,
+)
+from fem.coefficients.stations import DiscStations, nominal_shape
+from fem.mesh.gmsh_session import load_gmsh
+from fem.shapes import DriveShapes
+from ltca.drive.parts import Drive
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+
+DATUM = (
+    "disc: relative to the best-fit rigid motion of the bore (least squares along its length), the resultant of each "
+    "unit load balanced by forces over the bore dual to that motion; wheel pin: rigid core held; roller: relative to "
+    "area-mean displacement and rotation, unit loads balanced by uniform body force; inner race: bore held"
+)
+COARSER = 2.0
+
+
+def derive_coefficients(
+    drive: Drive,
+    *,
+    case: str = "",
+    stations: float = 1.0,
+    size: float = 1.0,
+    state: PlaneState = "strain",
+    core_radius: float | None = None,
+    race_bore_radius: float | None = None,
+    keep_clearance: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> xr.Dataset:
+    """Derive the influence coefficients of all bodies of a drive.
+
+    Errors of single parts and, unless kept, clearances are left out, so that one dataset serves all cases of a drive
+    that share its `Drive.shape_fingerprint`.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    case : str
+        Name of its case, for the record.
+    stations : float
+        Multiple of the default numbers of stations (see `DiscStations.of_disc`).
+    size : float
+        Multiple of the default element edges; the convergence estimate takes a mesh of twice that.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+    core_radius, race_bore_radius : float, optional
+        Rigid core of the wheel pins and fixed bore of the race, mm; defaults of `DriveShapes.of_drive`.
+    keep_clearance : bool
+        Derive the disc with the bearing and pin-hole clearance of this case.
+    progress : callable, optional
+        Called with the name of each step before it starts.
+
+    Returns
+    -------
+    Dataset
+        As ``docs/coefficients.md`` describes it; mm/N.
+
+    Raises
+    ------
+    MeshError
+        When a parameter is out of bounds or meshing fails.
+    MemoryLimitError
+        When mesh and solution would not fit into memory.
+    """
+    require_element_size(size, LARGEST_SIZE / COARSER)
+    tell = progress or (lambda step: None)
+    nominal = nominal_shape(drive, keep_clearance=keep_clearance)
+    shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
+    places = DiscStations.of_disc(shapes.disc, stations)
+    require_disc_memory(shapes.disc, places, size)
+    materials, thickness = nominal.materials, nominal.disc.thickness
+
+    def derive(size: float, note: str) -> tuple[DerivedDisc, DerivedRound, DerivedRound, DerivedRound]:
+        tell(f"disc{note}")
+        disc = derive_disc(shapes.disc, places, materials.disc, thickness=thickness, state=state, size=size)
+        tell(f"pin, roller and race{note}")
+        pin = derive_pin(shapes.wheel_pins[0], materials.wheel_pin, thickness=thickness, state=state, size=size)
+        roller = derive_roller(shapes.rollers[0], materials.roller, thickness=thickness, state=state, size=size)
+        race = derive_race(shapes.inner_race, materials.inner_race, thickness=thickness, state=state, size=size)
+        return disc, pin, roller, race
+
+    coarse = derive(COARSER * size, ", twice the size")
+    fine = derive(size, "")
+    disc, pin, roller, race = fine
+    convergence = {
+        "disc": _difference(*(project_rigid_motions(d[0].approach, d[0].resultants) for d in (fine, coarse)))
+    }
+    for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
+        convergence[name] = _difference(own.approach, other.approach)
+    dataset = _label(places, disc, pin, roller, race)
+    dataset.attrs.update(
+        drive=drive.name,
+        case=case,
+        fingerprint=drive.shape_fingerprint(),
+        plane=state,
+        thickness=thickness,
+        core_radius=shapes.wheel_pins[0].core_radius,
+        race_bore_radius=shapes.inner_race.inner_radius,
+        datum=DATUM,
+        unknowns_disc=disc.unknowns,
+        mesh_size=f"{size:g}: edge {EDGE_SHARE * size:g} of the patch half-width, growth {GROWTH * size:g}; pins, "
+        f"rollers and race {ROUND_SIZE:g} times that",
+        convergence_estimate=max(convergence.values()),
+        **{f"convergence_{name}": value for name, value in convergence.items()},
+        symmetry=max(body.reciprocity for body in fine),
+        mirror=max(roller.mirror, race.mirror),
+        rigid_residual=disc.rigid_residual,
+        roller_radius=shapes.rollers[0].radius,
+        bearing_clearance=nominal.clearance.bearing,
+        pin_hole_clearance=nominal.clearance.pin_hole,
+        version=version("cyclo-ltca"),
+        gmsh=str(load_gmsh().__version__),
+    )
+    for body, material in (
+        ("disc", materials.disc),
+        ("pin", materials.wheel_pin),
+        ("roller", materials.roller),
+        ("race", materials.inner_race),
+    ):
+        dataset.attrs[f"{body}_youngs_modulus"] = material.youngs_modulus
+        dataset.attrs[f"{body}_poisson_ratio"] = material.poisson_ratio
+    return dataset
+
+
+def _difference(values: FloatArray, other: FloatArray) -> float:
+    return float(np.max(np.abs(values - other)) / np.max(np.abs(values)))
+
+
+def _label(
+    places: DiscStations, disc: DerivedDisc, pin: DerivedRound, roller: DerivedRound, race: DerivedRound
+) -> xr.Dataset:
+    import xarray as xr
+
+    def variable(dimensions: tuple[str, ...], values: object, unit: str, text: str) -> xr.Variable:
+        return xr.Variable(dimensions, np.asarray(values), {"units": unit, "long_name": text})
+
+    angles = 2.0 * np.pi * np.arange(len(race.approach)) / len(race.approach)
+    wide = disc.wide_stations
+    return xr.Dataset(
+        {
+            "station_boundary": variable(("station",), places.boundary, "1", "0 flank, 1 bore, 2 + k hole k"),
+            "station_parameter": variable(("station",), places.parameter, "rad", "θ of Eq. 1, or polar angle"),
+            "station_x": variable(("station",), places.points.real, "mm", "place in the disc frame"),
+            "station_y": variable(("station",), places.points.imag, "mm", "place in the disc frame"),
+            "station_normal_x": variable(("station",), places.normals.real, "1", "unit normal out of the disc"),
+            "station_normal_y": variable(("station",), places.normals.imag, "1", "unit normal out of the disc"),
+            "station_half_width": variable(("station",), places.half_width, "mm", "half-width of the patch"),
+            "disc_approach": variable(
+                ("station", "station_loaded"), disc.approach, "mm/N", "approach at a station by a newton at another"
+            ),
+            "disc_resultant": variable(
+                ("motion", "station"), disc.resultants, "N, N, N mm", "force in x, y and moment of each unit load"
+            ),
+            "wide_station": variable(("wide",), wide, "1", "stations that also carry a wider patch"),
+            "wide_half_width": variable(
+                ("wide",), WIDE_RATIO * places.half_width[wide], "mm", "half-width of the wider patch"
+            ),
+            "wide_approach": variable(("wide",), disc.wide_approach, "mm/N", "approach of the wider patch by itself"),
+            "pin_approach": variable((), pin.approach[0, 0], "mm/N", "wheel pin, load and place together"),
+            "pin_half_width": variable((), pin.half_width, "mm", "half-width of the patch"),
+            "pin_wide_approach": variable((), pin.wide_approach, "mm/N", "patch twice as wide"),
+            "roller_approach": variable(
+                ("roller_end", "roller_end_loaded"), roller.approach, "mm/N", "roller, (inner, outer)"
+            ),
+            "roller_half_width": variable(("roller_end",), [roller.half_width] * 2, "mm", "half-width of the patch"),
+            "roller_wide_approach": variable((), roller.wide_approach, "mm/N", "patch twice as wide"),
+            "race_angle": variable(("race_angle",), angles, "rad", "difference of polar angles"),
+            "race_approach": variable(("race_angle",), race.approach, "mm/N", "inner race, by a newton at angle 0"),
+            "race_half_width": variable((), race.half_width, "mm", "half-width of the patch"),
+            "race_wide_approach": variable((), race.wide_approach, "mm/N", "patch twice as wide"),
+        }
+    )

@@ -1,0 +1,192 @@
+"""Checks of a file of influence coefficients by laws that need no second computation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.free_body import project_rigid_motions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Check:
+    """One figure against its bounds.
+
+    Attributes
+    ----------
+    name : str
+        What is measured.
+    value : float
+        The figure.
+    lowest, highest : float
+        Bounds.
+    reason : str
+        Why the bounds have their size.
+    """
+
+    name: str
+    value: float
+    lowest: float
+    highest: float
+    reason: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether the figure lies between its bounds; a figure that is no number does not."""
+        return bool(self.lowest <= self.value <= self.highest)
+
+
+def near_field_unit(dataset: xr.Dataset, body: str) -> float:
+    """Return 2(1 − ν²)/(πEt) of a body (without ν in plane stress), mm/N: what the near field is a multiple of."""
+    nu = float(dataset.attrs[f"{body}_poisson_ratio"]) if dataset.attrs["plane"] == "strain" else 0.0
+    modulus, thickness = float(dataset.attrs[f"{body}_youngs_modulus"]), float(dataset.attrs["thickness"])
+    return 2.0 * (1.0 - nu**2) / (np.pi * modulus * thickness)
+
+
+def station_resultants(dataset: xr.Dataset) -> FloatArray:
+    """Return force in x, y and moment about the disc centre of a newton at each station, shape (3, stations)."""
+    point = dataset["station_x"].values + 1j * dataset["station_y"].values
+    inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
+    return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])
+
+
+def compressed_cylinder(radius: float, half_width: float) -> float:
+    r"""Return how far a cylinder yields at each of two opposite loads, relative to its centre, as multiple of the unit.
+
+    Johnson, *Contact Mechanics* (1985), Eq. 5.57: :math:`\ln(4R/b) - 1/2` at the middle of a semi-elliptic
+    pressure (both ends, each relative to the centre); the pressure-weighted mean over the patch is 1/4 less.
+    """
+    return float(np.log(4.0 * radius / half_width) - 0.75)
+
+
+def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
+    """Check a set of coefficients.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        From `derive_coefficients` or its file.
+
+    Returns
+    -------
+    tuple of Check
+        Reciprocity, definiteness, rigid bodies, closed forms, convergence.
+    """
+    return (
+        *_check_reciprocity(dataset),
+        *_check_definiteness(dataset),
+        *_check_rigid_bodies(dataset),
+        *_check_closed_forms(dataset),
+        Check(
+            name="convergence: change from a mesh of twice the size",
+            value=float(dataset.attrs["convergence_estimate"]),
+            lowest=0.0,
+            highest=1.2e-2,
+            reason="of the largest entry without rigid motions; halving the size divides it by 5 (measured; by 4 or "
+            "more with quadratic elements), so a mesh of half the size changes it by less than 0.3 %",
+        ),
+    )
+
+
+def _check_reciprocity(dataset: xr.Dataset) -> tuple[Check, ...]:
+    disc, roller = dataset["disc_approach"].values, dataset["roller_approach"].values
+    stored = max(float(np.max(np.abs(matrix - matrix.T)) / np.max(np.abs(matrix))) for matrix in (disc, roller))
+    reason = "Maxwell–Betti; a solve of this size leaves 1e-12"
+    return (
+        Check(name="symmetry of the stored matrices", value=stored, lowest=0.0, highest=1e-8, reason=reason),
+        Check(
+            name="reciprocity of displacements solved for",
+            value=float(dataset.attrs["symmetry"]),
+            lowest=0.0,
+            highest=1e-8,
+            reason=reason,
+        ),
+    )
+
+
+def _check_definiteness(dataset: xr.Dataset) -> tuple[Check, ...]:
+    disc = project_rigid_motions(dataset["disc_approach"].values, station_resultants(dataset))
+    smallest = float(np.linalg.eigvalsh(0.5 * (disc + disc.T))[3]) / near_field_unit(dataset, "disc")
+    roller = float(np.linalg.eigvalsh(dataset["roller_approach"].values)[0])
+    race = float(np.fft.rfft(dataset["race_approach"].values).real.min())
+    others = min(
+        roller / near_field_unit(dataset, "roller"),
+        race / near_field_unit(dataset, "race"),
+        float(dataset["pin_approach"]) / near_field_unit(dataset, "pin"),
+    )
+    reason = "loads in equilibrium do positive work, in units of 2(1 − ν²)/(πEt); that of a patch alone is above 1"
+    return (
+        Check(name="smallest eigenvalue, disc", value=smallest, lowest=0.1, highest=np.inf, reason=reason),
+        Check(name="smallest eigenvalue, pin, roller, race", value=others, lowest=0.1, highest=np.inf, reason=reason),
+    )
+
+
+def _check_rigid_bodies(dataset: xr.Dataset) -> tuple[Check, ...]:
+    places, mesh = station_resultants(dataset), dataset["disc_resultant"].values
+    difference = np.max(np.abs(places - mesh), axis=1) / np.max(np.abs(mesh), axis=1)
+    return (
+        Check(
+            name="rigid motions and change of datum",
+            value=float(dataset.attrs["rigid_residual"]),
+            lowest=0.0,
+            highest=1e-10,
+            reason="a rigid motion moves no station relative to the bore; balanced loads know no datum: round-off",
+        ),
+        Check(
+            name="resultants of the patches and of the stations",
+            value=float(np.max(difference)),
+            lowest=0.0,
+            highest=1e-4,
+            reason="a patch on a curved boundary acts at its station up to the cube of its width",
+        ),
+    )
+
+
+def _check_closed_forms(dataset: xr.Dataset) -> tuple[Check, ...]:
+    wide = dataset["wide_station"].values
+    own, broad = np.diag(dataset["disc_approach"].values)[wide], dataset["wide_approach"].values
+    ratio = np.log(dataset["wide_half_width"].values / dataset["station_half_width"].values[wide])
+    slopes = (own - broad) / ratio / near_field_unit(dataset, "disc")
+    round_slopes = []
+    for body in ("pin", "roller", "race"):
+        first = float(np.ravel(dataset[f"{body}_approach"].values)[0])
+        drop = first - float(dataset[f"{body}_wide_approach"])
+        round_slopes.append(drop / np.log(2.0) / near_field_unit(dataset, body))
+    roller, width = dataset["roller_approach"].values, float(dataset["roller_half_width"].values[0])
+    radius = float(dataset.attrs["roller_radius"])
+    cylinder = roller.sum(axis=1).mean() / near_field_unit(dataset, "roller") / compressed_cylinder(radius, width)
+    reason = (
+        "half-plane: the approach falls by 2(1 − ν²)/(πEt) for each ln b; walls and curvature add the square of a "
+        "tenth, some per cent of ln 2 at worst"
+    )
+    return (
+        Check(
+            name="near field, disc, worst station", value=_farthest(slopes), lowest=0.96, highest=1.04, reason=reason
+        ),
+        Check(
+            name="near field, pin, roller, race",
+            value=_farthest(np.array(round_slopes)),
+            lowest=0.96,
+            highest=1.04,
+            reason=reason,
+        ),
+        Check(
+            name="roller against the compressed cylinder",
+            value=float(cylinder),
+            lowest=0.997,
+            highest=1.003,
+            reason="Johnson's closed form of a whole cylinder; curvature under the patch adds 0.3 (b/R)² of about 4",
+        ),
+    )
+
+
+def _farthest(ratios: FloatArray) -> float:
+    return float(ratios[np.argmax(np.abs(ratios - 1.0))])

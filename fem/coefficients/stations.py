@@ -1,0 +1,135 @@
+"""Stations: the places of a disc at which influence coefficients are derived, and the patches they carry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.errors import MeshError
+from fem.shapes import Curve, DiscShape, Shape
+from ltca.drive.parts import Clearance, Drive, PlacementErrors, ProfileErrors, RollerErrors, Runout
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+ComplexArray = NDArray[np.complex128]
+
+# Error of cubic interpolation on the paper's disc, in units of 2(1 − ν²)/(πEt), of approaches of 10 to 14: with 32
+# for each lobe 0.045 in the roots and 0.005 along the working flank (with 16 0.45 and 0.05); with 32 in a hole 0.02,
+# with 16 0.2.
+FLANK_PER_LOBE = 32
+BORE = 48
+PER_HOLE = 24
+RACE_ANGLES = 96
+# Half-width of the patches against the smallest radius of curvature and the narrowest wall: what a patch of that
+# width feels of the curvature is then 0.3 (b/R)², below 0.1 % of the unit 2(1 − ν²)/(πEt) of the near field.
+PATCH_SHARE = 0.05
+# Neighbouring patches keep apart, however many stations there are.
+SPACING_SHARE = 0.4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiscStations:
+    """Stations of the disc: flank first, then bore, then the holes.
+
+    Attributes
+    ----------
+    boundary : array of int, shape (stations,)
+        0 flank, 1 bore, 2 + k hole k.
+    parameter : array, shape (stations,)
+        Parameter of the boundary curve, uniform over [0, 2π), rad.
+    points : array of complex, shape (stations,)
+        In the disc frame, mm.
+    normals : array of complex, shape (stations,)
+        Unit normals out of the disc.
+    half_width : array, shape (stations,)
+        Half-width of the patch, mm.
+    """
+
+    boundary: IntArray
+    parameter: FloatArray
+    points: ComplexArray
+    normals: ComplexArray
+    half_width: FloatArray
+
+    @classmethod
+    def of_disc(cls, shape: DiscShape, scale: float = 1.0) -> DiscStations:
+        """Return the stations of a disc.
+
+        Parameters
+        ----------
+        shape : DiscShape
+            The disc.
+        scale : float
+            Multiple of the default numbers: 32 for each lobe, 48 on the bore, 24 on each hole.
+
+        Raises
+        ------
+        MeshError
+            When the scale is out of bounds.
+        """
+        if not (np.isfinite(scale) and 0.25 <= scale <= 8.0):
+            raise MeshError(
+                f"stations {scale:g}: must be at least 0.25 and at most 8 (a multiple of the default number)"
+            )
+        width = patch_half_width(shape)
+        lobes = round(shape.flank.profile.reduction_ratio) - 1
+        numbers = [round(FLANK_PER_LOBE * scale) * lobes, round(BORE * scale)]
+        numbers += [round(PER_HOLE * scale)] * len(shape.holes)
+        parameters = []
+        for curve, number in zip(shape.curves, numbers, strict=True):
+            uniform = 2.0 * np.pi * np.arange(number) / number
+            spacing = float(np.abs(np.diff(curve.points(np.append(uniform, 2.0 * np.pi)))).min())
+            width = min(width, SPACING_SHARE * spacing)
+            parameters.append(uniform)
+        return cls(
+            boundary=np.repeat(np.arange(len(numbers)), numbers),
+            parameter=np.concatenate(parameters),
+            points=np.concatenate([curve.points(own) for curve, own in zip(shape.curves, parameters, strict=True)]),
+            normals=np.concatenate([curve.normals(own) for curve, own in zip(shape.curves, parameters, strict=True)]),
+            half_width=np.full(sum(numbers), width),
+        )
+
+    @property
+    def count(self) -> int:
+        """Number of stations."""
+        return len(self.boundary)
+
+    def resultants(self) -> FloatArray:
+        """Return force in x, y and moment about the disc centre of a newton into the disc, shape (3, stations)."""
+        inward = -self.normals
+        return np.stack([inward.real, inward.imag, (self.points.conjugate() * inward).imag])
+
+
+def smallest_radius(curves: tuple[Curve, ...]) -> float:
+    """Return the smallest radius of curvature of curves, mm."""
+    return min(
+        float(curve.curvature_radius(np.linspace(0.0, 2.0 * np.pi, 4 * curve.samples, endpoint=False)).min())
+        for curve in curves
+    )
+
+
+def patch_half_width(shape: Shape) -> float:
+    """Return the half-width of the patches of a body, mm: small against its curvature and its narrowest wall.
+
+    A rigid core is no place of contact; its curvature does not count, the wall around it does.
+    """
+    curves = tuple(curve for curve in shape.curves if curve.name not in ("core", "inner"))
+    return PATCH_SHARE * min(smallest_radius(curves), shape.narrowest_wall)
+
+
+def nominal_shape(drive: Drive, *, keep_clearance: bool = False) -> Drive:
+    """Return the drive without errors of single parts and, unless kept, without clearances.
+
+    One set of coefficients then serves all clearance cases of a drive (`Drive.shape_fingerprint`), whichever of
+    them it was derived for.
+    """
+    return replace(
+        drive,
+        clearance=drive.clearance if keep_clearance else Clearance(),
+        pin_wheel=replace(drive.pin_wheel, pin_errors=PlacementErrors()),
+        disc=replace(drive.disc, hole_errors=PlacementErrors(), profile_errors=ProfileErrors(), runout=Runout()),
+        pin_shaft=replace(drive.pin_shaft, pin_errors=PlacementErrors()),
+        crank_bearing=replace(drive.crank_bearing, roller_errors=RollerErrors()),
+    )

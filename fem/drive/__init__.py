@@ -1,0 +1,24 @@
+"""The whole drive at one crank angle: expected contacts, graded meshes, condensed model, loaded pose, results.
+
+Modules in the order data passes:
+
+=================  ============================================================
+expected_contacts  Where contacts are to be expected at a crank angle, with which load and half-width: a guess, for
+                   grading meshes
+meshes             Meshes of all bodies of a drive, graded for the contacts expected at a crank angle
+shaft_pins         Elastic shaft pins, an option: full circles whose mean displacement stands on the isotropic spring
+model              Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a
+                   pose
+condensed          Condensation of all bodies of a drive: zones on the meshes, one factorisation for each distinct
+                   mesh
+pose               Iteration of the pose: contact solved about the pose of the bodies, bodies moved there, gaps
+                   rebuilt
+grading            Where the contacts of rigid bodies lie at a given pose, how far open they are, and how to grade
+                   meshes for them
+contact_results    From contact unknowns to the numbers of each part: loads, peak pressures, half-widths, forces on
+                   the disc
+solution           Full solution of a drive at one crank angle: coarse, graded anew, fine, checked
+fields             Fields of a full solution on the nodes of every body, in the fixed frame at the loaded pose
+solution_files     Files of a full solution: ``summary.json``, ``fem.nc`` and one ``.vtu`` for each body
+=================  ============================================================
+"""

@@ -1,0 +1,271 @@
+r"""Where contacts are to be expected at a crank angle, with which load and half-width: a guess, for grading meshes.
+
+All contacts are one-sided linear springs between rigid bodies, of stiffness π E* L/8 for a line contact (a
+typical value: the approach depends on the load by a logarithm only), half of it for a roller with its two
+contacts, and k_PS for a shaft pin. The potential of disc (x, y, rotation) and wheel (rotation) is minimised.
+The guess places and sizes the small elements and may start the iteration of the pose; no result contains it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.contact.hertz import hertz_half_width
+from ltca.drive.parts import Drive, contact_modulus
+from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+# Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
+SMALLEST_LOAD_SHARE = 0.05
+# A contact open by less than this share of the largest approach may close in the real solution: refine it too.
+OPEN_MARGIN = 0.25
+APPROACH_LOGARITHM = 8.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactGroup:
+    """Contacts of one kind at one crank angle; arrays over all parts of the kind.
+
+    Attributes
+    ----------
+    load : array of float
+        Expected load, N; 0 where open.
+    half_width : array of float
+        Hertz half-width, mm, at the expected load or 5 % of the largest load, whichever is more; 0 where no
+        contact is to be expected, not even nearly.
+    direction : array of float
+        Polar angle, fixed axes, of the contact as seen from the centre of pin, roller, race or hole, rad.
+    """
+
+    load: FloatArray
+    half_width: FloatArray
+    direction: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExpectedContacts:
+    """Expected contacts of a drive at one crank angle.
+
+    Attributes
+    ----------
+    crank_angle : float
+        rad.
+    disc_x, disc_y, disc_rotation, wheel_angle : float
+        Pose of the guess: displacement of the disc from its nominal place, fixed axes, mm; rad.
+    pins : ContactGroup
+        Wheel pin against flank; direction from the pin centre.
+    flank_points : array of complex, shape (z_P,)
+        The same contacts on the flank, disc frame, mm.
+    rollers_outer, rollers_inner : ContactGroup
+        Roller against bore and race; direction from the roller centre.
+    bore_points : array of complex, shape (n_BR,)
+        Outer contacts on the bore, disc frame, mm.
+    race_points : array of complex, shape (n_BR,)
+        Inner contacts on the race, about its centre, mm.
+    holes : ContactGroup
+        Shaft pin against hole; direction from the hole centre.
+    hole_points : array of complex, shape (z_PS,)
+        The same contacts on the hole walls, disc frame, mm.
+    """
+
+    crank_angle: float
+    disc_x: float
+    disc_y: float
+    disc_rotation: float
+    wheel_angle: float
+    pins: ContactGroup
+    flank_points: ComplexArray
+    rollers_outer: ContactGroup
+    rollers_inner: ContactGroup
+    bore_points: ComplexArray
+    race_points: ComplexArray
+    holes: ContactGroup
+    hole_points: ComplexArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _RigidDrive:
+    """Approaches of all contacts of rigid bodies at a pose (x, y, disc rotation, wheel angle)."""
+
+    profile: FlankProfile
+    placement: Placement
+    crank_angle: float
+
+    def wheel_pins(self, wheel_angle: float) -> ComplexArray:
+        turn = self.crank_angle / self.placement.reduction_ratio + wheel_angle
+        return np.asarray(self.placement.wheel_pin_centres * np.exp(1j * turn))
+
+    def flank_parameters(self, pose: FloatArray) -> FloatArray:
+        centre = self.disc_centre(pose)
+        in_disc = (self.wheel_pins(pose[3]) - centre) * np.exp(-1j * pose[2])
+        count = len(self.placement.wheel_pin_radii)
+        start = self.crank_angle / self.placement.reduction_ratio + 2.0 * np.pi * np.arange(count) / count
+        return self.profile.nearest_parameter(in_disc, start)
+
+    def disc_centre(self, pose: FloatArray) -> complex:
+        return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[0], pose[1])
+
+    def roller_rays(self) -> ComplexArray:
+        return np.asarray(np.exp(1j * self.placement.roller_angles(np.asarray(self.crank_angle))))
+
+    def hole_rays(self, pose: FloatArray) -> ComplexArray:
+        """Vectors from hole centres to shaft-pin centres."""
+        centres = self.disc_centre(pose) + self.placement.hole_centres * np.exp(1j * pose[2])
+        return np.asarray(self.placement.shaft_pin_centres - centres)
+
+    def approaches(self, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return approaches (pins, rollers, holes in a row) and their gradients, shape (contacts, 4)."""
+        place, centre, turn = self.placement, self.disc_centre(pose), np.exp(1j * pose[2])
+        pins = self.wheel_pins(pose[3])
+        theta = self.flank_parameters(pose)
+        in_disc = (pins - centre) / turn
+        n = self.profile.normal(theta) * turn
+        flank = place.wheel_pin_radii - self.profile.distance(in_disc, theta)
+        flank_gradient = np.column_stack(
+            [n.real, n.imag, (n.conjugate() * 1j * (pins - centre)).real, -(n.conjugate() * 1j * pins).real]
+        )
+        d = self.roller_rays()
+        play = place.bore_radius - place.inner_race_radius - 2.0 * place.roller_radii
+        bearing = -(pose[0] * d.real + pose[1] * d.imag) - play
+        zero = np.zeros(len(d))
+        bearing_gradient = np.column_stack([-d.real, -d.imag, zero, zero])
+        ray = self.hole_rays(pose)
+        m = ray / np.abs(ray)
+        hole = np.abs(ray) + place.shaft_pin_radii - place.hole_radii
+        arm = 1j * place.hole_centres * turn
+        zero = np.zeros(len(m))
+        hole_gradient = np.column_stack([-m.real, -m.imag, -(m.conjugate() * arm).real, zero])
+        return (
+            np.concatenate([flank, bearing, hole]),
+            np.vstack([flank_gradient, bearing_gradient, hole_gradient]),
+        )
+
+
+def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:
+    """Return pose and approaches at the minimum of ½ Σ k δ₊² − T_load·wheel_angle (damped Newton)."""
+    length = abs(rigid.placement.wheel_pin_centres[0])
+    scale = np.array([1.0, 1.0, 1.0 / length, 1.0 / length])  # every unknown a length
+    external = np.array([0.0, 0.0, 0.0, moment])
+    pose = np.zeros(4)
+    history: list[float] = []
+    damping = 1e-3 * float(stiffness.max())
+
+    def potential(pose: FloatArray, approach: FloatArray) -> float:
+        return float(0.5 * np.sum(stiffness * np.maximum(approach, 0.0) ** 2) - moment * pose[3])
+
+    approach, gradient = rigid.approaches(pose)
+    value = potential(pose, approach)
+    for _ in range(400):
+        pushing = np.where(approach > 0.0, stiffness, 0.0)
+        residual = (gradient.T @ (pushing * approach) - external) * scale
+        history.append(float(np.max(np.abs(residual))))
+        if history[-1] <= 1e-6 * abs(moment) / length:
+            return pose, approach
+        tangent = (gradient.T * pushing) @ gradient * np.outer(scale, scale)
+        step = -scale * np.linalg.solve(tangent + damping * np.eye(4), residual)
+        # Bodies that float before the first contact must not jump past it.
+        step *= min(1.0, 0.2 / float(np.max(np.abs(step / scale))))
+        trial = pose + step
+        trial_approach, trial_gradient = rigid.approaches(trial)
+        trial_value = potential(trial, trial_approach)
+        if trial_value <= value + 1e-12 * abs(value):
+            pose, approach, gradient, value = trial, trial_approach, trial_gradient, trial_value
+            damping = max(0.2 * damping, 1e-9 * float(stiffness.max()))
+        else:
+            damping *= 10.0
+    raise ConvergenceError(
+        f"no balanced guess of the contact loads at crank angle {rigid.crank_angle:g} rad; largest residual in N",
+        history,
+    )
+
+
+def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = None) -> ExpectedContacts:
+    """Guess places, loads and half-widths of all contacts at a crank angle.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    torque : float, optional
+        Output torque of the whole drive, N·mm; the drive's own by default.
+
+    Returns
+    -------
+    ExpectedContacts
+        For grading meshes.
+
+    Raises
+    ------
+    ConvergenceError
+        When nothing can carry the load.
+    DriveError
+        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both.
+    """
+    profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
+    if placement.wheel_axis != 0.0:
+        offset = drive.pin_wheel.axis_offset
+        raise DriveError(
+            [
+                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
+                "the wheel about the axis of the pin shaft (the LTCA takes it)"
+            ]
+        )
+    rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
+    materials, thickness = drive.materials, drive.disc.thickness
+    roller_length = drive.crank_bearing.roller_length
+    pin_modulus = contact_modulus(materials.disc, materials.wheel_pin)
+    outer_modulus = contact_modulus(materials.disc, materials.roller)
+    inner_modulus = contact_modulus(materials.inner_race, materials.roller)
+    hole_modulus = 1.0 / materials.disc.plane_strain_compliance  # against a rigid pin
+
+    pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)
+    flank_stiffness = np.pi * pin_modulus * thickness / APPROACH_LOGARITHM
+    roller_modulus = 1.0 / (1.0 / outer_modulus + 1.0 / inner_modulus)
+    roller_stiffness = np.pi * roller_modulus * roller_length / APPROACH_LOGARITHM
+    counts = [pins, rollers, len(placement.hole_radii)]
+    stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.pin_shaft.stiffness], counts)
+    pose, approach = _minimise(rigid, stiffness, drive.wheel_moment(torque))
+    ends = np.cumsum(counts)[:-1]
+    loads = np.split(stiffness * np.maximum(approach, 0.0), ends)
+    nearly = np.split(approach > -OPEN_MARGIN * approach.max(), ends)
+
+    theta = rigid.flank_parameters(pose)
+    n = profile.normal(theta) * np.exp(1j * pose[2])
+    rays, hole_rays = rigid.roller_rays(), rigid.hole_rays(pose)
+    radius, hole_radius = placement.roller_radii, placement.hole_radii
+    hole_effective = placement.shaft_pin_radii * hole_radius / (hole_radius - placement.shaft_pin_radii)
+    outer_effective = radius * placement.bore_radius / (placement.bore_radius - radius)
+    inner_effective = radius * placement.inner_race_radius / (placement.inner_race_radius + radius)
+
+    def group(kind: int, effective: FloatArray, modulus: float, length: float, ray: ComplexArray) -> ContactGroup:
+        load = loads[kind]
+        graded = np.maximum(load, SMALLEST_LOAD_SHARE * load.max(initial=0.0))
+        width = hertz_half_width(graded / length, effective, modulus)
+        return ContactGroup(load=load, half_width=np.where(nearly[kind], width, 0.0), direction=np.angle(ray))
+
+    turn_back = np.exp(-1j * pose[2])
+    hole_direction = hole_rays / np.abs(hole_rays)
+    return ExpectedContacts(
+        crank_angle=float(crank_angle),
+        disc_x=float(pose[0]),
+        disc_y=float(pose[1]),
+        disc_rotation=float(pose[2]),
+        wheel_angle=float(pose[3]),
+        pins=group(0, profile.effective_radius(theta, placement.wheel_pin_radii), pin_modulus, thickness, -n),
+        flank_points=profile.flank(theta),
+        rollers_outer=group(1, outer_effective, outer_modulus, roller_length, rays),
+        rollers_inner=group(1, inner_effective, inner_modulus, roller_length, -rays),
+        bore_points=placement.bore_radius * rays * turn_back,
+        race_points=placement.inner_race_radius * rays,
+        holes=group(2, hole_effective, hole_modulus, thickness, hole_direction),
+        hole_points=placement.hole_centres + hole_radius * hole_direction * turn_back,
+    )

@@ -1,0 +1,192 @@
+"""Where the contacts of rigid bodies lie at a given pose, how far open they are, and how to grade meshes for them.
+
+`fem.drive.expected_contacts` guesses pose and loads from springs; here pose and loads come from a finite-element
+solution on coarser meshes, so that the final meshes are graded for the contacts that are really there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.contact.hertz import hertz_half_width
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
+from ltca.drive.parts import Drive, contact_modulus
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigidGaps:
+    """Contacts of rigid bodies at a pose; arrays over pins, rollers, holes.
+
+    Attributes
+    ----------
+    pins, rollers, holes : array of float
+        Gap, mm, negative where the rigid bodies overlap; that of a roller is its play along the cage ray.
+    flank_parameters : array of float, shape (z_P,)
+        θ of the contact points.
+    pin_normals : array of complex, shape (z_P,)
+        Out of the disc, fixed axes.
+    hole_directions : array of complex, shape (z_PS,)
+        From the hole centre to the contact, fixed axes.
+    """
+
+    pins: FloatArray
+    rollers: FloatArray
+    holes: FloatArray
+    flank_parameters: FloatArray
+    pin_normals: ComplexArray
+    hole_directions: ComplexArray
+
+
+def measure_gaps(
+    drive: Drive, crank_angle: float, displacement: complex, rotation: float, wheel_angle: float
+) -> RigidGaps:
+    """Measure all gaps between rigid bodies.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    displacement : complex
+        Of the disc centre from the inner-race centre, fixed axes, mm.
+    rotation, wheel_angle : float
+        Of the disc, and of the wheel beyond φ_C/u, rad.
+
+    Returns
+    -------
+    RigidGaps
+        Exact, from flank and circles.
+    """
+    profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
+    turn, wheel = np.exp(1j * rotation), crank_angle / place.reduction_ratio + wheel_angle
+    centre = complex(place.race_centre(np.asarray(crank_angle))) + displacement
+    pins = (place.wheel_pin_centres * np.exp(1j * wheel) - centre) / turn
+    start = np.angle(place.wheel_pin_centres) + wheel - rotation
+    theta = profile.nearest_parameter(pins, start)
+    rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
+    # Distance along the ray from the race centre to the bore wall.
+    inward = (displacement * rays.conjugate()).real
+    across = (displacement * rays.conjugate()).imag
+    wall = inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2)
+    holes = place.shaft_pin_centres - (centre + place.hole_centres * turn)
+    return RigidGaps(
+        pins=profile.distance(pins, theta) - place.wheel_pin_radii,
+        rollers=wall - place.roller_radii - place.inner_race_radius,
+        holes=place.hole_radii - place.shaft_pin_radii - np.abs(holes),
+        flank_parameters=theta,
+        pin_normals=profile.normal(theta) * turn,
+        hole_directions=holes / np.maximum(np.abs(holes), 1e-300),
+    )
+
+
+def grade_contacts(
+    drive: Drive,
+    crank_angle: float,
+    displacement: complex,
+    rotation: float,
+    wheel_angle: float,
+    loads: tuple[FloatArray, FloatArray, FloatArray],
+    *,
+    margin: float,
+    smallest_share: float,
+    elastic_shaft_pins: bool = False,
+    open_gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
+) -> ExpectedContacts:
+    """Return the contacts to grade meshes for.
+
+    Parameters
+    ----------
+    drive, crank_angle, displacement, rotation, wheel_angle
+        As for `measure_gaps`.
+    loads : tuple of three arrays
+        Loads of pins, rollers and holes, N; zero where open.
+    margin : float
+        A contact without load whose gap is below this becomes a candidate, mm.
+    smallest_share : float
+        Candidates get elements for at least this share of the largest load of their kind.
+    elastic_shaft_pins : bool
+        Whether the shaft pins yield, too.
+    open_gaps : tuple of three arrays, optional
+        Gaps of pins, rollers and holes between the deformed bodies, mm, NaN where not known; the gaps of the rigid
+        bodies count there, and for all without this.
+
+    Returns
+    -------
+    ExpectedContacts
+        With this pose and these loads.
+    """
+    gaps = measure_gaps(drive, crank_angle, displacement, rotation, wheel_angle)
+    profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
+    materials, thickness = drive.materials, drive.disc.thickness
+    rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
+    bore, race, radius = place.bore_radius, place.inner_race_radius, place.roller_radii
+    turn_back = np.exp(-1j * rotation)
+
+    rigid = (gaps.pins, gaps.rollers, gaps.holes)
+    left = (
+        rigid
+        if open_gaps is None
+        else tuple(np.where(np.isnan(known), plain, known) for known, plain in zip(open_gaps, rigid, strict=True))
+    )
+
+    def group(
+        load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
+    ) -> ContactGroup:
+        graded = np.maximum(load, smallest_share * float(load.max(initial=0.0)))
+        width = hertz_half_width(graded / thickness, effective, modulus)
+        candidate = (load > 0.0) | (gap < margin)
+        return ContactGroup(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+
+    hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
+    flank_effective = profile.effective_radius(gaps.flank_parameters, place.wheel_pin_radii)
+    pins, rollers, holes = loads
+    hole_modulus = 1.0 / materials.disc.plane_strain_compliance
+    if elastic_shaft_pins:
+        hole_modulus = contact_modulus(materials.disc, materials.shaft_pin)
+    return ExpectedContacts(
+        crank_angle=float(crank_angle),
+        disc_x=displacement.real,
+        disc_y=displacement.imag,
+        disc_rotation=float(rotation),
+        wheel_angle=float(wheel_angle),
+        pins=group(
+            pins, left[0], flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
+        ),
+        flank_points=profile.flank(gaps.flank_parameters),
+        rollers_outer=group(
+            rollers,
+            left[1],
+            radius * bore / (bore - radius),
+            contact_modulus(materials.disc, materials.roller),
+            rays,
+        ),
+        rollers_inner=group(
+            rollers,
+            left[1],
+            radius * race / (race + radius),
+            contact_modulus(materials.inner_race, materials.roller),
+            -rays,
+        ),
+        bore_points=_bore_points(displacement, place, rays) * turn_back,
+        race_points=race * rays,
+        holes=group(holes, left[2], hole_effective, hole_modulus, gaps.hole_directions),
+        hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
+    )
+
+
+def _bore_points(displacement: complex, place: Placement, rays: ComplexArray) -> ComplexArray:
+    """Return where rollers that touch the bore touch it, about the bore centre, fixed axes, mm."""
+    inward = (displacement * rays.conjugate()).real
+    across = (displacement * rays.conjugate()).imag
+    wall = inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2)
+    from_bore_centre = wall * rays - displacement
+    return np.asarray(place.bore_radius * from_bore_centre / np.abs(from_bore_centre))

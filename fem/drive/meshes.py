@@ -1,0 +1,191 @@
+"""Meshes of all bodies of a drive, graded for the contacts expected at a crank angle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
+from fem.errors import MeshError
+from fem.mesh.body_mesh import BodyMesh
+from fem.mesh.element_size import Refinement
+from fem.mesh.memory_need import require_memory, solution_memory
+from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
+from fem.shapes import CircleShape, DriveShapes, Shape
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+ELEMENTS_PER_HALF_WIDTH = 8.0
+# The pressure ends at one half-width; the rest is for contacts that lie a little beside the place expected.
+ZONE_HALF_WIDTHS = 1.5
+# Pins (or rollers) whose half-widths lie within this ratio share one mesh, turned.
+CLASS_RATIO = np.sqrt(2.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveMeshes:
+    """Meshes of all bodies of a drive, each in its own frame, axes of pins, rollers and race as the fixed ones.
+
+    Attributes
+    ----------
+    disc, inner_race : BodyMesh
+        One each.
+    wheel_pins, rollers : tuple of BodyMesh
+        In the order of their numbers.
+    """
+
+    disc: BodyMesh
+    wheel_pins: tuple[BodyMesh, ...]
+    rollers: tuple[BodyMesh, ...]
+    inner_race: BodyMesh
+
+    @property
+    def bodies(self) -> tuple[BodyMesh, ...]:
+        """All meshes: disc, pins, rollers, race."""
+        return (self.disc, *self.wheel_pins, *self.rollers, self.inner_race)
+
+    @property
+    def unknowns(self) -> int:
+        """Displacement unknowns of all bodies."""
+        return sum(body.unknowns for body in self.bodies)
+
+
+def _spots(points: ComplexArray, half_width: FloatArray, scale: float) -> list[Refinement]:
+    return [
+        Refinement(
+            float(point.real), float(point.imag), scale * width / ELEMENTS_PER_HALF_WIDTH, ZONE_HALF_WIDTHS * width
+        )
+        for point, width in zip(points, half_width.tolist(), strict=True)
+        if width > 0.0
+    ]
+
+
+def disc_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Refinement, ...]:
+    """Return the refinements of the disc: b/8 within 1.5 b of each contact, times `scale`."""
+    return (
+        *_spots(contacts.flank_points, contacts.pins.half_width, scale),
+        *_spots(contacts.bore_points, contacts.rollers_outer.half_width, scale),
+        *_spots(contacts.hole_points, contacts.holes.half_width, scale),
+    )
+
+
+def race_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Refinement, ...]:
+    """Return the refinements of the inner race."""
+    return tuple(_spots(contacts.race_points, contacts.rollers_inner.half_width, scale))
+
+
+def _class_of(half_width: float) -> float:
+    """Return the lower end of the class of a half-width, 0 for none."""
+    if half_width <= 0.0:
+        return 0.0
+    return float(CLASS_RATIO ** np.floor(np.log(half_width) / np.log(CLASS_RATIO)))
+
+
+def circle_refinements(
+    shape: CircleShape, angles: tuple[float, ...], classes: tuple[float, ...], scale: float = 1.0
+) -> tuple[Refinement, ...]:
+    """Return refinements of a pin or roller at polar angles, for half-widths from a class up to √2 times it."""
+    return tuple(
+        Refinement.polar(
+            shape.radius,
+            angle,
+            size=scale * width / ELEMENTS_PER_HALF_WIDTH,
+            radius=ZONE_HALF_WIDTHS * CLASS_RATIO * width,
+        )
+        for angle, width in zip(angles, classes, strict=True)
+        if width > 0.0
+    )
+
+
+def _plan_circles(
+    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], scale: float
+) -> list[tuple[CircleShape, tuple[Refinement, ...], float]]:
+    """Return shape, refinements (first contact at polar angle 0) and turn of each pin or roller."""
+    plan = []
+    for index, shape in enumerate(shapes):
+        directions = [float(group.direction[index]) for group in groups]
+        # Contacts of a roller lie opposite each other.
+        angles = (0.0, np.pi)[: len(groups)]
+        classes = tuple(_class_of(float(group.half_width[index])) for group in groups)
+        plan.append((shape, circle_refinements(shape, angles, classes, scale), directions[0]))
+    return plan
+
+
+def mesh_drive(
+    shapes: DriveShapes,
+    contacts: ExpectedContacts,
+    *,
+    scale: float = 1.0,
+    order: int = 2,
+    report: Callable[[BodyMesh], None] | None = None,
+) -> DriveMeshes:
+    """Mesh all bodies of a drive for the contacts expected.
+
+    Pins (and rollers) of one radius whose expected half-widths are alike share one mesh, turned to their
+    contacts, so that one factorisation can serve them all.
+
+    Parameters
+    ----------
+    shapes : DriveShapes
+        Shapes of the bodies.
+    contacts : ExpectedContacts
+        From `fem.drive.expected_contacts.expect_contacts`.
+    scale : float
+        Element edge as a multiple of the default, 8 elements for each half-width.
+    order : int
+        1 or 2.
+    report : callable, optional
+        Called with each mesh as soon as it is made.
+
+    Returns
+    -------
+    DriveMeshes
+        All meshes.
+
+    Raises
+    ------
+    MeshError
+        When a mesh cannot be made or is bad, or the scale is no positive number.
+    MemoryLimitError
+        When meshes and solution would not fit into memory; checked before any meshing.
+    """
+    if not (np.isfinite(scale) and scale > 0.0):
+        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
+    disc_spots, race_spots = disc_refinements(contacts, scale), race_refinements(contacts, scale)
+    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale)
+    rollers = _plan_circles(shapes.rollers, (contacts.rollers_outer, contacts.rollers_inner), scale)
+
+    # The interior is smooth and far from its limit of accuracy: it need not follow a finer scale in full.
+    def coarse(shape: Shape) -> float:
+        return default_coarse_size(shape, min(1.0, np.sqrt(scale)) if scale < 1.0 else scale)
+
+    planned: list[tuple[Shape, tuple[Refinement, ...]]] = [(shapes.disc, disc_spots), (shapes.inner_race, race_spots)]
+    planned += [(shape, spots) for shape, spots, _ in pins + rollers]
+    total = sum(estimate_unknowns(shape, spots, coarse_size=coarse(shape), order=order) for shape, spots in planned)
+    require_memory(total, solution_memory(total), "the drive's mesh")
+
+    def announce(body: BodyMesh) -> BodyMesh:
+        if report is not None:
+            report(body)
+        return body
+
+    made: dict[tuple[float, float, tuple[Refinement, ...]], BodyMesh] = {}
+
+    def circle(shape: CircleShape, spots: tuple[Refinement, ...], turn: float) -> BodyMesh:
+        key = (shape.radius, shape.core_radius, spots)
+        if key not in made:
+            made[key] = mesh_circle(shape, spots, coarse_size=coarse(shape), order=order)
+        return announce(made[key].turned(turn, shape.name))
+
+    return DriveMeshes(
+        disc=announce(mesh_disc(shapes.disc, disc_spots, coarse_size=coarse(shapes.disc), order=order)),
+        wheel_pins=tuple(circle(*item) for item in pins),
+        rollers=tuple(circle(*item) for item in rollers),
+        inner_race=announce(
+            mesh_ring(shapes.inner_race, race_spots, coarse_size=coarse(shapes.inner_race), order=order)
+        ),
+    )

@@ -1,0 +1,286 @@
+"""Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a pose.
+
+Which body carries the pressure: the disc toward wheel pins, rollers and shaft pins, the inner race toward the
+rollers. Pins and rollers that share a mesh share one factorisation and one compliance, turned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.condensation import CondensedBody
+from fem.body.surface import OppositeZone, PressureZone
+from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
+from fem.contact.unilateral import ContactProblem
+from fem.drive.expected_contacts import ExpectedContacts
+from fem.drive.meshes import DriveMeshes
+from fem.mesh.body_mesh import BodyMesh
+from fem.shapes import DriveShapes
+from ltca.drive.parts import Drive
+from ltca.geometry.placement import Placement
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+PairKind = Literal["pin", "roller_outer", "roller_inner", "hole"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrivePose:
+    """Places of the rigid bodies at one crank angle.
+
+    Attributes
+    ----------
+    disc_x, disc_y, disc_rotation : float
+        Displacement of the disc centre from the inner-race centre, fixed axes, mm, and rotation, rad: area
+        means.
+    wheel_angle : float
+        Deviation of the wheel from φ_C/u, rad.
+    roller_distances : array, shape (n_BR,)
+        Distance of each roller from the race centre along its cage ray, mm.
+    shaft_pin_displacements : array of complex, shape (z_PS,)
+        Displacement of each shaft pin on its spring, mm.
+    """
+
+    disc_x: float
+    disc_y: float
+    disc_rotation: float
+    wheel_angle: float
+    roller_distances: FloatArray
+    shaft_pin_displacements: ComplexArray
+
+    @property
+    def disc_displacement(self) -> complex:
+        """Displacement of the disc centre, mm."""
+        return complex(self.disc_x, self.disc_y)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundGroup:
+    """Condensed pin or roller whose mesh serves several bodies.
+
+    Attributes
+    ----------
+    body : BodyMesh
+        The mesh in the frame in which it was condensed.
+    condensed : CondensedBody
+        Unit loads are nodal forces of the zones, one zone after the other.
+    zones : tuple of OppositeZone
+        One for a pin; outer and inner for a roller.
+    """
+
+    body: BodyMesh
+    condensed: CondensedBody
+    zones: tuple[OppositeZone, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactPair:
+    """One candidate contact.
+
+    Attributes
+    ----------
+    kind : {"pin", "roller_outer", "roller_inner", "hole"}
+        What meets what.
+    index : int
+        Number of the pin, roller or hole.
+    zone : PressureZone
+        Side that carries the pressure.
+    unknowns : slice
+        Its pressure unknowns among all of the drive.
+    radius : float
+        Radius of the circle opposite, mm.
+    group : int
+        Its `RoundGroup`, −1 for a rigid circle.
+    turn : float
+        Rotation of the group's mesh to this body, rad.
+    expected_half_width : float
+        mm.
+    expected_load : float
+        N.
+    """
+
+    kind: PairKind
+    index: int
+    zone: PressureZone
+    unknowns: slice
+    radius: float
+    group: int
+    turn: float
+    expected_half_width: float
+    expected_load: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveModel:
+    """Condensed drive at one crank angle; the meshes and factors serve every load and pose near by.
+
+    Attributes
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    shapes : DriveShapes
+        Exact shapes.
+    meshes : DriveMeshes
+        Their meshes.
+    contacts : ExpectedContacts
+        For which they were graded.
+    disc, race : CondensedBody
+        Unit loads are the pressure unknowns on them.
+    groups : tuple of RoundGroup
+        Pins and rollers.
+    pairs : tuple of ContactPair
+        All candidate contacts, those on the disc first.
+    placement : Placement
+        Nominal places of the parts.
+    shaft_pins : tuple of BodyMesh
+        Meshes of elastic shaft pins; empty for rigid ones.
+    """
+
+    drive: Drive
+    crank_angle: float
+    shapes: DriveShapes
+    meshes: DriveMeshes
+    contacts: ExpectedContacts
+    disc: CondensedBody
+    race: CondensedBody
+    groups: tuple[RoundGroup, ...]
+    pairs: tuple[ContactPair, ...]
+    placement: Placement
+    shaft_pins: tuple[BodyMesh, ...] = ()
+
+    @property
+    def unknown_count(self) -> int:
+        """Number of pressure unknowns."""
+        return int(self.pairs[-1].unknowns.stop)
+
+    @property
+    def rollers(self) -> tuple[int, ...]:
+        """Rollers with candidate contacts, in the order of their motions."""
+        return tuple(pair.index for pair in self.pairs if pair.kind == "roller_outer")
+
+    @property
+    def race_centre(self) -> complex:
+        """Centre of inner race and cage, mm."""
+        return complex(self.placement.race_centre(np.asarray(self.crank_angle)))
+
+    @property
+    def roller_rays(self) -> ComplexArray:
+        """Unit vectors of the cage rays."""
+        return np.asarray(np.exp(1j * self.placement.roller_angles(np.asarray(self.crank_angle))))
+
+    def disc_pose(self, pose: DrivePose) -> Pose:
+        """Return the disc's frame."""
+        return Pose(centre=self.race_centre + pose.disc_displacement, rotation=pose.disc_rotation)
+
+    def circle_centre(self, kind: PairKind, index: int, pose: DrivePose) -> complex:
+        """Return the centre of a pin, roller or shaft pin in the fixed frame, mm."""
+        place = self.placement
+        if kind == "pin":
+            turn = self.crank_angle / place.reduction_ratio + pose.wheel_angle
+            return complex(place.wheel_pin_centres[index] * np.exp(1j * turn))
+        if kind == "hole":
+            return complex(place.shaft_pin_centres[index] + pose.shaft_pin_displacements[index])
+        return self.race_centre + complex(pose.roller_distances[index] * self.roller_rays[index])
+
+    def integrate(self, pair: ContactPair, pose: DrivePose) -> PairIntegrals:
+        """Integrate one pair at a pose."""
+        carrier = Pose(centre=self.race_centre) if pair.kind == "roller_inner" else self.disc_pose(pose)
+        circle = Pose(centre=self.circle_centre(pair.kind, pair.index, pose), rotation=pair.turn)
+        opposite = None
+        if pair.group >= 0:
+            opposite = self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+        return integrate_pair(pair.zone, carrier, circle, pair.radius, opposite)
+
+    def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
+        """Return a pose with rollers midway between race and bore and shaft pins unloaded.
+
+        Parameters
+        ----------
+        start : tuple of four floats, optional
+            Disc x, y (mm), disc rotation, wheel angle (rad); those the meshes were graded for by default.
+        """
+        contacts, place = self.contacts, self.placement
+        x, y, rotation, wheel = start or (
+            contacts.disc_x,
+            contacts.disc_y,
+            contacts.disc_rotation,
+            contacts.wheel_angle,
+        )
+        toward = (complex(x, y) * self.roller_rays.conjugate()).real
+        outer = place.bore_radius - place.roller_radii + toward
+        inner = place.inner_race_radius + place.roller_radii
+        return DrivePose(
+            disc_x=x,
+            disc_y=y,
+            disc_rotation=rotation,
+            wheel_angle=wheel,
+            roller_distances=0.5 * (outer + inner),
+            shaft_pin_displacements=np.zeros(len(place.hole_radii), dtype=complex),
+        )
+
+    def start_active(self) -> NDArray[np.bool_]:
+        """Return the pressure unknowns under the expected pressures."""
+        active = np.zeros(self.unknown_count, dtype=bool)
+        for pair in self.pairs:
+            if pair.expected_load > 0.0:
+                arc = pair.zone.arc[1:-1]
+                middle = 0.5 * pair.zone.arc[-1]
+                active[pair.unknowns] = np.abs(arc - middle) < 0.8 * pair.expected_half_width
+        return active
+
+    def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
+        """Return the condensed contact problem linearised about a pose.
+
+        Motions: disc x, y (mm), rotation (rad), wheel rotation (rad), then each candidate roller along its ray.
+        """
+        count, rollers = self.unknown_count, self.rollers
+        compliance = np.zeros((count, count))
+        on_disc = self.disc.compliance.shape[0]
+        compliance[:on_disc, :on_disc] = self.disc.compliance
+        compliance[on_disc:, on_disc:] = self.race.compliance
+        motions = np.zeros((count, 4 + len(rollers)))
+        gap = np.zeros(count)
+        centre = self.disc_pose(pose).centre
+        spring = self.drive.pin_shaft.stiffness
+        by_roller: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
+        for pair, integral in zip(self.pairs, integrals, strict=True):
+            own = pair.unknowns
+            gap[own] = integral.gap
+            fx, fy, moment = integral.force
+            if pair.kind != "roller_inner":
+                motions[own, 0], motions[own, 1] = -fx, -fy
+                motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
+            if pair.kind == "pin":
+                motions[own, 3] = moment
+                loads = integral.opposite_loads
+                compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
+            elif pair.kind == "hole":
+                moved = pose.shaft_pin_displacements[pair.index]
+                gap[own] -= fx * moved.real + fy * moved.imag
+                compliance[own, own] += (np.outer(fx, fx) + np.outer(fy, fy)) / spring
+                if pair.group >= 0:
+                    loads = integral.opposite_loads
+                    compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
+            else:
+                ray = self.roller_rays[pair.index]
+                motions[own, 4 + rollers.index(pair.index)] = fx * ray.real + fy * ray.imag
+                by_roller.setdefault(pair.index, []).append((pair, integral))
+        for ends in by_roller.values():
+            (outer, outer_integral), (inner, inner_integral) = ends
+            own = np.r_[outer.unknowns, inner.unknowns]
+            split = outer_integral.opposite_loads.shape[0]
+            compliance_round = self.groups[outer.group].condensed.compliance
+            loads = np.zeros((compliance_round.shape[0], len(own)))
+            width = outer_integral.gap.size
+            loads[:split, :width] = outer_integral.opposite_loads
+            loads[split:, width:] = inner_integral.opposite_loads
+            compliance[np.ix_(own, own)] += loads.T @ compliance_round @ loads
+        external = np.zeros(4 + len(rollers))
+        external[3] = -wheel_moment
+        return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)

@@ -1,0 +1,353 @@
+"""Full solution of a drive at one crank angle: coarse, graded anew, fine, checked.
+
+1. `fem.drive.expected_contacts` guesses contacts; coarse meshes with wide zones give the loads that the flexible
+   bodies really share.
+2. Meshes graded for those loads are condensed once and the pose iterated on them.
+3. A solution is accepted when no pressure reaches the end of its zone, the elements are small enough for the
+   half-widths found and no contact without a zone has closed; otherwise the meshes are graded anew.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.elasticity import PlaneState
+from fem.drive.condensed import condense_drive
+from fem.drive.contact_results import ContactResults, open_gaps, summarise_contacts
+from fem.drive.expected_contacts import ExpectedContacts, expect_contacts
+from fem.drive.grading import grade_contacts, measure_gaps
+from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
+from fem.drive.model import DriveModel, DrivePose
+from fem.drive.pose import PoseSolution, solve_pose
+from fem.drive.shaft_pins import mesh_shaft_pins
+from fem.errors import MeshError
+from fem.mesh.memory_need import require_memory, solution_memory
+from fem.mesh.triangulation import estimate_unknowns
+from fem.shapes import DriveShapes
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError
+
+FloatArray = NDArray[np.float64]
+
+# The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
+# much as bodies approach each other, sized for at least a quarter of the largest load.
+COARSE_SCALE = 3.5
+COARSE_SHARE = 0.25
+COARSE_MARGIN = 1.0
+FINE_SHARE = 0.05
+# Open contacts within this part of the largest approach stay candidates of the fine stage.
+FINE_MARGIN = 0.15
+LARGEST_GRADINGS = 5
+# Elements may be this much larger than asked for before the meshes are graded anew.
+SLACK = 1.1
+# Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
+RESERVE = 0.96
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FullSolution:
+    """Finite-element solution of a drive at one crank angle.
+
+    Attributes
+    ----------
+    model : DriveModel
+        Condensed bodies, meshes, candidate pairs.
+    state : PoseSolution
+        Pressures at the loaded pose.
+    contacts : ContactResults
+        Loads, peak pressures, half-widths of all parts, and forces on the disc.
+    scale : float
+        Element edge as a multiple of an eighth of each half-width.
+    plane_state : {"strain", "stress"}
+        Plane strain or plane stress.
+    pose_iterations : int
+        Steps on the final meshes.
+    seconds : dict of str to float
+        Wall time of each stage; ``total`` is their sum.
+    """
+
+    model: DriveModel
+    state: PoseSolution
+    contacts: ContactResults
+    scale: float
+    plane_state: PlaneState
+    pose_iterations: int
+    seconds: dict[str, float]
+
+    @property
+    def pose(self) -> DrivePose:
+        """Loaded pose."""
+        return self.state.pose
+
+    @property
+    def unknowns(self) -> int:
+        """Displacement unknowns of all bodies and pressure unknowns."""
+        pins = sum(body.unknowns for body in self.model.shaft_pins)
+        return self.model.meshes.unknowns + pins + self.model.unknown_count
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Task:
+    """What stays the same through all stages of one solution."""
+
+    drive: Drive
+    shapes: DriveShapes
+    moment: float
+    state: PlaneState
+    elastic_shaft_pins: bool
+    approach: float
+
+    def condense(self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch) -> DriveModel:
+        meshes = mesh_drive(self.shapes, contacts, scale=scale)
+        pins = mesh_shaft_pins(self.shapes, contacts, scale) if self.elastic_shaft_pins else ()
+        watch.lap("mesh")
+        return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins)
+
+    def grade(
+        self,
+        crank_angle: float,
+        pose: tuple[complex, float, float],
+        loads: tuple[FloatArray, FloatArray, FloatArray],
+        *,
+        margin: float,
+        share: float,
+        gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
+    ) -> ExpectedContacts:
+        return grade_contacts(
+            self.drive,
+            crank_angle,
+            *pose,
+            loads,
+            margin=margin * self.approach,
+            smallest_share=share,
+            elastic_shaft_pins=self.elastic_shaft_pins,
+            open_gaps=gaps,
+        )
+
+
+class _Stopwatch:
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def lap(self, stage: str) -> None:
+        now = time.perf_counter()
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self._last
+        self._last = now
+
+
+def solve_drive(
+    drive: Drive,
+    crank_angle: float,
+    *,
+    torque: float | None = None,
+    scale: float = 1.0,
+    state: PlaneState = "strain",
+    elastic_shaft_pins: bool = False,
+    start: tuple[float, float, float, float] | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> FullSolution:
+    """Solve a drive at one crank angle from nothing.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    torque : float, optional
+        Output torque of the whole drive, N·mm; the drive's own by default.
+    scale : float
+        Element edge as a multiple of an eighth of each Hertz half-width.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+    elastic_shaft_pins : bool
+        Whether shaft pins yield, too; rigid circles on their springs by default.
+    start : tuple of four floats, optional
+        First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    FullSolution
+        Accepted solution.
+
+    Raises
+    ------
+    ConvergenceError
+        When nothing can carry the load or an iteration does not settle.
+    MemoryLimitError
+        When the meshes would not fit into memory.
+    """
+    say = progress or _silent
+    watch = _Stopwatch()
+    shapes = DriveShapes.of_drive(drive)
+    guess = expect_contacts(drive, crank_angle, torque=torque)
+    task = _Task(
+        drive=drive,
+        shapes=shapes,
+        moment=drive.wheel_moment(torque),
+        state=state,
+        elastic_shaft_pins=elastic_shaft_pins,
+        approach=_largest_approach(drive, guess),
+    )
+    _refuse_too_large(shapes, guess, scale)
+    place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
+    loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
+    contacts = task.grade(crank_angle, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
+    watch.lap("guess")
+    say("coarse meshes")
+    model = task.condense(contacts, max(COARSE_SCALE, scale), _Stopwatch())
+    first = None if start is None else model.start_pose(start)
+    solution = solve_pose(model, task.moment, start=first, progress=say)
+    watch.lap("coarse")
+    complaint = ""
+    for grading in range(1, LARGEST_GRADINGS + 1):
+        results, pose = summarise_contacts(model, solution), solution.pose
+        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+        loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
+        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
+        margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
+        contacts = task.grade(crank_angle, place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
+        say("meshes")
+        model = task.condense(contacts, scale * RESERVE, watch)
+        watch.lap("assembly and factorisation")
+        solution = solve_pose(model, task.moment, start=solution.pose, progress=say)
+        watch.lap("contact and pose")
+        complaint = find_shortcoming(model, solution, scale)
+        results = summarise_contacts(model, solution)
+        watch.lap("check")
+        if not complaint:
+            watch.seconds["total"] = sum(watch.seconds.values())
+            return FullSolution(
+                model=model,
+                state=solution,
+                contacts=results,
+                scale=scale,
+                plane_state=state,
+                pose_iterations=solution.iterations,
+                seconds=watch.seconds,
+            )
+        say(f"meshes graded anew ({grading}): {complaint}")
+    hint = "; use smaller elements" if scale > COARSE_SCALE else ""
+    raise ConvergenceError(f"meshes do not fit the contacts after {LARGEST_GRADINGS} gradings: {complaint}{hint}")
+
+
+def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
+    """Solve another load on the meshes and factors of a solution.
+
+    Parameters
+    ----------
+    previous : FullSolution
+        At the same crank angle.
+    torque : float
+        Output torque of the whole drive, N·mm.
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    FullSolution
+        On the same meshes if they serve the new contacts, else on new ones.
+    """
+    watch = _Stopwatch()
+    model = previous.model
+    solution = solve_pose(
+        model,
+        model.drive.wheel_moment(torque),
+        start=previous.pose,
+        start_active=previous.state.contact.active,
+        progress=progress,
+    )
+    watch.lap("contact and pose")
+    if find_shortcoming(model, solution, previous.scale):
+        return solve_drive(
+            model.drive,
+            model.crank_angle,
+            torque=torque,
+            scale=previous.scale,
+            state=previous.plane_state,
+            elastic_shaft_pins=bool(model.shaft_pins),
+            progress=progress,
+        )
+    watch.seconds["total"] = sum(watch.seconds.values())
+    return replace(
+        previous,
+        state=solution,
+        contacts=summarise_contacts(model, solution),
+        pose_iterations=solution.iterations,
+        seconds=watch.seconds,
+    )
+
+
+def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:
+    """Return why the meshes do not serve a solution, "" when they do."""
+    results = summarise_contacts(model, solution)
+    for pair, detail in zip(model.pairs, results.details, strict=True):
+        own = solution.contact.pressure[pair.unknowns]
+        name = f"{pair.kind.replace('_', ' ')} {pair.index}"
+        if own[0] > 0.0 or own[-1] > 0.0:
+            return f"the pressure of {name} reaches the end of its zone"
+        if (
+            detail.share > FINE_SHARE
+            and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH
+        ):
+            return (
+                f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
+                f"not {ELEMENTS_PER_HALF_WIDTH / scale:.3g}"
+            )
+    return _closed_without_zone(model, solution)
+
+
+def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
+    pose, place = solution.pose, model.placement
+    gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+    elastic = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
+    moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
+    nodes = model.meshes.disc.mesh.doflocs[0] + 1j * model.meshes.disc.mesh.doflocs[1]
+    turn = np.exp(1j * pose.disc_rotation)
+    rays = model.roller_rays
+    flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
+    bore = place.bore_radius * rays / turn
+    holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
+    candidates = {(pair.kind, pair.index) for pair in model.pairs}
+    for kind, gap, points, normals in (
+        ("pin", gaps.pins, flank, gaps.pin_normals),
+        ("roller_outer", gaps.rollers, bore, -rays),
+        ("hole", gaps.holes, holes, -gaps.hole_directions),
+    ):
+        for index in range(len(gap)):
+            if (kind, index) in candidates:
+                continue
+            nearest = int(np.argmin(np.abs(nodes - points[index])))
+            left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
+            if left < 0.0:
+                return f"{kind.replace('_outer', '')} {index} closes by {-1e3 * left:.3g} µm and has no contact zone"
+    return ""
+
+
+def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
+    """Return the largest overlap of rigid bodies in the guess, mm."""
+    gaps = measure_gaps(
+        drive, guess.crank_angle, complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
+    )
+    return float(-min(gaps.pins.min(), gaps.rollers.min(), gaps.holes.min()))
+
+
+def _refuse_too_large(shapes: DriveShapes, guess: ExpectedContacts, scale: float) -> None:
+    """Refuse a size that would exceed memory before any meshing; disc and race alone decide."""
+    if not (np.isfinite(scale) and scale > 0.0):
+        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
+    unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, scale))
+    unknowns += estimate_unknowns(shapes.inner_race, race_refinements(guess, scale))
+    require_memory(unknowns, solution_memory(unknowns), "the model of disc and inner race")
+
+
+def _silent(_: str) -> None:
+    pass

@@ -1,0 +1,89 @@
+"""Division of the exact boundary curves into edges that follow the size field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.mesh.element_size import Refinement, SizeField, cover_small_edges
+from fem.shapes import Curve
+
+FloatArray = NDArray[np.float64]
+
+# Largest angle α a boundary edge may turn through. Between its nodes, which are exact, a quadratic edge leaves a
+# circle by up to (1 − cos(α/2))²/8 = 9e-6 of the radius; at contacts edges are shorter and the rest is nil.
+LARGEST_TURN = np.pi / 12.0
+SAMPLES_PER_EDGE = 4.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DividedCurve:
+    """A closed curve divided into edges.
+
+    Attributes
+    ----------
+    curve : Curve
+        The exact curve.
+    parameters : array of float, shape (edges,)
+        Parameter of the first vertex of each edge, increasing.
+    """
+
+    curve: Curve
+    parameters: FloatArray
+
+    @property
+    def middles(self) -> FloatArray:
+        """Parameter of the mid-side node of each edge: halfway along the curve between its vertices."""
+        following = np.append(self.parameters[1:], self.parameters[0] + 2.0 * np.pi)
+        guess = 0.5 * (self.parameters + following)
+        start, end = self.curve.points(self.parameters), self.curve.points(following)
+        # One secant step to equal chords keeps the mapping of the edge even where the parameter is not arc length.
+        middle = self.curve.points(guess)
+        first, second = np.abs(middle - start), np.abs(end - middle)
+        return np.asarray(guess + 0.5 * (following - self.parameters) * (second - first) / (first + second))
+
+
+def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
+    """Return parameters over one period, both ends included, dense where the size field asks for small edges."""
+    parameters = np.linspace(0.0, 2.0 * np.pi, 2 * curve.samples + 1)
+    # Interval halving: each pass splits only intervals longer than a part of the wanted edge.
+    for _ in range(40):
+        points = curve.points(parameters)
+        wanted = field.at(points)
+        length = np.abs(np.diff(points))
+        split = SAMPLES_PER_EDGE * length > np.minimum(wanted[1:], wanted[:-1])
+        # An interval may jump over a small ball: near every ball look at the distance to its zone, too.
+        for ball in field.balls:
+            reach = np.abs(points - ball.point)
+            near = np.minimum(reach[1:], reach[:-1]) - length < ball.radius
+            split |= near & (SAMPLES_PER_EDGE * length > ball.size)
+        if not np.any(split):
+            break
+        middles = 0.5 * (parameters[1:] + parameters[:-1])[split]
+        parameters = np.sort(np.concatenate([parameters, middles]))
+    return parameters
+
+
+def divide_curve(curve: Curve, field: SizeField) -> DividedCurve:
+    """Divide a closed curve into edges whose lengths follow the size field and the curvature."""
+    parameters = sample_parameters(curve, field)
+    points = curve.points(parameters)
+    wanted = np.minimum(field.at(points), LARGEST_TURN * curve.curvature_radius(parameters))
+    density = 1.0 / wanted
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(points)))])
+    edges = max(int(np.ceil(count[-1])), round(2.0 * np.pi / LARGEST_TURN))
+    places = np.arange(edges) * (count[-1] / edges)
+    return DividedCurve(curve=curve, parameters=np.interp(places, count, parameters))
+
+
+def serve_curvature(curves: tuple[Curve, ...], field: SizeField) -> SizeField:
+    """Return the size field with balls added where the curvature of a boundary asks for smaller elements."""
+    added: list[Refinement] = []
+    for curve in curves:
+        parameters = np.linspace(0.0, 2.0 * np.pi, 4 * curve.samples, endpoint=False)
+        limit = LARGEST_TURN * curve.curvature_radius(parameters)
+        so_far = SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)
+        added += cover_small_edges(curve.points(parameters), limit, so_far)
+    return SizeField(balls=field.balls + tuple(added), coarse_size=field.coarse_size, growth=field.growth)

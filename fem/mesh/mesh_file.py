@@ -1,0 +1,273 @@
+"""Meshes on disk: ``.msh`` (gmsh 2.2, groups kept, both orders) and ``.vtu`` (curved quadratic cells).
+
+The text format 2.2 is read by gmsh, meshio and CalculiX pre-processors alike and keeps physical groups of
+second-order meshes, which the reader of scikit-fem loses. A file appears under its name only when complete.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.errors import MeshError
+from fem.mesh.body_mesh import BodyMesh, IntArray, triangle_mesh
+from fem.mesh.quality import require_valid_elements
+
+if TYPE_CHECKING:
+    import meshio
+
+FloatArray = NDArray[np.float64]
+
+BODY_TAG = 1
+# meshio reports broken files by whatever its parser stumbles over.
+_PARSER_ERRORS = (
+    ValueError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    AssertionError,
+    EOFError,
+    OverflowError,
+    MemoryError,
+    struct.error,
+)
+
+
+@contextmanager
+def written_whole(path: Path) -> Iterator[Path]:
+    """Give a temporary path with the same suffix, renamed to `path` at the end; a killed run leaves no half file.
+
+    Raises
+    ------
+    MeshError
+        When the folder cannot be written to.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+    except OSError as error:
+        raise MeshError(f"cannot write {path}: {error.strerror or error}") from error
+    temporary = Path(name)
+    try:
+        yield temporary
+        # mkstemp makes files private; give the rights an ordinary new file would have.
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)
+        temporary.replace(path)
+    except OSError as error:
+        raise MeshError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def element_nodes(body: BodyMesh) -> IntArray:
+    """Return the nodes of each element, shape (elements, 3 or 6): vertices, then mid-sides of (0,1), (1,2), (2,0)."""
+    mesh = body.mesh
+    if body.order == 1:
+        return np.asarray(mesh.t.T, dtype=np.int64)
+    middles = mesh.nvertices + mesh.t2f[[0, 1, 2]]
+    return np.vstack([mesh.t, middles]).T.astype(np.int64)
+
+
+def _boundary_lines(body: BodyMesh, name: str) -> IntArray:
+    nodes = body.boundary_nodes(name)
+    return nodes if body.order == 1 else nodes[:, [0, 2, 1]]
+
+
+def _points(body: BodyMesh) -> FloatArray:
+    return np.column_stack([body.mesh.doflocs.T, np.zeros(body.node_count)])
+
+
+def write_msh(body: BodyMesh, path: str | Path) -> Path:
+    """Write a mesh with its named boundaries as gmsh 2.2 text, coordinates in full precision.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        Order 1 or 2.
+    path : str or Path
+        Ends in ``.msh``.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    MeshError
+        When the file cannot be written.
+    """
+    import meshio
+
+    names = sorted(body.boundary_names)
+    triangles, lines = ("triangle", "line") if body.order == 1 else ("triangle6", "line3")
+    cells: list[tuple[str, IntArray]] = [(triangles, element_nodes(body))]
+    cells += [(lines, _boundary_lines(body, name)) for name in names]
+    tags = [np.full(len(block), BODY_TAG + index, dtype=np.int32) for index, (_, block) in enumerate(cells)]
+    groups = {body.name: np.array([BODY_TAG, 2])}
+    groups |= {name: np.array([BODY_TAG + index, 1]) for index, name in enumerate(names, start=1)}
+    content = meshio.Mesh(
+        _points(body), cells, cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags}, field_data=groups
+    )
+    path = Path(path)
+    with written_whole(path) as temporary:
+        meshio.gmsh.write(temporary, content, fmt_version="2.2", binary=False, float_fmt=".16e")
+    return path
+
+
+def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatArray] | None = None) -> Path:
+    """Write a mesh, and fields on its nodes, for ParaView: quadratic cells for order 2.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        The mesh.
+    path : str or Path
+        Ends in ``.vtu``.
+    point_data : mapping of str to array, shape (nodes,) or (nodes, components), optional
+        Fields on the nodes.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    MeshError
+        When the file cannot be written or a field does not fit the nodes.
+    """
+    import meshio
+
+    fields = {key: np.asarray(values) for key, values in (point_data or {}).items()}
+    for key, values in fields.items():
+        if len(values) != body.node_count:
+            raise MeshError(f"field {key!r} has {len(values)} values, but {body.name} has {body.node_count} nodes")
+    cell = "triangle" if body.order == 1 else "triangle6"
+    content = meshio.Mesh(_points(body), [(cell, element_nodes(body))], point_data=fields)
+    path = Path(path)
+    with written_whole(path) as temporary:
+        meshio.vtu.write(temporary, content, binary=True)
+    return path
+
+
+def read_msh(path: str | Path, *, required_boundaries: Sequence[str] = ()) -> BodyMesh:
+    """Read a mesh of triangles with named boundaries from any ``.msh`` version that meshio reads.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; all triangles belong to one body and lie in the plane z = 0.
+    required_boundaries : sequence of str
+        Names that must be there; when any is given, the named boundaries must also cover the whole outline.
+
+    Returns
+    -------
+    BodyMesh
+        Named after the group of the triangles, or the file; construction points dropped.
+
+    Raises
+    ------
+    MeshError
+        When the file is missing or corrupt, holds no triangles or mixed orders, an element is inverted, or a
+        required boundary is missing.
+    """
+    path = Path(path)
+    content = _parse(path)
+    blocks = {kind: content.get_cells_type(kind) for kind in ("triangle", "triangle6")}
+    present = [kind for kind, block in blocks.items() if len(block)]
+    if len(present) != 1:
+        raise MeshError(f"{path}: holds {'no' if not present else 'both 3-node and 6-node'} triangles")
+    order = 1 if present[0] == "triangle" else 2
+    elements = np.asarray(blocks[present[0]], dtype=np.int64)
+    points = np.asarray(content.points, dtype=float)
+    if elements.min() < 0 or elements.max() >= len(points) or not np.isfinite(points).all():
+        raise MeshError(f"{path}: elements name nodes that are not there, or coordinates are no numbers")
+    if points.shape[1] > 2 and np.any(points[np.unique(elements), 2] != 0.0):
+        raise MeshError(f"{path}: nodes lie outside the plane z = 0")
+    name, lines = _groups(content, path, order)
+    body = _assemble(name, points[:, :2], elements, lines, order, path)
+    try:
+        for boundary in required_boundaries:
+            body.require_boundary(boundary)
+        if required_boundaries:
+            body.require_complete_boundaries()
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from error
+    return body
+
+
+def _parse(path: Path) -> meshio.Mesh:
+    import meshio
+
+    if not path.is_file():
+        raise MeshError(f"{path}: no such file")
+    # The format ends every section; a file cut short would otherwise be read as far as it goes.
+    text = path.read_bytes()
+    for section in (b"MeshFormat", b"Nodes", b"Elements"):
+        if b"$" + section not in text or b"$End" + section not in text:
+            raise MeshError(f"{path}: corrupt or no gmsh mesh (no complete section ${section.decode()})")
+    try:
+        return meshio.gmsh.read(path)
+    except (meshio.ReadError, *_PARSER_ERRORS) as error:
+        raise MeshError(f"{path}: corrupt, cannot be read as a gmsh mesh ({error or type(error).__name__})") from error
+    except SystemExit as error:
+        raise MeshError(f"{path}: corrupt, cannot be read as a gmsh mesh") from error
+
+
+def _groups(content: meshio.Mesh, path: Path, order: int) -> tuple[str, dict[str, IntArray]]:
+    """Return the name of the body and the nodes of each named line group."""
+    names = {(int(tag), int(dimension)): key for key, (tag, dimension) in content.field_data.items()}
+    wanted = {"line": 1, "line3": 2}
+    lines: dict[str, list[IntArray]] = {}
+    body = path.stem
+    physical = content.cell_data.get("gmsh:physical", [])
+    for block, tags in zip(content.cells, physical, strict=False):
+        for tag in np.unique(tags).tolist():
+            if block.type in wanted:
+                if wanted[block.type] != order:
+                    raise MeshError(f"{path}: boundary lines and triangles are of different order")
+                name = names.get((tag, 1))
+                if name is not None:
+                    lines.setdefault(name, []).append(np.asarray(block.data[np.asarray(tags) == tag]))
+            elif block.type.startswith("triangle"):
+                body = names.get((tag, 2), body)
+    return body, {name: np.vstack(parts).astype(np.int64) for name, parts in lines.items()}
+
+
+def _assemble(
+    name: str, points: FloatArray, elements: IntArray, lines: dict[str, IntArray], order: int, path: Path
+) -> BodyMesh:
+    used, first_use = np.unique(elements[:, :3], return_inverse=True)
+    corners = first_use.reshape(-1, 3)
+    number = np.full(len(points), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    edges = {}
+    for key, nodes in lines.items():
+        if nodes.min() < 0 or nodes.max() >= len(points) or np.any(number[nodes[:, :2]] < 0):
+            raise MeshError(f"{path}: boundary {key!r} has nodes that belong to no triangle")
+        edges[key] = number[nodes[:, :2]]
+    # Inverted elements would be turned silently by a sort, so the order of the file stays.
+    try:
+        mesh = triangle_mesh(np.ascontiguousarray(points[used].T), np.ascontiguousarray(corners.T), edges, order=order)
+        if order == 2:
+            # triangle6: mid-sides of (0,1), (1,2), (2,0); the facets of an element stand in the same order.
+            facets = mesh.nvertices + mesh.t2f
+            mesh.doflocs[:, facets.ravel()] = points[elements[:, 3:].T.ravel()].T
+        body = BodyMesh(name=name, mesh=mesh)
+        require_valid_elements(body)
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from error
+    return body

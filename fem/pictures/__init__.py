@@ -1,0 +1,13 @@
+"""Pictures of meshes and solutions.
+
+Modules in the order data passes:
+
+=================  ============================================================
+offscreen          Whether pyvista can render off-screen here, found out in a subprocess
+scene              Flat scenes of coloured triangles and lines, rendered by pyvista off-screen or, without GL, by
+                   matplotlib
+mesh_picture       Picture of the mesh of a whole drive with zooms at its contacts: pyvista off-screen, or matplotlib
+solution_pictures  Pictures of a full solution: von Mises over the drive, the three most loaded contacts, the
+                   deformed shape
+=================  ============================================================
+"""

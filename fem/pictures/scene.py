@@ -1,0 +1,261 @@
+"""Flat scenes of coloured triangles and lines, rendered by pyvista off-screen or, without GL, by matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.mesh.mesh_file import written_whole
+from fem.pictures.offscreen import rendering_problem
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+IntArray = NDArray[np.int64]
+
+COLOUR_MAP = "turbo"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patch:
+    """Filled triangles.
+
+    Attributes
+    ----------
+    points : array of complex, shape (n,)
+        mm.
+    faces : array of int, shape (m, 3)
+        Straight triangles.
+    values : array, shape (n,), or None
+        To be shown by colour; None for `colour`.
+    colour : str
+        Without values.
+    """
+
+    points: ComplexArray
+    faces: IntArray
+    values: FloatArray | None = None
+    colour: str = "#dddddd"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lines:
+    """Polylines of equal length.
+
+    Attributes
+    ----------
+    points : array of complex, shape (lines, points)
+        mm.
+    colour : str
+        Of all of them.
+    width : float
+        Pixels.
+    """
+
+    points: ComplexArray
+    colour: str = "#303030"
+    width: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Panel:
+    """One square window on a scene.
+
+    Attributes
+    ----------
+    title : str
+        Above it.
+    centre : complex
+        mm.
+    half_side : float
+        mm.
+    patches : tuple of Patch
+        Below the lines.
+    lines : tuple of Lines
+        Above the patches.
+    label : str
+        Of the colour bar; "" for none.
+    limits : tuple of two floats
+        Of the colours.
+    """
+
+    title: str
+    centre: complex
+    half_side: float
+    patches: tuple[Patch, ...]
+    lines: tuple[Lines, ...]
+    label: str = ""
+    limits: tuple[float, float] = (0.0, 1.0)
+
+
+def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
+    """Render panels side by side into a PNG file.
+
+    Parameters
+    ----------
+    path : Path
+        The file; it appears only when complete.
+    panels : sequence of Panel
+        From left to right.
+    side : int
+        Pixels of each panel.
+
+    Returns
+    -------
+    str
+        "" when pyvista drew it, else why matplotlib did.
+
+    Raises
+    ------
+    MeshError
+        When the file cannot be written.
+    """
+    problem = rendering_problem()
+    clipped = [_clip(panel) for panel in panels]
+    with written_whole(path) as temporary:
+        (_render_with_matplotlib if problem else _render_with_pyvista)(temporary, clipped, side)
+    return problem
+
+
+def _clip(panel: Panel) -> Panel:
+    """Leave out what lies outside the window."""
+
+    def shows(points: ComplexArray) -> NDArray[np.bool_]:
+        away = points - panel.centre
+        reach = panel.half_side
+        return np.asarray(
+            (away.real.min(axis=1) < reach)
+            & (away.real.max(axis=1) > -reach)
+            & (away.imag.min(axis=1) < reach)
+            & (away.imag.max(axis=1) > -reach)
+        )
+
+    patches = []
+    for patch in panel.patches:
+        faces = patch.faces[shows(patch.points[patch.faces])]
+        if len(faces):
+            patches.append(Patch(points=patch.points, faces=faces, values=patch.values, colour=patch.colour))
+    lines = []
+    for item in panel.lines:
+        points = item.points[shows(item.points)]
+        if len(points):
+            lines.append(Lines(points=points, colour=item.colour, width=item.width))
+    return Panel(
+        title=panel.title,
+        centre=panel.centre,
+        half_side=panel.half_side,
+        patches=tuple(patches),
+        lines=tuple(lines),
+        label=panel.label,
+        limits=panel.limits,
+    )
+
+
+def _flat(points: ComplexArray, height: float) -> FloatArray:
+    ravelled = points.ravel()
+    return np.column_stack([ravelled.real, ravelled.imag, np.full(ravelled.size, height)])
+
+
+def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None:
+    import pyvista
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    # VTK warns about a missing X server before it takes EGL.
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    plotter: Any = pyvista.Plotter(off_screen=True, shape=(1, len(panels)), window_size=[side * len(panels), side])
+    for column, panel in enumerate(panels):
+        plotter.subplot(0, column)
+        plotter.set_background("white")
+        bar = bool(panel.label)
+        for patch in panel.patches:
+            padded = np.column_stack([np.full(len(patch.faces), 3), patch.faces]).ravel()
+            mesh = pyvista.PolyData(_flat(patch.points, 0.0), padded)
+            if patch.values is None:
+                plotter.add_mesh(mesh, color=patch.colour, lighting=False)
+                continue
+            plotter.add_mesh(
+                mesh,
+                scalars=patch.values,
+                cmap=COLOUR_MAP,
+                clim=panel.limits,
+                lighting=False,
+                show_scalar_bar=bar,
+                scalar_bar_args={
+                    "title": panel.label + " " * column,
+                    "color": "black",
+                    "n_labels": 5,
+                    "vertical": True,
+                    "position_x": 0.90,
+                    "position_y": 0.2,
+                    "width": 0.06,
+                    "height": 0.6,
+                    "title_font_size": 16,
+                    "label_font_size": 14,
+                },
+            )
+            bar = False
+        for item in panel.lines:
+            count, length = item.points.shape
+            index = np.arange(item.points.size).reshape(count, length)
+            cells = np.column_stack([np.full(count, length), index]).ravel()
+            plotter.add_mesh(
+                pyvista.PolyData(_flat(item.points, 0.01 * panel.half_side), lines=cells),
+                color=item.colour,
+                lighting=False,
+                line_width=item.width,
+            )
+        plotter.add_text(panel.title, font_size=11, color="black", position="upper_edge")
+        plotter.enable_parallel_projection()
+        distance = 10.0 * panel.half_side
+        plotter.camera.focal_point = (panel.centre.real, panel.centre.imag, 0.0)
+        plotter.camera.position = (panel.centre.real, panel.centre.imag, distance)
+        plotter.camera.up = (0.0, 1.0, 0.0)
+        plotter.camera.parallel_scale = panel.half_side
+        plotter.camera.clipping_range = (0.5 * distance, 2.0 * distance)
+    plotter.screenshot(str(path))
+    plotter.close()
+
+
+def _render_with_matplotlib(path: Path, panels: Sequence[Panel], side: int) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.collections import LineCollection
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(side * len(panels) / 100.0, side / 100.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    for column, panel in enumerate(panels):
+        axes = figure.add_subplot(1, len(panels), column + 1)
+        coloured: Any = None
+        for patch in panel.patches:
+            values = np.zeros(len(patch.points)) if patch.values is None else patch.values
+            drawn: Any = axes.tripcolor(  # type: ignore[call-overload]
+                patch.points.real,
+                patch.points.imag,
+                patch.faces,
+                values,
+                shading="gouraud",
+                cmap=COLOUR_MAP if patch.values is not None else _single(patch.colour),
+                vmin=panel.limits[0],
+                vmax=panel.limits[1],
+            )
+            coloured = drawn if patch.values is not None else coloured
+        for item in panel.lines:
+            segments: Any = np.stack([item.points.real, item.points.imag], axis=-1)
+            axes.add_collection(LineCollection(segments, colors=item.colour, linewidths=0.6 * item.width))
+        if coloured is not None and panel.label:
+            figure.colorbar(coloured, ax=axes, label=panel.label, shrink=0.8)
+        axes.set_aspect("equal")
+        axes.set_xlim(panel.centre.real - panel.half_side, panel.centre.real + panel.half_side)
+        axes.set_ylim(panel.centre.imag - panel.half_side, panel.centre.imag + panel.half_side)
+        axes.set(title=panel.title, xlabel="x, mm", ylabel="y, mm")
+    figure.savefig(path, dpi=100.0)
+
+
+def _single(colour: str) -> Any:
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap([colour])

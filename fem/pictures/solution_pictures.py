@@ -1,0 +1,198 @@
+"""Pictures of a full solution: von Mises over the drive, the three most loaded contacts, the deformed shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.contact.coupling import Pose
+from fem.contact.pressure_measures import vertex_means
+from fem.drive.fields import BodyField
+from fem.drive.model import ContactPair, DriveModel
+from fem.drive.solution import FullSolution
+from fem.pictures.scene import Lines, Panel, Patch, render
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+# Colours over the whole drive end where this share of its area is below: the spots under the contacts would leave
+# the rest of the drive in one colour.
+COLOUR_AREA = 0.995
+# The largest elastic displacement is drawn as this part of the drive's radius.
+DEFORMED_SHARE = 0.04
+ZOOM_HALF_WIDTHS = 3.5
+# The peak pressure is drawn as long as this many half-widths.
+PRESSURE_HALF_WIDTHS = 1.5
+NAMES = {
+    "pin": "pin {} on the flank",
+    "roller_outer": "roller {} on the bore",
+    "roller_inner": "roller {} on the race",
+    "hole": "shaft pin {} in its hole",
+}
+
+
+def draw_solution(
+    solution: FullSolution, fields: Sequence[BodyField], headline: str, folder: Path, *, side: int = 1600
+) -> str:
+    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``.
+
+    Parameters
+    ----------
+    solution : FullSolution
+        The solution.
+    fields : sequence of BodyField
+        Its fields.
+    headline : str
+        Drive, case and angle.
+    folder : Path
+        Where to.
+    side : int
+        Pixels of each picture of the whole drive; texts keep their size, so they read larger on a smaller one.
+
+    Returns
+    -------
+    str
+        "" when pyvista drew them, else why matplotlib did.
+    """
+    everything = np.concatenate([field.places for field in fields])
+    # Room for the colour bar on the right.
+    reach = 1.14 * float(np.max(np.abs(everything)))
+    room = 0.1 * reach + 0j
+    limit = _stress_below(fields, COLOUR_AREA)
+    shaft = _shaft_pins(solution)
+    whole = Panel(
+        title=f"{headline}: von Mises stress, colours end at {limit:.3g} MPa",
+        centre=room,
+        half_side=reach,
+        patches=tuple(_patch(field, field.places, field.stress.von_mises) for field in fields),
+        lines=(*(_outline(field, field.places) for field in fields), shaft),
+        label="von Mises, MPa",
+        limits=(0.0, limit),
+    )
+    problem = render(folder / "von_mises.png", [whole], side=side)
+    render(folder / "contacts.png", _zooms(solution, fields))
+    largest = max(float(np.max(np.abs(field.elastic))) for field in fields)
+    scale = _round_down(DEFORMED_SHARE * reach / largest)
+    deformed = Panel(
+        title=f"{headline}: elastic displacement x {scale:g} at the loaded pose (grey: undeformed)",
+        centre=room,
+        half_side=reach,
+        patches=tuple(
+            _patch(field, field.places + scale * field.elastic, 1e3 * np.abs(field.elastic)) for field in fields
+        ),
+        lines=(
+            *(_outline(field, field.places, "#999999") for field in fields),
+            *(_outline(field, field.places + scale * field.elastic) for field in fields),
+            shaft,
+        ),
+        label="elastic displacement, µm",
+        limits=(0.0, 1e3 * largest),
+    )
+    render(folder / "deformed.png", [deformed], side=side)
+    return problem
+
+
+def _stress_below(fields: Sequence[BodyField], share: float) -> float:
+    """Return the von Mises stress that a share of the area stays below, MPa."""
+    areas, stresses = [], []
+    for field in fields:
+        triangles = field.body.mesh.t
+        a, b, c = (field.places[triangles[k]] for k in range(3))
+        areas.append(0.5 * np.abs(((b - a).conjugate() * (c - a)).imag))
+        stresses.append(field.stress.von_mises[triangles].mean(axis=0))
+    area, stress = np.concatenate(areas), np.concatenate(stresses)
+    order = np.argsort(stress)
+    below = np.cumsum(area[order]) / area.sum()
+    return float(stress[order][np.searchsorted(below, share)])
+
+
+def _round_down(value: float) -> float:
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= value) * power)
+
+
+def _patch(field: BodyField, places: ComplexArray, values: FloatArray) -> Patch:
+    return Patch(points=places, faces=field.placed.faces(), values=values)
+
+
+def _outline(field: BodyField, places: ComplexArray, colour: str = "#202020") -> Lines:
+    mesh = field.body.mesh
+    facets = mesh.boundary_facets()
+    ends = mesh.facets[:, facets]
+    points = np.column_stack([places[ends[0]], places[mesh.nvertices + facets], places[ends[1]]])
+    return Lines(points=points, colour=colour, width=1.5)
+
+
+def _shaft_pins(solution: FullSolution) -> Lines:
+    place, pose = solution.model.placement, solution.pose
+    circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 361))
+    centres = place.shaft_pin_centres + pose.shaft_pin_displacements
+    return Lines(points=centres[:, None] + place.shaft_pin_radii[:, None] * circle, colour="#777777", width=1.5)
+
+
+def _carrier_pose(model: DriveModel, solution: FullSolution, pair: ContactPair) -> Pose:
+    return Pose(centre=model.race_centre) if pair.kind == "roller_inner" else model.disc_pose(solution.pose)
+
+
+def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
+    """Return windows on the three most loaded contacts: mesh, stress and pressure diagram."""
+    model, details = solution.model, solution.contacts.details
+    order = np.argsort([-detail.load for detail in details], kind="stable")
+    chosen: list[int] = []
+    for candidate in order.tolist():
+        # A roller's two contacts carry the same load: one of them is enough.
+        pair = model.pairs[candidate]
+        twin = any(
+            model.pairs[k].index == pair.index and {model.pairs[k].kind, pair.kind} == {"roller_outer", "roller_inner"}
+            for k in chosen
+        )
+        if details[candidate].load > 0.0 and not twin:
+            chosen.append(candidate)
+        if len(chosen) == 3:
+            break
+    panels = []
+    for number in chosen:
+        pair, detail = model.pairs[number], details[number]
+        pose = _carrier_pose(model, solution, pair)
+        arc = pair.zone.arc
+        vertices = np.append(pair.zone.places[:, 0], pair.zone.places[-1, 2])
+        pressure = vertex_means(arc, pair.zone.at_vertices(solution.state.contact.pressure[pair.unknowns]))
+        exact, normal = pair.zone.exact(vertices)
+        places, into = pose.place(exact), -pose.turn(normal)
+        middle = complex(np.interp(detail.middle, arc, places.real), np.interp(detail.middle, arc, places.imag))
+        height = PRESSURE_HALF_WIDTHS * detail.half_width / detail.peak_pressure
+        on = np.flatnonzero(pressure > 0.0)
+        diagram = places + height * pressure * into
+        teeth = np.column_stack([places[on], diagram[on]])
+        half_side = ZOOM_HALF_WIDTHS * detail.half_width
+        near = [field for field in fields if float(np.min(np.abs(field.places - middle))) < half_side]
+        limit = 0.65 * detail.peak_pressure
+        panels.append(
+            Panel(
+                title=(
+                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N, "
+                    f"peak {detail.peak_pressure:.0f} MPa,\n"
+                    f"half-width {1e3 * detail.half_width:.1f} µm, window {2.0 * half_side:.3g} mm; white: pressure"
+                ),
+                centre=middle,
+                half_side=half_side,
+                patches=tuple(_patch(field, field.places + field.elastic, field.stress.von_mises) for field in near),
+                lines=(
+                    *(Lines(points=_edges(field), colour="#404040", width=0.8) for field in near),
+                    _shaft_pins(solution),
+                    Lines(points=teeth, colour="#ffffff", width=1.5),
+                    Lines(points=diagram[None, max(on[0] - 1, 0) : on[-1] + 2], colour="#ffffff", width=3.0),
+                ),
+                label="von Mises, MPa",
+                limits=(0.0, limit),
+            )
+        )
+    return panels
+
+
+def _edges(field: BodyField) -> ComplexArray:
+    mesh, nodes = field.body.mesh, field.places + field.elastic
+    return np.column_stack([nodes[mesh.facets[0]], nodes[mesh.nvertices :], nodes[mesh.facets[1]]])

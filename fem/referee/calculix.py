@@ -1,0 +1,193 @@
+"""CalculiX as a second opinion: runs the exported deck, reads contact forces and pressures, compares."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.drive.solution import FullSolution
+from fem.mesh.mesh_file import written_whole
+from fem.referee.calculix_deck import pair_name, slave_faces, write_deck
+from ltca.errors import CycloError
+
+FloatArray = NDArray[np.float64]
+
+LONGEST_RUN = 3600.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RefereeAnswer:
+    """What CalculiX found.
+
+    Attributes
+    ----------
+    load : dict of str to float
+        Normal force of each contact pair, N, by its name in the deck.
+    peak_pressure : dict of str to float
+        Largest mean pressure of an element face of each pair, MPa.
+    wheel_angle : float
+        With the turn of the wheel from the pose of the deck, rad.
+    seconds : float
+        Wall time of ccx.
+    """
+
+    load: dict[str, float]
+    peak_pressure: dict[str, float]
+    wheel_angle: float
+    seconds: float
+
+
+def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tuple[str, float]:
+    """Run ccx on a deck in a folder of its own; return the text of its .dat file and the seconds it took.
+
+    Raises
+    ------
+    CycloError
+        When ccx fails, does not end in time or leaves no results.
+    """
+    with tempfile.TemporaryDirectory(prefix="cyclo-ccx-") as folder:
+        (Path(folder) / "job.inp").symlink_to(deck.resolve())
+        start = time.perf_counter()
+        try:
+            run = subprocess.run(
+                [program, "job"],
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=limit,
+                check=False,
+                env={**os.environ, "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1")},
+            )
+        except subprocess.TimeoutExpired as error:
+            raise CycloError(f"ccx did not end within {limit:.0f} s on {deck}") from error
+        except OSError as error:
+            raise CycloError(f"{program} cannot be run: {error}") from error
+        seconds = time.perf_counter() - start
+        result = Path(folder) / "job.dat"
+        text = result.read_text(encoding="utf-8", errors="replace") if result.exists() else ""
+        if run.returncode != 0 or "Job finished" not in run.stdout or "total surface force" not in text:
+            tail = " / ".join(line.strip() for line in run.stdout.splitlines() if "ERROR" in line) or run.stdout[-400:]
+            raise CycloError(f"ccx failed on {deck} (exit status {run.returncode}): {tail}")
+        return text, seconds
+
+
+def read_forces(text: str) -> dict[str, FloatArray]:
+    """Return the total force of each slave surface, N, from the text of a .dat file."""
+    forces: dict[str, FloatArray] = {}
+    name = ""
+    wanted = False
+    for line in text.splitlines():
+        if "statistics for slave set" in line:
+            name = line.split("slave set")[1].split(",")[0].strip().removeprefix("S_")
+        elif "total surface force" in line:
+            wanted = True
+        elif wanted and line.strip():
+            forces[name] = np.array([float(word) for word in line.split()[:3]])
+            wanted = False
+    return forces
+
+
+def read_pressures(text: str) -> dict[tuple[int, int], list[float]]:
+    """Return the pressures at the contact points of each slave face (element, face), MPa."""
+    pressures: dict[tuple[int, int], list[float]] = {}
+    inside = False
+    for line in text.splitlines():
+        if "contact stress" in line:
+            inside = True
+        elif inside and line.strip():
+            words = line.split()
+            if len(words) != 5 or not words[0].isdigit():
+                inside = False
+                continue
+            pressures.setdefault((int(words[0]), int(words[1])), []).append(float(words[2]))
+    return pressures
+
+
+def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAnswer:
+    """Let CalculiX solve the deck of a solution and read its answer.
+
+    Raises
+    ------
+    CycloError
+        When it fails.
+    """
+    text, seconds = run_calculix(deck, program)
+    with written_whole(deck.with_suffix(".dat")) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    forces, pressures = read_forces(text), read_pressures(text)
+    # ccx counts the faces of the expanded wedge: 1 and 2 are front and back, the sides of the triangle follow.
+    faces = slave_faces(solution)
+    peaks = {
+        name: max((float(np.mean(pressures[face])) for face in own if face in pressures), default=0.0)
+        for name, own in faces.items()
+    }
+    turn = next(
+        float(following.split()[1])
+        for line, following in _with_following(text)
+        if "displacements" in line and "WHEEL" in line
+    )
+    return RefereeAnswer(
+        load={name: float(np.hypot(force[0], force[1])) for name, force in forces.items()},
+        peak_pressure=peaks,
+        wheel_angle=solution.pose.wheel_angle + turn,
+        seconds=seconds,
+    )
+
+
+def _with_following(text: str) -> list[tuple[str, str]]:
+    lines = [line for line in text.splitlines() if line.strip()]
+    return list(pairwise(lines))
+
+
+def compare_with_calculix(solution: FullSolution, folder: Path, program: str) -> list[str]:
+    """Run CalculiX and return a table of both answers, line by line.
+
+    Parameters
+    ----------
+    solution : FullSolution
+        Ours.
+    folder : Path
+        For ``calculix.inp`` and ``calculix.dat``.
+    program : str
+        From `fem.referee.calculix_deck.find_calculix`.
+
+    Raises
+    ------
+    CycloError
+        When CalculiX fails.
+    """
+    answer = ask_calculix(solution, write_deck(solution, folder / "calculix.inp"), program)
+    details = solution.contacts.details
+    largest: dict[str, float] = {}
+    for pair, detail in zip(solution.model.pairs, details, strict=True):
+        largest[pair.kind] = max(largest.get(pair.kind, 0.0), detail.load)
+    lines = [
+        f"{'':<16}{'load, N':>22}{'of largest':>12}{'peak, MPa':>20}{'difference':>12}",
+        f"{'contact':<16}{'cyclo':>11}{'ccx':>11}{'%':>12}{'cyclo':>10}{'ccx':>10}{'%':>12}",
+    ]
+    for pair, detail in zip(solution.model.pairs, details, strict=True):
+        name = pair_name(pair)
+        if detail.load <= 0.0 and answer.load.get(name, 0.0) <= 0.0:
+            continue
+        load, peak = answer.load.get(name, 0.0), answer.peak_pressure.get(name, 0.0)
+        change = 100.0 * (detail.load - load) / largest[pair.kind]
+        rise = f"{100.0 * (detail.peak_pressure / peak - 1.0):12.2f}" if peak > 0.0 else f"{'':>12}"
+        lines.append(
+            f"{name.lower():<16}{detail.load:>11.2f}{load:>11.2f}{change:>12.3f}"
+            f"{detail.peak_pressure:>10.1f}{peak:>10.1f}{rise}"
+        )
+    arcseconds = np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0
+    lines.append(
+        f'wheel angle: {solution.pose.wheel_angle:.7f} rad, ccx {answer.wheel_angle:.7f} rad ({arcseconds:+.3f}")'
+    )
+    lines.append(f"seconds: {solution.seconds['total']:.1f}, ccx {answer.seconds:.1f}")
+    return lines

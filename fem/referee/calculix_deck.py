@@ -1,0 +1,310 @@
+"""Input deck of the same problem for CalculiX: CPE6 elements, surface-to-surface penalty contact.
+
+The deck stands at the loaded pose that `cyclo fem` found, with all bodies undeformed: they overlap by their
+approaches and CalculiX presses them apart; any rigid motion it still finds is the difference of the two
+codes. What differs from our own model:
+
+- rollers are held sideways at two nodes near their axis instead of in the mean (frictionless contacts
+  leave these supports with next to nothing to carry, and a mean over all nodes would fill the matrix);
+- contact is a penalty: pressure = `PENALTY_FACTOR` E/h times penetration;
+- rollers that carry nothing are left out, because nothing would hold them.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.elasticity import unknowns_of_boundary
+from fem.body.surface import OppositeZone
+from fem.contact.coupling import Pose
+from fem.drive.model import ContactPair
+from fem.drive.solution import FullSolution
+from fem.mesh.body_mesh import BodyMesh, IntArray
+from fem.mesh.mesh_file import element_nodes, written_whole
+from ltca.drive.parts import Material
+from ltca.errors import CycloError
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+# Penalty stiffness times smallest edge over E. Penetration under the peak pressure is then p h/(50 E), some
+# thousandths of the approach.
+PENALTY_FACTOR = 50.0
+# Half-angle of the rigid shaft-pin arcs is this many times the zone they face.
+RIGID_REACH = 1.3
+
+
+def find_calculix() -> str:
+    """Return the program ``ccx``.
+
+    Raises
+    ------
+    CycloError
+        When it is not installed.
+    """
+    program = shutil.which("ccx")
+    if program is None:
+        raise CycloError("--referee calculix: the program ccx is not installed (Debian: apt install calculix-ccx)")
+    return program
+
+
+def pair_name(pair: ContactPair) -> str:
+    """Return the name of a contact pair in the deck."""
+    return f"{pair.kind}_{pair.index}".upper()
+
+
+def slave_faces(solution: FullSolution) -> dict[str, list[tuple[int, int]]]:
+    """Return element and face (numbered as in the results: 3, 4, 5 for S1, S2, S3) of the slave side of each pair."""
+    meshes = solution.model.meshes
+    found = {}
+    for pair in solution.model.pairs:
+        race = pair.kind == "roller_inner"
+        # Disc first, race second: see `write_deck`.
+        offset = meshes.disc.mesh.t.shape[1] if race else 0
+        lines = _faces(meshes.inner_race if race else meshes.disc, pair.zone.nodes[:, 1], offset)
+        found[pair_name(pair)] = [
+            (int(element), int(side[1:]) + 2) for element, side in (line.split(",") for line in lines)
+        ]
+    return found
+
+
+class _Deck:
+    """Lines of the deck, nodes and elements numbered through all bodies."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.equations: list[str] = []
+        self.preload: list[tuple[int, complex]] = []
+        self.next_node = 1
+        self.next_element = 1
+
+    def add_nodes(self, places: ComplexArray) -> int:
+        """Write nodes; return the number before the first one."""
+        offset = self.next_node - 1
+        self.lines.append("*NODE, NSET=NALL")
+        self.lines += [
+            f"{offset + k},{x:.14g},{y:.14g},0."
+            for k, (x, y) in enumerate(zip(places.real, places.imag, strict=True), 1)
+        ]
+        self.next_node += len(places)
+        return offset
+
+    def add_elements(self, kind: str, name: str, nodes: IntArray, material: Material, thickness: float) -> int:
+        """Write elements with material and section; return the number before the first one."""
+        offset = self.next_element - 1
+        self.lines.append(f"*ELEMENT, TYPE={kind}, ELSET={name}")
+        self.lines += [f"{offset + k}," + ",".join(map(str, row)) for k, row in enumerate(nodes.tolist(), 1)]
+        self.lines += [
+            f"*MATERIAL, NAME=M_{name}",
+            "*ELASTIC",
+            f"{material.youngs_modulus:.10g},{material.poisson_ratio:.10g}",
+            f"*SOLID SECTION, ELSET={name}, MATERIAL=M_{name}",
+            f"{thickness:.10g}",
+        ]
+        self.next_element += len(nodes)
+        return offset
+
+    def equate(self, terms: list[tuple[int, int, float]]) -> None:
+        """Write Σ factor · u(node, direction) = 0; the first unknown is eliminated."""
+        self.equations += ["*EQUATION", str(len(terms))]
+        for first in range(0, len(terms), 4):
+            self.equations.append(
+                ",".join(f"{node},{direction},{factor:.14g}" for node, direction, factor in terms[first : first + 4])
+            )
+
+
+def _faces(body: BodyMesh, middles: IntArray, elements: int) -> list[str]:
+    facets = middles - body.mesh.nvertices
+    owners = body.mesh.f2t[0, facets]
+    local = np.argmax(body.mesh.t2f[:, owners] == facets, axis=0)
+    return [f"{elements + int(owner) + 1},S{int(side) + 1}" for owner, side in zip(owners, local, strict=True)]
+
+
+def write_deck(solution: FullSolution, path: Path) -> Path:
+    """Write a complete input deck of the problem that a full solution solved.
+
+    Parameters
+    ----------
+    solution : FullSolution
+        Plane strain.
+    path : Path
+        Ends in ``.inp``.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    CycloError
+        For plane stress and for elastic shaft pins, which the deck does not have.
+    MeshError
+        When the file cannot be written.
+    """
+    if solution.plane_state != "strain":
+        raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
+    model, pose = solution.model, solution.pose
+    if model.shaft_pins:
+        raise CycloError("the CalculiX deck has rigid shaft pins; solve without --elastic-shaft-pins")
+    drive, meshes = model.drive, model.meshes
+    thickness, materials = drive.disc.thickness, drive.materials
+    deck = _Deck()
+    deck.lines += [
+        f"** cyclo: {drive.name}, crank angle {model.crank_angle:.10g} rad, wheel moment "
+        f"{solution.state.wheel_moment:.10g} N mm, fingerprint {drive.fingerprint()}",
+        "** mm, N, MPa; all bodies undeformed at the loaded pose",
+    ]
+    placed: dict[str, tuple[BodyMesh, int, int, float]] = {}
+
+    def add_body(name: str, body: BodyMesh, at: Pose, material: Material, turn: float = 0.0) -> None:
+        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+        places = at.centre + local * np.exp(1j * (at.rotation + turn))
+        nodes = deck.add_nodes(places)
+        elements = deck.add_elements("CPE6", name, nodes + 1 + element_nodes(body), material, thickness)
+        placed[name] = (body, nodes, elements, 0.0)
+
+    add_body("DISC", meshes.disc, model.disc_pose(pose), materials.disc)
+    add_body("RACE", meshes.inner_race, Pose(centre=model.race_centre), materials.inner_race)
+    own = solution.state.contact.pressure
+    carrying = {pair.index for pair in model.pairs if pair.kind == "roller_outer" and np.any(own[pair.unknowns] > 0.0)}
+    pairs = [pair for pair in model.pairs if pair.kind in ("pin", "hole") or pair.index in carrying]
+    for pair in pairs:
+        if pair.kind in ("pin", "roller_outer"):
+            # The mesh in the frame of its group, whose zones are known, turned to this body.
+            group = model.groups[pair.group]
+            at = Pose(centre=model.circle_centre(pair.kind, pair.index, pose))
+            material = materials.wheel_pin if pair.kind == "pin" else materials.roller
+            add_body(f"{pair.kind[:6]}_{pair.index}".upper(), group.body, at, material, pair.turn)
+    wheel = deck.add_nodes(np.zeros(1, dtype=complex)) + 1
+    springs: list[str] = []
+    interactions: list[str] = []
+    for pair in pairs:
+        name = pair_name(pair)
+        carrier, _, elements, _ = placed["RACE" if pair.kind == "roller_inner" else "DISC"]
+        edge = float(np.abs(pair.zone.places[:, 2] - pair.zone.places[:, 0]).min())
+        faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
+        if pair.kind == "hole":
+            opposite = _add_rigid_arc(
+                deck,
+                pair,
+                model.disc_pose(pose),
+                model.circle_centre("hole", pair.index, pose),
+                drive.pin_shaft.stiffness,
+                thickness,
+                springs,
+                complex(pose.shaft_pin_displacements[pair.index]),
+            )
+        else:
+            body, _, first, _ = placed[f"{pair.kind[:6]}_{pair.index}".upper()]
+            zone: OppositeZone = model.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+            opposite = _faces(body, zone.nodes[1::2], first)
+        deck.lines += [f"*SURFACE, NAME=S_{name}, TYPE=ELEMENT", *faces]
+        deck.lines += [f"*SURFACE, NAME=O_{name}, TYPE=ELEMENT", *opposite]
+        interactions += [
+            f"*SURFACE INTERACTION, NAME=I_{name}",
+            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+            f"{PENALTY_FACTOR * materials.disc.youngs_modulus / edge:.6g}",
+            f"*CONTACT PAIR, INTERACTION=I_{name}, TYPE=SURFACE TO SURFACE",
+            f"S_{name},O_{name}",
+        ]
+    for pair in pairs:
+        if pair.kind == "pin":
+            body, nodes, _, _ = placed[f"PIN_{pair.index}"]
+            _tie_core(deck, body, nodes, model.circle_centre("pin", pair.index, pose), pair.turn, wheel)
+        elif pair.kind == "roller_outer":
+            body, nodes, _, _ = placed[f"ROLLER_{pair.index}"]
+            _guide_roller(deck, body, nodes, complex(model.roller_rays[pair.index]), pair.turn)
+    race, offset, _, _ = placed["RACE"]
+    fixed = np.unique(unknowns_of_boundary(race, "inner") // 2) + offset + 1
+    deck.lines += ["*NSET, NSET=FIXED", *map(str, fixed.tolist())]
+    deck.lines += deck.equations
+    deck.lines += springs
+    deck.lines += interactions
+    deck.lines += ["*BOUNDARY", "FIXED,1,2"]
+    deck.lines += ["*STEP, INC=200", "*STATIC", "1.,1.", "*CLOAD", f"{wheel},1,{solution.state.wheel_moment:.14g}"]
+    for node, force in deck.preload:
+        deck.lines += [f"{node},1,{force.real:.14g}", f"{node},2,{force.imag:.14g}"]
+    for pair in pairs:
+        name = pair_name(pair)
+        deck.lines += [f"*CONTACT PRINT, SLAVE=S_{name}, MASTER=O_{name}", "CFN"]
+    deck.lines += ["*CONTACT PRINT", "CSTR"]
+    deck.lines += ["*NSET, NSET=WHEEL", str(wheel), "*NODE PRINT, NSET=WHEEL", "U", "*END STEP"]
+    with written_whole(path) as temporary:
+        temporary.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
+    return path
+
+
+def _tie_core(deck: _Deck, body: BodyMesh, offset: int, centre: complex, turn: float, wheel: int) -> None:
+    """Let the core of a pin turn with the wheel: u = ω × r, ω being the first unknown of the wheel's node."""
+    for node in np.unique(unknowns_of_boundary(body, "core") // 2).tolist():
+        x, y = body.mesh.doflocs[:, node]
+        at = centre + complex(x, y) * np.exp(1j * turn)
+        deck.equate([(offset + node + 1, 1, 1.0), (wheel, 1, at.imag)])
+        deck.equate([(offset + node + 1, 2, 1.0), (wheel, 1, -at.real)])
+
+
+def _guide_roller(deck: _Deck, body: BodyMesh, offset: int, ray: complex, turn: float) -> None:
+    """Hold a roller across its ray at two nodes near its axis of load."""
+    places = (body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]) * np.exp(1j * turn)
+    radius = float(np.abs(places).max())
+    across = 1j * ray
+    for target in (-0.3 * radius * ray, 0.3 * radius * ray):
+        node = offset + int(np.argmin(np.abs(places - target))) + 1
+        terms = [(node, 1, across.real), (node, 2, across.imag)]
+        deck.equate(sorted(terms, key=lambda term: -abs(term[2])))
+
+
+def _add_rigid_arc(
+    deck: _Deck,
+    pair: ContactPair,
+    disc: Pose,
+    centre: complex,
+    stiffness: float,
+    thickness: float,
+    springs: list[str],
+    displaced: complex,
+) -> list[str]:
+    """Write a rigid arc of a shaft pin on its springs; return its outer faces."""
+    zone = pair.zone
+    middle = np.angle(disc.place(zone.places[zone.edge_count // 2, 1:2])[0] - centre)
+    reach = RIGID_REACH * 0.5 * zone.arc[-1] / pair.radius
+    count = max(2 * zone.edge_count, 8)
+    angles = middle + np.linspace(-reach, reach, 2 * count + 1)
+    depth = pair.radius * 2.0 * reach / count
+    outer = centre + pair.radius * np.exp(1j * angles)
+    between = centre + (pair.radius - 0.5 * depth) * np.exp(1j * angles[::2])
+    inner = centre + (pair.radius - depth) * np.exp(1j * angles)
+    places = np.concatenate([outer, inner, between])
+    offset = deck.add_nodes(places) + 1
+    size = 2 * count + 1
+    k = 2 * np.arange(count)
+    nodes = np.column_stack(
+        [size + k, k, k + 2, size + k + 2, 2 * size + k // 2, k + 1, 2 * size + k // 2 + 1, size + k + 1]
+    )
+    # Corners ccw: inner first, outer first, outer last, inner last (angles grow).
+    material = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
+    elements = deck.add_elements("CPE8", f"RIGID_{pair.index}", offset + nodes, material, thickness)
+    reference = deck.add_nodes(np.array([centre])) + 1
+    for node in range(len(places)):
+        deck.equate([(offset + node, 1, 1.0), (reference, 1, -1.0)])
+        deck.equate([(offset + node, 2, 1.0), (reference, 2, -1.0)])
+    # The pose holds the pin displaced by F/k; springs start without force, so a force makes up for it.
+    for direction in (1, 2):
+        springs += [
+            f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING_{pair.index}_{direction}",
+            f"{deck.next_element},{reference}",
+            f"*SPRING, ELSET=SPRING_{pair.index}_{direction}",
+            str(direction),
+            f"{stiffness:.10e}",
+        ]
+        deck.next_element += 1
+    springs += ["*BOUNDARY", f"{reference},3,3"]
+    deck.preload.append((reference, -stiffness * displaced))
+    order = nodes[0].tolist()
+    side = next(i for i in range(4) if {order[i], order[(i + 1) % 4]} == {0, 2})
+    return [f"{elements + i + 1},S{side + 1}" for i in range(count)]

@@ -1,0 +1,370 @@
+"""Exact shape of each body of a drive: closed curves with names, in the frame of the body.
+
+The disc is given in its own frame, as `ltca.geometry.flank` and `ltca.geometry.placement` define it; pins, rollers and the
+inner race have their centre at the origin. Points of the plane are complex numbers in mm. Every curve runs
+counter-clockwise with a parameter of period 2π and knows on which side the body lies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from fem.errors import MeshError
+from ltca.drive.parts import Drive
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+DEFAULT_CORE_RADIUS = 2.0
+DEFAULT_RACE_BORE_RADIUS = 10.0
+# A default core or race bore shrinks with the part, or a small drive would have no material left to deform.
+LARGEST_CORE_SHARE = 1.0 / 3.0
+LARGEST_RACE_BORE_SHARE = 0.6
+
+
+class Curve(Protocol):
+    """A closed curve that bounds a body, counter-clockwise, parameter of period 2π."""
+
+    @property
+    def name(self) -> str:
+        """Name of the boundary in the mesh."""
+
+    @property
+    def encloses_body(self) -> bool:
+        """Whether the body lies inside the curve (else the curve is a hole in it)."""
+
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape."""
+
+    def points(self, parameter: FloatArray) -> ComplexArray:
+        """Return points, mm."""
+
+    def normals(self, parameter: FloatArray) -> ComplexArray:
+        """Return unit normals out of the body."""
+
+    def curvature_radius(self, parameter: FloatArray) -> FloatArray:
+        """Return the size of the radius of curvature, mm."""
+
+    def parameter_of(self, point: ComplexArray) -> FloatArray:
+        """Return the parameter in [0, 2π) of the point of the curve nearest to each point."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CircleCurve:
+    """Circle; the parameter is the polar angle about its centre.
+
+    Attributes
+    ----------
+    name : str
+        Name of the boundary.
+    radius : float
+        mm.
+    centre : complex
+        mm.
+    encloses_body : bool
+        False for a hole.
+    """
+
+    name: str
+    radius: float
+    centre: complex = 0j
+    encloses_body: bool = True
+
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape."""
+        return 360
+
+    def points(self, parameter: FloatArray) -> ComplexArray:
+        """Return points, mm."""
+        return np.asarray(self.centre + self.radius * np.exp(1j * np.asarray(parameter)))
+
+    def normals(self, parameter: FloatArray) -> ComplexArray:
+        """Return unit normals out of the body."""
+        outward = np.exp(1j * np.asarray(parameter))
+        return np.asarray(outward if self.encloses_body else -outward)
+
+    def curvature_radius(self, parameter: FloatArray) -> FloatArray:
+        """Return the radius for every parameter, mm."""
+        return np.full(np.shape(parameter), self.radius)
+
+    def parameter_of(self, point: ComplexArray) -> FloatArray:
+        """Return the polar angle about the centre, in [0, 2π)."""
+        return np.asarray(np.mod(np.angle(np.asarray(point) - self.centre), 2.0 * np.pi))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlankCurve:
+    """Flank of the disc; the parameter is θ of Eq. 1.
+
+    Attributes
+    ----------
+    profile : FlankProfile
+        The flank.
+    name : str
+        Name of the boundary.
+    """
+
+    profile: FlankProfile
+    name: str = "flank"
+
+    @property
+    def encloses_body(self) -> bool:
+        """Whether the body lies inside: always."""
+        return True
+
+    @property
+    def samples(self) -> int:
+        """How many equally spaced parameters resolve the shape: 128 for each tooth."""
+        return 128 * round(self.profile.reduction_ratio)
+
+    def points(self, parameter: FloatArray) -> ComplexArray:
+        """Return points, mm."""
+        return self.profile.flank(np.asarray(parameter))
+
+    def normals(self, parameter: FloatArray) -> ComplexArray:
+        """Return unit normals out of the disc."""
+        return self.profile.normal(np.asarray(parameter))
+
+    def curvature_radius(self, parameter: FloatArray) -> FloatArray:
+        """Return the size of the radius of curvature, mm; very large where the flank is straight."""
+        curvature = np.abs(self.profile.curvature(np.asarray(parameter)))
+        return np.asarray(1.0 / np.maximum(curvature, 1e-12))
+
+    def parameter_of(self, point: ComplexArray) -> FloatArray:
+        """Return θ in [0, 2π) of the nearest point of the flank; for points within a pin radius of it."""
+        points = np.asarray(point, dtype=complex).ravel()
+        # The table only has to start Newton's method on the right tooth and side.
+        table = np.linspace(0.0, 2.0 * np.pi, self.samples, endpoint=False)
+        samples = self.profile.flank(table)
+        _, nearest = cKDTree(np.column_stack([samples.real, samples.imag])).query(
+            np.column_stack([points.real, points.imag])
+        )
+        theta = self.profile.nearest_parameter(points, table[nearest])
+        return np.asarray(np.mod(theta, 2.0 * np.pi).reshape(np.shape(point)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiscShape:
+    """Cycloid disc in its own frame.
+
+    Attributes
+    ----------
+    flank : FlankCurve
+        Boundary "flank".
+    bore : CircleCurve
+        Boundary "bore".
+    holes : tuple of CircleCurve
+        Boundaries "hole_0", "hole_1", …
+    name : str
+        Name of the body.
+    """
+
+    flank: FlankCurve
+    bore: CircleCurve
+    holes: tuple[CircleCurve, ...]
+    name: str = "disc"
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> DiscShape:
+        """Return the disc of a drive, hole errors included."""
+        placement = Placement.of_drive(drive)
+        return cls(
+            flank=FlankCurve(profile=FlankProfile.of_drive(drive)),
+            bore=CircleCurve(name="bore", radius=placement.bore_radius, encloses_body=False),
+            holes=tuple(
+                CircleCurve(name=f"hole_{k}", radius=float(radius), centre=complex(centre), encloses_body=False)
+                for k, (centre, radius) in enumerate(zip(placement.hole_centres, placement.hole_radii, strict=True))
+            ),
+        )
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """Outer curve first, then the holes."""
+        return (self.flank, self.bore, *self.holes)
+
+    @property
+    def narrowest_wall(self) -> float:
+        """Smallest wall between two boundaries, mm (the root circle stands for the flank)."""
+        root = self.flank.profile.root_radius
+        walls = [root - self.bore.radius]
+        for k, hole in enumerate(self.holes):
+            walls.append(root - abs(hole.centre) - hole.radius)
+            walls.append(abs(hole.centre) - hole.radius - self.bore.radius)
+            walls += [abs(hole.centre - other.centre) - hole.radius - other.radius for other in self.holes[:k]]
+        return min(walls)
+
+    @property
+    def area(self) -> float:
+        """Area, mm², by the divergence theorem; the trapezoidal rule is exact to round-off on a closed curve."""
+        theta = np.linspace(0.0, 2.0 * np.pi, 400 * round(self.flank.profile.reduction_ratio), endpoint=False)
+        points = self.flank.points(theta)
+        normals = self.flank.normals(theta)
+        _, tangent, _ = self.flank.profile.locus(theta)
+        # Parallel curves: |r′| = |c′| (1 − offset κ_c).
+        speed = np.abs(tangent) * (1.0 - self.flank.profile.offset * self.flank.profile.locus_curvature(theta))
+        outer = 0.5 * float(np.mean((points * normals.conjugate()).real * speed)) * 2.0 * np.pi
+        return outer - np.pi * (self.bore.radius**2 + sum(hole.radius**2 for hole in self.holes))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CircleShape:
+    """Pin or roller, centre at the origin.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    radius : float
+        Boundary "surface", mm.
+    core_radius : float
+        Boundary "core" of a rigid core that is left out of the mesh, mm; 0 for none.
+    """
+
+    name: str
+    radius: float
+    core_radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.core_radius < self.radius:
+            raise MeshError(
+                f"core radius {self.core_radius:g} mm of {self.name}: must be at least 0 mm and less than "
+                f"{self.radius:g} mm, its radius"
+            )
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """Outer curve first, then the core."""
+        surface = CircleCurve(name="surface", radius=self.radius)
+        if self.core_radius == 0.0:
+            return (surface,)
+        return (surface, CircleCurve(name="core", radius=self.core_radius, encloses_body=False))
+
+    @property
+    def narrowest_wall(self) -> float:
+        """Wall between surface and core, or the radius, mm."""
+        return self.radius - self.core_radius
+
+    @property
+    def area(self) -> float:
+        """Area, mm²."""
+        return float(np.pi * (self.radius**2 - self.core_radius**2))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RingShape:
+    """Inner race, centre at the origin.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    inner_radius, outer_radius : float
+        Boundaries "inner" and "outer", mm.
+    """
+
+    inner_radius: float
+    outer_radius: float
+    name: str = "inner_race"
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.inner_radius < self.outer_radius:
+            raise MeshError(
+                f"inner radius {self.inner_radius:g} mm of {self.name}: must be greater than 0 mm and less than "
+                f"{self.outer_radius:g} mm, its outer radius"
+            )
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """Outer curve first, then the inner one."""
+        return (
+            CircleCurve(name="outer", radius=self.outer_radius),
+            CircleCurve(name="inner", radius=self.inner_radius, encloses_body=False),
+        )
+
+    @property
+    def narrowest_wall(self) -> float:
+        """Wall of the ring, mm."""
+        return self.outer_radius - self.inner_radius
+
+    @property
+    def area(self) -> float:
+        """Area, mm²."""
+        return float(np.pi * (self.outer_radius**2 - self.inner_radius**2))
+
+
+Shape = DiscShape | CircleShape | RingShape
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveShapes:
+    """Shapes of all bodies of a drive, each in its own frame.
+
+    Attributes
+    ----------
+    disc : DiscShape
+        The cycloid disc.
+    wheel_pins : tuple of CircleShape
+        "pin_0", …, with a rigid core.
+    rollers : tuple of CircleShape
+        "roller_0", …, full circles.
+    inner_race : RingShape
+        "inner_race".
+    shaft_pins : tuple of CircleShape
+        "shaft_pin_0", …, full circles, for the option of elastic shaft pins.
+    """
+
+    disc: DiscShape
+    wheel_pins: tuple[CircleShape, ...]
+    rollers: tuple[CircleShape, ...]
+    inner_race: RingShape
+    shaft_pins: tuple[CircleShape, ...]
+
+    @classmethod
+    def of_drive(
+        cls, drive: Drive, *, core_radius: float | None = None, race_bore_radius: float | None = None
+    ) -> DriveShapes:
+        """Return the shapes of a drive.
+
+        Parameters
+        ----------
+        drive : Drive
+            The drive in one case.
+        core_radius : float, optional
+            Radius of the rigid core of the wheel pins, mm; 2 mm by default, at most a third of the pin radius.
+        race_bore_radius : float, optional
+            Fixed bore of the inner race, mm; 10 mm by default, at most 0.6 of r_i.
+
+        Raises
+        ------
+        MeshError
+            When a given radius leaves no material.
+        """
+        placement = Placement.of_drive(drive)
+        if core_radius is None:
+            core_radius = min(DEFAULT_CORE_RADIUS, LARGEST_CORE_SHARE * float(placement.wheel_pin_radii.min()))
+        if race_bore_radius is None:
+            race_bore_radius = min(DEFAULT_RACE_BORE_RADIUS, LARGEST_RACE_BORE_SHARE * placement.inner_race_radius)
+        return cls(
+            disc=DiscShape.of_drive(drive),
+            wheel_pins=tuple(
+                CircleShape(name=f"pin_{i}", radius=float(radius), core_radius=core_radius)
+                for i, radius in enumerate(placement.wheel_pin_radii)
+            ),
+            rollers=tuple(
+                CircleShape(name=f"roller_{n}", radius=float(radius)) for n, radius in enumerate(placement.roller_radii)
+            ),
+            inner_race=RingShape(inner_radius=race_bore_radius, outer_radius=placement.inner_race_radius),
+            shaft_pins=tuple(
+                CircleShape(name=f"shaft_pin_{k}", radius=float(radius))
+                for k, radius in enumerate(placement.shaft_pin_radii)
+            ),
+        )

@@ -1,0 +1,10 @@
+"""Regenerates what the regression tests compare with.
+
+Modules in the order data passes:
+
+================  ============================================================
+fixtures          Regenerates the small meshes in ``meshes/``: ``python -m fem.testing.fixtures [--out meshes]``
+reference_fields  Internal fields of the small meshes in ``meshes/``, for regression: ``python -m
+                  fem.testing.reference_fields``
+================  ============================================================
+"""

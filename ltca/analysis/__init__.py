@@ -1,0 +1,17 @@
+"""An analysis of a drive and what is read from it.
+
+Modules in the order data passes:
+
+=========================  ============================================================
+loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
+                           pressures and bearing forces
+results                    The labelled dataset of a run and the scalars of its summary
+pressure_fields            Pressure over every loaded contact at chosen crank angles: solved on grids at the pose
+                           found, as one dataset
+torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost
+                           motion, torsional stiffness
+transmission_error_orders  Orders of the transmission error by name, fitted together
+rating_life                Rating life of the crank bearing from the loads of its rollers (ISO 281, ISO/TS 16281)
+pressure_safety            Safety of the flank pressure against a limit
+=========================  ============================================================
+"""

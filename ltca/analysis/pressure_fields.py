@@ -1,0 +1,269 @@
+"""Pressure over every loaded contact at chosen crank angles: solved on grids at the pose found, as one dataset.
+
+Layout of ``pressure.nc``: dimensions ``case``, ``angle``, ``pin``, ``side`` (outer, inner), ``roller`` and the cells
+``pin_x``, ``pin_y``, ``roller_x``, ``roller_y`` of each patch. Patches differ in size, so each has edges of its own:
+``pin_x_edge (case, angle, pin, pin_x_bound)`` along the common tangent in the sense of the growing flank parameter,
+``pin_y_edge`` along the width from mid-width, mm; for rollers alike. ``pin_pressure`` and ``roller_pressure`` are the
+mean pressures of the cells, MPa. A pair that carries less than 0.1 % of the largest load of its kind has pressure
+zero on cells of no size, so sums of pressure times area are loads without exception.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.results import LOADED_FRACTION
+from ltca.contact.end_pressure import largest_pressure
+from ltca.contact.pressure_cells import PatchSolution
+from ltca.contact.subsurface import find_subsurface_shear
+from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, GridContact
+from ltca.geometry.separation import circle_departure, flank_departure
+
+FloatArray = NDArray[np.float64]
+
+FIELD_CELLS = 16
+"""Cells over each half-width and half of each length."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PressureField:
+    """Pressure over one whole patch.
+
+    Attributes
+    ----------
+    x_edges, y_edges : array
+        Cell edges along profile and width, mm.
+    pressure : array, shape (x cells, y cells)
+        Mean pressure of the cells, MPa.
+    mid, largest : float
+        Largest pressure at mid-width and anywhere, MPa.
+    half_width : float
+        At mid-width, mm.
+    load : float
+        N.
+    max_shear, max_shear_depth : float
+        Largest shear stress below mid-width in MPa and its depth in mm.
+    """
+
+    x_edges: FloatArray
+    y_edges: FloatArray
+    pressure: FloatArray
+    mid: float
+    largest: float
+    half_width: float
+    load: float
+    max_shear: float
+    max_shear_depth: float
+
+
+def recover_pressure(
+    kind: ContactKind, approach: float, effective_radius: float, departure: Departure, poisson_ratio: float
+) -> PressureField:
+    """Solve one contact at a given approach and unfold its symmetry.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        Length, profile, modulus and cells.
+    approach, effective_radius : float
+        δ and ρ, mm.
+    departure : callable
+        True separation over the distance along the tangent, mm.
+    poisson_ratio : float
+        Of the body whose shear stress is wanted.
+    """
+    contact = GridContact(kind)
+    for _ in range(2):  # the second grid has the half-width that the first one found
+        contact.fit(approach, effective_radius)
+        contact.shape(0.0, departure)
+        contact.press(approach)
+    solved = contact.solution(approach)
+    shear = find_subsurface_shear(solved, poisson_ratio)
+    x, y, pressure = _unfolded(solved)
+    return PressureField(
+        x_edges=x,
+        y_edges=y,
+        pressure=pressure,
+        mid=solved.mid_pressure,
+        largest=largest_pressure(solved, kind.end_cell),
+        half_width=solved.half_width,
+        load=solved.load,
+        max_shear=shear.max_shear,
+        max_shear_depth=shear.depth,
+    )
+
+
+def _unfolded(solved: PatchSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
+    x, y, pressure = solved.grid.x_edges, solved.grid.y_edges, solved.pressure
+    if solved.grid.symmetric_x:
+        x, pressure = np.concatenate([-x[:0:-1], x]), np.concatenate([pressure[::-1], pressure])
+    if solved.grid.symmetric_y:
+        y, pressure = np.concatenate([-y[:0:-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
+    return x, y, pressure
+
+
+def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS) -> dict[int, PressureField]:
+    """Return the pressure fields of the loaded wheel pins of one position, by pin."""
+    kind = ContactKinds.of_drive(analysis.drive, cells).pins
+    contacts, geometry = analysis.full.response, analysis.model.geometry
+    fields = {}
+    for pin in _loaded(contacts.pin_load, position):
+        theta = float(contacts.flank.parameter[position, pin])
+        radius = float(geometry.placement.wheel_pin_radii[pin])
+
+        def departure(x: FloatArray, theta: float = theta, radius: float = radius) -> FloatArray:
+            return flank_departure(geometry.profile, theta, x) + circle_departure(x, radius)
+
+        fields[pin] = recover_pressure(
+            kind,
+            float(contacts.flank.approach[position, pin]),
+            float(contacts.flank.effective_radius[position, pin]),
+            departure,
+            analysis.drive.materials.disc.poisson_ratio,
+        )
+    return fields
+
+
+def roller_fields(
+    analysis: LoadedAnalysis, position: int, side: str, cells: int = FIELD_CELLS
+) -> dict[int, PressureField]:
+    """Return the pressure fields of the loaded rollers of one position on one side, by roller.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        The analysis.
+    position : int
+        Its position.
+    side : {"outer", "inner"}
+        In the bore or on the inner race.
+    cells : int
+        Cells over the half-width and half the length.
+    """
+    kinds = ContactKinds.of_drive(analysis.drive, cells)
+    rollers, place = analysis.full.response.rollers, analysis.model.geometry.placement
+    outer = side == "outer"
+    kind = kinds.outer if outer else kinds.inner
+    approach = rollers.outer_approach if outer else rollers.inner_approach
+    race = -float(place.bore_radius) if outer else float(place.inner_race_radius)
+    fields = {}
+    for roller in _loaded(rollers.outer_load, position):
+        radius = float(place.roller_radii[roller])
+
+        def departure(x: FloatArray, radius: float = radius) -> FloatArray:
+            return circle_departure(x, radius) + circle_departure(x, race)
+
+        fields[roller] = recover_pressure(
+            kind,
+            float(approach[position, roller]),
+            1.0 / (1.0 / radius + 1.0 / race),
+            departure,
+            analysis.drive.materials.roller.poisson_ratio,
+        )
+    return fields
+
+
+def _loaded(load: FloatArray, position: int) -> list[int]:
+    return [int(pair) for pair in np.nonzero(load[position] > LOADED_FRACTION * np.max(load))[0]]
+
+
+SCALARS = {
+    "pressure_mid": ("mid", "MPa", "largest pressure at mid-width"),
+    "pressure_max": ("largest", "MPa", "largest pressure anywhere, end cell in attrs"),
+    "half_width": ("half_width", "mm", "contact half-width at mid-width"),
+    "field_load": ("load", "N", "pressure summed over the patch"),
+    "max_shear": ("max_shear", "MPa", "largest shear stress below mid-width"),
+    "max_shear_depth": ("max_shear_depth", "mm", "its depth below the surface"),
+}
+
+
+def build_pressure_dataset(
+    drive_name: str, analyses: Mapping[str, LoadedAnalysis], cells: int = FIELD_CELLS
+) -> xr.Dataset:
+    """Return the pressure fields of all cases; the layout is told in `ltca.analysis.pressure_fields`.
+
+    Parameters
+    ----------
+    drive_name : str
+        Name of the drive.
+    analyses : mapping of str to LoadedAnalysis
+        One for each case, all at the chosen crank angles.
+    cells : int
+        Cells over each half-width and half of each length.
+    """
+    first = next(iter(analyses.values()))
+    angles, placement = first.full.crank_angle, first.model.geometry.placement
+    variables: dict[str, Any] = {}
+    pins = [
+        [[pin_fields(analysis, position, cells)] for position in range(angles.size)] for analysis in analyses.values()
+    ]
+    rollers = [
+        [
+            [roller_fields(analysis, position, side, cells) for side in ("outer", "inner")]
+            for position in range(angles.size)
+        ]
+        for analysis in analyses.values()
+    ]
+    _store(variables, "pin", pins, placement.wheel_pin_radii.size, with_side=False)
+    _store(variables, "roller", rollers, placement.roller_radii.size, with_side=True)
+    dataset = xr.Dataset(
+        variables,
+        coords={
+            "case": list(analyses),
+            "crank_angle": ("angle", angles, {"units": "rad", "long_name": "crank angle φ_C, held"}),
+            "side": ["outer", "inner"],
+        },
+        attrs={
+            "drive": drive_name,
+            "method": first.method,
+            "contacts": first.contacts,
+            "cells_per_half_width": cells,
+            "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
+        },
+    )
+    kinds = ContactKinds.of_drive(first.drive, cells)
+    for name, kind in (("pin_pressure_max", kinds.pins), ("roller_pressure_max", kinds.outer)):
+        dataset[name].attrs["end_cell_mm"] = kind.end_cell
+    return dataset
+
+
+def _store(
+    variables: dict[str, Any],
+    name: str,
+    fields: list[list[list[dict[int, PressureField]]]],
+    count: int,
+    *,
+    with_side: bool,
+) -> None:
+    """Put the fields of one kind, by case, angle, side and pair, into arrays of full size."""
+    flat = [field for case in fields for angle in case for side in angle for field in side.values()]
+    nx, ny = flat[0].pressure.shape if flat else (1, 1)
+    shape = (len(fields), len(fields[0]), len(fields[0][0]), count)
+    pressure, x, y = np.zeros((*shape, nx, ny)), np.zeros((*shape, nx + 1)), np.zeros((*shape, ny + 1))
+    scalars = {key: np.zeros(shape) for key in SCALARS}
+    for c, case in enumerate(fields):
+        for a, angle in enumerate(case):
+            for s, side in enumerate(angle):
+                for pair, field in side.items():
+                    place = (c, a, s, pair)
+                    pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
+                    for key, (attribute, _, _) in SCALARS.items():
+                        scalars[key][place] = getattr(field, attribute)
+    dimensions = ("case", "angle", "side", name) if with_side else ("case", "angle", name)
+
+    def put(key: str, values: FloatArray, extra: tuple[str, ...], unit: str, text: str) -> None:
+        stored = values if with_side else values[:, :, 0]
+        variables[f"{name}_{key}"] = ((*dimensions, *extra), stored, {"units": unit, "long_name": text})
+
+    put("pressure", pressure, (f"{name}_x", f"{name}_y"), "MPa", "mean pressure of the cells")
+    put("x_edge", x, (f"{name}_x_bound",), "mm", "cell edges along the profile, from the contact point")
+    put("y_edge", y, (f"{name}_y_bound",), "mm", "cell edges along the width, from mid-width")
+    for key, (_, unit, text) in SCALARS.items():
+        put(key, scalars[key], (), unit, text)

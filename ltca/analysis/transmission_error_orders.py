@@ -1,0 +1,140 @@
+r"""Orders of the transmission error by name, fitted together.
+
+Orders are counted per turn of the crank. Everything in a cycloid drive comes from a few motions: the crank (1), the
+loaded zone past the teeth of the flank (z_C), past the holes (z_PS), past single pins of the wheel, which turns on by
+1/z_P a turn (z_C/z_P), and past the rollers of the cage (1 − c with the cage speed c; n_BR (1 − c) for equal rollers).
+The true period of all of them is long (98 turns for the rollers of the paper's drive), so the known orders are fitted
+by least squares in place of a Fourier transform over a period.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
+from ltca.geometry.placement import Placement
+
+FloatArray = NDArray[np.float64]
+
+
+class Order(NamedTuple):
+    """An order by its origin."""
+
+    value: float
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spectrum:
+    """Fitted orders.
+
+    Attributes
+    ----------
+    orders : tuple of Order
+        Ascending.
+    amplitude : array, shape (orders,)
+        rad.
+    phase : array, shape (orders,)
+        φ of ``amplitude · cos(order · φ_C − φ)``, rad.
+    mean : float
+        rad.
+    residual : float
+        Root mean square of what no order explains, rad.
+    """
+
+    orders: tuple[Order, ...]
+    amplitude: FloatArray
+    phase: FloatArray
+    mean: float
+    residual: float
+
+    def of(self, value: float) -> float:
+        """Return the amplitude of the fitted order nearest to a value, rad."""
+        return float(self.amplitude[int(np.argmin([abs(order.value - value) for order in self.orders]))])
+
+
+def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
+    """Return the orders a drive can have, ascending; an order of several origins bears the name of the first.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    harmonics : int
+        Multiples of each origin.
+    """
+    flank, pins = drive.disc.number_of_teeth, drive.pin_wheel.number_of_pins
+    holes, rollers = drive.pin_shaft.number_of_pins, drive.crank_bearing.number_of_rollers
+    cage = 1.0 - float(Placement.of_drive(drive).cage_speed)
+    names: list[Order] = []
+    for multiple in range(1, harmonics + 1):
+        names += [
+            Order(float(multiple * flank), f"flank, {multiple} z_C"),
+            Order(float(multiple * holes), f"pin holes, {multiple} z_PS"),
+        ]
+    # Two motions that both bend the same contacts show sums and differences of their orders.
+    for first in (1, 2):
+        for second in (1, 2):
+            parts = f"{first} z_C", f"{second} z_PS"
+            names.append(
+                Order(float(abs(first * flank - second * holes)), f"flank and holes, |{parts[0]} − {parts[1]}|")
+            )
+            names.append(Order(float(first * flank + second * holes), f"flank and holes, {parts[0]} + {parts[1]}"))
+    names += [Order(1.0, "crank, 1")]
+    for multiple in range(1, harmonics + 1):
+        names += [
+            Order(multiple * rollers * cage, f"roller passage, {multiple} n_BR(1 − c)"),
+            Order(float(multiple), f"crank, {multiple}"),
+            Order(multiple * cage, f"cage, {multiple} (1 − c)"),
+            Order(multiple * flank / pins, f"wheel pins, {multiple} z_C/z_P"),
+        ]
+    for side in (-2, -1, 1, 2):
+        names.append(Order(float(flank + side), f"flank {side:+d}, z_C {side:+d}"))
+        names.append(Order(flank + side * cage, f"flank {side:+d} cage"))
+        names.append(Order(flank + side * flank / pins, f"flank {side:+d} wheel pins"))
+    found: list[Order] = []
+    for order in names:
+        if order.value > 0.0 and all(abs(order.value - other.value) > 1e-9 for other in found):
+            found.append(order)
+    return tuple(sorted(found))
+
+
+def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, ...]) -> Spectrum:
+    """Fit amplitudes and phases of orders to a transmission error.
+
+    Parameters
+    ----------
+    crank_angle, error : array, shape (positions,)
+        φ_C and the transmission error there, rad.
+    orders : tuple of Order
+        What to fit.
+
+    Returns
+    -------
+    Spectrum
+
+    Raises
+    ------
+    ValueError
+        When the positions cannot tell the orders apart (too few, or over too few turns).
+    """
+    values = np.array([order.value for order in orders])
+    phase = np.asarray(crank_angle)[:, None] * values
+    columns = np.hstack([np.ones((phase.shape[0], 1)), np.cos(phase), np.sin(phase)])
+    solution, _, rank, singular = np.linalg.lstsq(columns, error, rcond=None)
+    if rank < columns.shape[1] or singular[-1] < 1e-3 * singular[0]:
+        raise ValueError(
+            f"{phase.shape[0]} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
+        )
+    cosine, sine = solution[1 : len(orders) + 1], solution[len(orders) + 1 :]
+    return Spectrum(
+        orders=orders,
+        amplitude=np.hypot(cosine, sine),
+        phase=np.arctan2(sine, cosine),
+        mean=float(solution[0]),
+        residual=float(np.sqrt(np.mean((columns @ solution - error) ** 2))),
+    )

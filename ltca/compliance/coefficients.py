@@ -1,0 +1,284 @@
+r"""Influence coefficients of the bodies derived from finite elements: the file, and their values at any place.
+
+The file (written by ``cyclo derive``, format in docs/coefficients.md) holds the approach of patches on disc, pin,
+roller and race by unit loads on patches, at stations along the boundaries. Of each entry the half-plane's logarithm is
+taken off; what is left is smooth when load and place move together, and is interpolated. The logarithm of the
+actual places is added again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive, Material
+from ltca.errors import CycloError
+from ltca.geometry.pairs import ContactGeometry
+
+FloatArray = NDArray[np.float64]
+
+LAGRANGE_POINTS = 6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Boundary:
+    """Stations of one closed boundary, uniform in a periodic parameter.
+
+    Attributes
+    ----------
+    first, count : int
+        Place of the stations in the matrix.
+    """
+
+    first: int
+    count: int
+
+    def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+        """Return stations and weights of local Lagrange interpolation, shapes (…, 6).
+
+        Parameters
+        ----------
+        parameter : array
+            Places, rad, period 2π.
+        """
+        place = np.mod(parameter, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
+        cell = np.floor(place)
+        local = (place - cell)[..., None]
+        nodes = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
+        weights = np.ones((*place.shape, LAGRANGE_POINTS))
+        for one, node in enumerate(nodes):
+            for other in np.delete(nodes, one):
+                weights[..., one] *= (local[..., 0] - other) / (node - other)
+        stations = np.mod(cell[..., None].astype(np.intp) + nodes, self.count) + self.first
+        return stations, weights
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InfluenceCoefficients:
+    """Smooth parts of the influence coefficients of all bodies, mm/N; and the strength of their logarithms.
+
+    Attributes
+    ----------
+    plane : str
+        "strain" or "stress": state of the body part.
+    thickness : float
+        mm.
+    flank, bore : Boundary
+        Stations of flank and bore.
+    holes : tuple of Boundary
+        Stations of each hole.
+    disc : array, shape (stations, stations)
+        Smooth part of the disc.
+    pin : float
+        Smooth part of a wheel pin.
+    roller : array, shape (2, 2)
+        Of a roller; rows and columns inner, outer.
+    race : array, shape (angles,)
+        Of the inner race, by the angle between place and load.
+    disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
+        Factor κ of −ln(distance) in each body, mm/N.
+    """
+
+    plane: str
+    thickness: float
+    flank: Boundary
+    bore: Boundary
+    holes: tuple[Boundary, ...]
+    disc: FloatArray
+    pin: float
+    roller: FloatArray
+    race: FloatArray
+    disc_logarithm: float
+    pin_logarithm: float
+    roller_logarithm: float
+    race_logarithm: float
+
+    def disc_matrix(
+        self,
+        flank: FloatArray,
+        bore: FloatArray,
+        holes: FloatArray,
+        flank_places: NDArray[np.complex128],
+        radius: float,
+    ) -> FloatArray:
+        """Return the coefficients between all contacts of the disc, the logarithm of a contact on itself left out.
+
+        Parameters
+        ----------
+        flank, bore, holes : array, shape (positions, pairs)
+            Places: θ on the flank, polar angles in the disc frame on bore and holes, rad.
+        flank_places : array of complex, shape (positions, z_P)
+            The flank contacts in the disc frame, mm.
+        radius : float
+            Of the bore, mm.
+
+        Returns
+        -------
+        array, shape (positions, contacts, contacts)
+            In the order flank, bore, holes, mm/N.
+        """
+        stations, weights = (
+            np.concatenate(parts, axis=1)
+            for parts in zip(
+                self.flank.weights(flank),
+                self.bore.weights(bore),
+                *(
+                    tuple(part[:, None] for part in boundary.weights(holes[:, number]))
+                    for number, boundary in enumerate(self.holes)
+                ),
+                strict=True,
+            )
+        )
+        positions, contacts, _ = stations.shape
+        spread = np.zeros((positions, contacts, self.disc.shape[0]))
+        np.put_along_axis(spread, stations, weights, axis=2)
+        half = (spread.reshape(-1, self.disc.shape[0]) @ self.disc).reshape(spread.shape)
+        matrix = np.matmul(half, spread.swapaxes(1, 2))
+        pins, rollers = flank.shape[1], bore.shape[1]
+        self._add_logarithm(matrix[:, :pins, :pins], flank_places)
+        self._add_logarithm(matrix[:, pins : pins + rollers, pins : pins + rollers], radius * np.exp(1j * bore))
+        return np.asarray(matrix)
+
+    def _add_logarithm(self, block: FloatArray, places: NDArray[np.complex128]) -> None:
+        distance = np.abs(places[:, :, None] - places[:, None, :])
+        same = np.eye(places.shape[1], dtype=bool)
+        block -= self.disc_logarithm * np.log(np.where(same, 1.0, distance))
+
+    def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:
+        """Return the coefficients between the inner contacts of all rollers, shape (positions, n_BR, n_BR), mm/N.
+
+        Parameters
+        ----------
+        angles : array, shape (positions, n_BR)
+            Polar angles of the contacts, rad.
+        radius : float
+            r_i, mm.
+        """
+        between = angles[:, :, None] - angles[:, None, :]
+        stations, weights = Boundary(first=0, count=self.race.size).weights(between)
+        matrix = np.einsum("bijk,bijk->bij", self.race[stations], weights)
+        distance = 2.0 * radius * np.abs(np.sin(0.5 * between))
+        same = np.eye(angles.shape[1], dtype=bool)
+        return np.asarray(matrix - self.race_logarithm * np.log(np.where(same, 1.0, distance)))
+
+
+def _mean_logarithm(distance: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
+    """⟨ln|x − x′|⟩ over two semi-elliptic patches at a distance: exact for a patch on itself, else to (b/d)²."""
+    apart = distance > 0.0
+    far = np.log(np.where(apart, distance, 1.0))
+    far -= (first**2 + second**2) / (8.0 * np.where(apart, distance, np.inf) ** 2)
+    return np.where(apart, far, np.log(0.5 * first) - 0.25)
+
+
+def logarithm_factor(material: Material, thickness: float, plane: str = "strain") -> float:
+    """Return κ = 2 (1 − ν²)/(π E t) of a half-plane's displacement −κ F ln(distance); 2/(π E t) in plane stress."""
+    compliance = material.plane_strain_compliance if plane == "strain" else 1.0 / material.youngs_modulus
+    return 2.0 * compliance / (np.pi * thickness)
+
+
+def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
+    """Read the coefficients of a drive.
+
+    Parameters
+    ----------
+    path : Path
+        File of ``cyclo derive``.
+    drive : Drive
+        The drive they must belong to.
+
+    Returns
+    -------
+    InfluenceCoefficients
+        Ready to be evaluated at any place.
+
+    Raises
+    ------
+    CycloError
+        When the file cannot be read, lacks something, or belongs to another drive.
+    """
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as opened:
+            data = opened.load()
+    except (OSError, ValueError) as error:
+        raise CycloError(f"{path}: cannot be read as a coefficient file: {error}") from error
+    needed = ("disc_approach", "pin_approach", "roller_approach", "race_approach", "station_boundary")
+    missing = [name for name in needed if name not in data] + [
+        name for name in ("fingerprint", "plane", "thickness") if name not in data.attrs
+    ]
+    if missing:
+        raise CycloError(f"{path}: is no coefficient file of this version; it lacks {', '.join(missing)}")
+    if data.attrs["fingerprint"] != drive.shape_fingerprint():
+        raise CycloError(
+            f"{path}: belongs to another drive ({data.attrs.get('drive', '?')}, shape {data.attrs['fingerprint']}); "
+            f"this one is {drive.name} with shape {drive.shape_fingerprint()}: derive its own (cyclo derive)"
+        )
+    plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
+    boundary = data["station_boundary"].values.astype(int)
+    places = data["station_x"].values + 1j * data["station_y"].values
+    half_width = data["station_half_width"].values
+    disc_logarithm = logarithm_factor(parts.disc, thickness, plane)
+    distance = np.abs(places[:, None] - places[None, :])
+    logarithm = _mean_logarithm(distance, half_width[:, None], half_width[None, :])
+    same = boundary[:, None] == boundary[None, :]
+    disc = data["disc_approach"].values + np.where(same, disc_logarithm * logarithm, 0.0)
+
+    def stations(number: int) -> Boundary:
+        rows = np.flatnonzero(boundary == number)
+        return Boundary(first=int(rows[0]), count=rows.size)
+
+    pin_logarithm = logarithm_factor(parts.wheel_pin, thickness, plane)
+    roller_logarithm = logarithm_factor(parts.roller, thickness, plane)
+    race_logarithm = logarithm_factor(parts.inner_race, thickness, plane)
+    own = _self_logarithm(data["pin_half_width"].values)
+    roller = data["roller_approach"].values + roller_logarithm * np.diag(
+        _self_logarithm(data["roller_half_width"].values)
+    )
+    angle = data["race_angle"].values
+    race_half_width = np.full(angle.shape, float(data["race_half_width"].values))
+    chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
+    race = data["race_approach"].values + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
+    return InfluenceCoefficients(
+        plane=plane,
+        thickness=thickness,
+        flank=stations(0),
+        bore=stations(1),
+        holes=tuple(stations(2 + k) for k in range(drive.pin_shaft.number_of_pins)),
+        disc=0.5 * (disc + disc.T),
+        pin=float(data["pin_approach"].values + pin_logarithm * own),
+        roller=roller,
+        race=race,
+        disc_logarithm=disc_logarithm,
+        pin_logarithm=pin_logarithm,
+        roller_logarithm=roller_logarithm,
+        race_logarithm=race_logarithm,
+    )
+
+
+def _self_logarithm(half_width: FloatArray) -> FloatArray:
+    return np.asarray(np.log(0.5 * half_width) - 0.25)
+
+
+def without_coupling(drive: Drive) -> InfluenceCoefficients:
+    """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
+    geometry = ContactGeometry.of_drive(drive)
+    holes = geometry.placement.hole_radii.size
+    return InfluenceCoefficients(
+        plane="none",
+        thickness=drive.disc.thickness,
+        flank=Boundary(first=0, count=LAGRANGE_POINTS),
+        bore=Boundary(first=LAGRANGE_POINTS, count=LAGRANGE_POINTS),
+        holes=tuple(Boundary(first=(2 + k) * LAGRANGE_POINTS, count=LAGRANGE_POINTS) for k in range(holes)),
+        disc=np.zeros(((2 + holes) * LAGRANGE_POINTS,) * 2),
+        pin=0.0,
+        roller=np.zeros((2, 2)),
+        race=np.zeros(LAGRANGE_POINTS),
+        disc_logarithm=0.0,
+        pin_logarithm=0.0,
+        roller_logarithm=0.0,
+        race_logarithm=0.0,
+    )

@@ -1,0 +1,217 @@
+"""Half-space compliance: pairs that do not feel each other (the paper's model)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import (
+    ContactPressures,
+    KindPressures,
+    Response,
+    Start,
+    assemble_response,
+    spring_load_and_stiffness,
+)
+from ltca.compliance.rollers import RollerLaws, balance_rollers
+from ltca.contact.end_pressure import largest_pressure_ratio
+from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.drive.parts import Drive, contact_modulus
+from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.generator_law import law_for_profile
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HalfSpaceCompliance:
+    """Half-space laws for pins and rollers, springs for the pin holes (the paper's model).
+
+    Attributes
+    ----------
+    geometry : ContactGeometry
+        The contact geometry of the drive.
+    pin_law : ContactLaw
+        Law of wheel pin and flank.
+    roller_laws : RollerLaws
+        Laws of the rollers.
+    hole_stiffness : float
+        k_PS, N/mm.
+    kinds : ContactKinds
+        The contacts as grids see them, for what no table holds.
+    """
+
+    geometry: ContactGeometry
+    pin_law: ContactLaw
+    roller_laws: RollerLaws[ContactLaw]
+    hole_stiffness: float | FloatArray
+    kinds: ContactKinds
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
+        """Return the half-space model of a drive."""
+        geometry = ContactGeometry.of_drive(drive)
+        turn = np.linspace(0.0, 2.0 * np.pi / geometry.profile.reduction_ratio, 181)
+        pin_radii = geometry.profile.effective_radius(turn[:, None], geometry.placement.wheel_pin_radii)
+        return cls._of_geometry(geometry, drive, pin_radii, drive.pin_shaft.stiffness)
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
+        """Return the model of a batch: every drive at the same number of positions, drive by drive.
+
+        Parameters
+        ----------
+        drives : sequence of Drive
+            Drives that agree in what `batch_signature` tells.
+        positions : int
+            Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
+        """
+        geometry = ContactGeometry.of_drives(drives, positions)
+        stiffness = np.repeat([[drive.pin_shaft.stiffness] for drive in drives], positions, axis=0)
+        each = geometry.take(np.arange(len(drives)) * positions)
+        turn = np.linspace(0.0, 2.0 * np.pi, 181 * drives[0].pin_wheel.number_of_pins)
+        pin_radii = np.ones((1, 1))
+        if not drives[0].pin_wheel.pin_profile.is_cylinder:
+            radii = each.placement.wheel_pin_radii
+            pin_radii = np.stack(
+                [
+                    each.profile.effective_radius(turn[None, :], r(radii, axis=1, keepdims=True))
+                    for r in (np.min, np.max)
+                ]
+            )
+        return cls._of_geometry(geometry, drives[0], pin_radii, stiffness)
+
+    @classmethod
+    def _of_geometry(
+        cls, geometry: ContactGeometry, drive: Drive, pin_radii: FloatArray, hole_stiffness: float | FloatArray
+    ) -> HalfSpaceCompliance:
+        place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
+        inner_radius = 1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius)
+        outer_radius = 1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius)
+        # Batches differ little from each other: on a ladder they share the tables of profiled parts.
+        rungs = _rungs if place.is_batch else np.asarray
+        return cls(
+            geometry=geometry,
+            pin_law=law_for_profile(
+                drive.pin_wheel.pin_profile,
+                length=drive.disc.thickness,
+                radius=drive.pin_wheel.pin_radius,
+                contact_modulus=contact_modulus(parts.disc, parts.wheel_pin),
+                effective_radii=rungs(pin_radii),
+            ),
+            roller_laws=RollerLaws(
+                inner=law_for_profile(
+                    bearing.roller_profile,
+                    length=bearing.roller_length,
+                    radius=bearing.roller_radius,
+                    contact_modulus=contact_modulus(parts.inner_race, parts.roller),
+                    effective_radii=rungs(inner_radius),
+                ),
+                outer=law_for_profile(
+                    bearing.roller_profile,
+                    length=bearing.roller_length,
+                    radius=bearing.roller_radius,
+                    contact_modulus=contact_modulus(parts.disc, parts.roller),
+                    effective_radii=rungs(outer_radius),
+                ),
+                inner_radius=inner_radius,
+                outer_radius=outer_radius,
+            ),
+            hole_stiffness=hole_stiffness,
+            kinds=ContactKinds.of_drive(drive),
+        )
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> HalfSpaceCompliance:
+        """Return the model of some positions: itself for one drive, these rows of a batch."""
+        if not self.geometry.placement.is_batch:
+            return self
+        laws = self.roller_laws
+        return HalfSpaceCompliance(
+            geometry=self.geometry.take(rows),
+            pin_law=self.pin_law,
+            roller_laws=RollerLaws(
+                inner=laws.inner,
+                outer=laws.outer,
+                inner_radius=laws.inner_radius[rows],
+                outer_radius=laws.outer_radius[rows],
+            ),
+            hole_stiffness=np.asarray(self.hole_stiffness)[rows],
+            kinds=self.kinds,
+        )
+
+    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+        """Return the contact forces at the poses of a batch of positions.
+
+        Parameters
+        ----------
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        pose : array, shape (positions, 4)
+            q of `ltca.geometry.pairs`.
+        start : Start, optional
+            Inner unknowns of a neighbouring pose.
+
+        Returns
+        -------
+        Response
+            Generalised force, tangent and every pair's load.
+
+        Notes
+        -----
+        A load depends on its place through ρ(θ) as well. That derivative is left out of the tangent, and the
+        force it would add to the gradient of the energy (about 1e-5 of the load, along the flank) is no contact
+        force without friction: the force acts along the common normal.
+        """
+        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
+        pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
+        holes = self.geometry.holes(crank_angle, pose)
+        hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
+        rollers = balance_rollers(
+            self.geometry.rollers(crank_angle),
+            pose[:, 0] + 1j * pose[:, 1],
+            self.roller_laws,
+            None if start is None else start.share,
+        )
+        return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers)
+
+    def pressures(self, response: Response) -> ContactPressures:
+        """Return the pressures at mid-width from the laws."""
+        flank, rollers, laws, kinds = response.flank, response.rollers, self.roller_laws, self.kinds
+        return ContactPressures(
+            pins=_read_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
+            outer=_read_law(laws.outer, kinds.outer, rollers.outer_approach, laws.outer_radius),
+            inner=_read_law(laws.inner, kinds.inner, rollers.inner_approach, laws.inner_radius),
+        )
+
+
+def _read_law(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
+    mid = law.mid_pressure(approach, radius)
+    return KindPressures(
+        mid=mid,
+        largest=mid * largest_pressure_ratio(kind, approach, radius),
+        half_width=law.half_width(approach, radius),
+        end_cell=kind.end_cell,
+    )
+
+
+def batch_signature(drive: Drive) -> tuple[object, ...]:
+    """Return what drives of one batch have in common: numbers of parts, contact laws, shape of the deviations."""
+    wheel, disc, bearing, errors = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.disc.profile_errors
+    # A logarithmic profile scales with the diameter of its part.
+    pin = None if wheel.pin_profile.is_cylinder else (wheel.pin_profile, wheel.pin_radius)
+    roller = None if bearing.roller_profile.is_cylinder else (bearing.roller_profile, bearing.roller_radius)
+    numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.pin_shaft.number_of_pins)
+    lengths = (disc.thickness, bearing.roller_length)
+    return (*numbers, *lengths, pin, roller, drive.materials, errors.orders, errors.parameter, errors.deviation)
+
+
+def _rungs(radii: FloatArray) -> FloatArray:
+    """Range of radii rounded outward to powers of 1.25."""
+    step = np.log(1.25)
+    ends = np.log([np.min(radii), np.max(radii)]) / step
+    return np.asarray(np.exp(step * np.array([np.floor(ends[0]), np.ceil(ends[1])])))

@@ -1,0 +1,198 @@
+"""What a compliance model answers: loads of all contact pairs at a pose, their generalised force and its tangent.
+
+A compliance model answers one question for a batch of positions, `respond`: which generalised force do the
+contacts exert at this pose, and what is its tangent? `ltca.equilibrium.balance` asks nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.rollers import RollerState
+from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """Contacts of a batch of positions at given poses.
+
+    Attributes
+    ----------
+    force : array, shape (positions, 4)
+        Generalised contact force Σ F ∂δ/∂q: N, N, N·mm, N·mm.
+    tangent : array, shape (positions, 4, 4)
+        Its derivative by the pose.
+    flank : FlankMotion
+        Kinematics of the wheel pins.
+    holes : PairMotion
+        Kinematics of the pin holes.
+    rollers : RollerState
+        Balanced rollers.
+    pin_load, hole_load : array, shape (positions, pairs)
+        N.
+    memory : array of object, shape (positions,)
+        What a model wants to find again at the next pose of each position; None where it wants nothing.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    flank: FlankMotion
+    holes: PairMotion
+    rollers: RollerState
+    pin_load: FloatArray
+    hole_load: FloatArray
+    memory: NDArray[np.object_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KindPressures:
+    """Pressures and half-widths of all pairs of one kind, zero where open.
+
+    Attributes
+    ----------
+    mid : array, shape (positions, pairs)
+        Largest pressure at mid-width, MPa.
+    largest : array, shape (positions, pairs)
+        Largest pressure anywhere, MPa: at unrelieved ends it is singular and depends on the end cell.
+    half_width : array, shape (positions, pairs)
+        Contact half-width at mid-width, mm.
+    end_cell : float
+        Length of the end cell behind `largest`, mm.
+    """
+
+    mid: FloatArray
+    largest: FloatArray
+    half_width: FloatArray
+    end_cell: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactPressures:
+    """Pressures of wheel pins and flank, rollers in the bore (outer) and on the inner race (inner)."""
+
+    pins: KindPressures
+    outer: KindPressures
+    inner: KindPressures
+
+
+class ComplianceModel(Protocol):
+    """What `ltca.equilibrium.balance` needs of a compliance model."""
+
+    @property
+    def geometry(self) -> ContactGeometry:
+        """The contact geometry of the drive."""
+        ...
+
+    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+        """Return the contact forces at the poses of a batch of positions."""
+        ...
+
+    def pressures(self, response: Response) -> ContactPressures:
+        """Return the pressures behind a response of this model."""
+        ...
+
+
+class BatchModel(ComplianceModel, Protocol):
+    """A model whose positions may belong to different drives (`ltca.geometry.placement.Placement.is_batch`)."""
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> BatchModel:
+        """Return the model of some of the positions."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Start:
+    """Inner unknowns of a neighbouring pose, to start from.
+
+    Attributes
+    ----------
+    parameter : array, shape (positions, z_P)
+        Contact parameters on the flank, rad.
+    share : array, shape (positions, n_BR)
+        Shares of `ltca.compliance.rollers`.
+    memory : array of object, shape (positions,)
+        Memory of the model, see `Response`.
+    """
+
+    parameter: FloatArray
+    share: FloatArray
+    memory: NDArray[np.object_]
+
+    @classmethod
+    def after(cls, response: Response) -> Start:
+        """Return the start that a response gives for the next pose."""
+        return cls(parameter=response.flank.parameter, share=response.rollers.share, memory=response.memory)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
+        """Return the start of some of the positions."""
+        return Start(parameter=self.parameter[rows], share=self.share[rows], memory=self.memory[rows])
+
+    def replaced(self, rows: NDArray[np.intp] | NDArray[np.bool_], other: Start) -> Start:
+        """Return a copy with some positions taken from another start, given for just these."""
+        fresh = Start(parameter=self.parameter.copy(), share=self.share.copy(), memory=self.memory.copy())
+        fresh.parameter[rows], fresh.share[rows], fresh.memory[rows] = other.parameter, other.share, other.memory
+        return fresh
+
+
+def assemble_response(
+    flank: FlankMotion,
+    pin_load: FloatArray,
+    pin_stiffness: FloatArray,
+    holes: PairMotion,
+    hole_load: FloatArray,
+    hole_stiffness: FloatArray,
+    rollers: RollerState,
+    memory: NDArray[np.object_] | None = None,
+) -> Response:
+    """Put the loads of uncoupled pairs together: generalised force and tangent.
+
+    Parameters
+    ----------
+    flank, holes, rollers : FlankMotion, PairMotion, RollerState
+        Kinematics of the pairs, balanced rollers.
+    pin_load, pin_stiffness, hole_load, hole_stiffness : array, shape (positions, pairs)
+        N and N/mm.
+    memory : array of object, shape (positions,), optional
+        See `Response`.
+    """
+    force = resultant(flank, pin_load, holes, hole_load, rollers)
+    tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
+    tangent[:, :2, :2] += rollers.tangent.sum(axis=1)
+    return Response(
+        force=force,
+        tangent=tangent,
+        flank=flank,
+        holes=holes,
+        rollers=rollers,
+        pin_load=pin_load,
+        hole_load=hole_load,
+        memory=np.full(force.shape[0], None, dtype=object) if memory is None else memory,
+    )
+
+
+def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the load of unilateral springs and its derivative, N and N/mm (Eq. 77)."""
+    return stiffness * np.maximum(approach, 0.0), np.where(approach > 0.0, stiffness, 0.0)
+
+
+def resultant(
+    flank: FlankMotion, pin_load: FloatArray, holes: PairMotion, hole_load: FloatArray, rollers: RollerState
+) -> FloatArray:
+    """Return the generalised force of all contacts, Σ F ∂δ/∂q, shape (positions, 4); N and N·mm."""
+    force = np.einsum("bi,bij->bj", pin_load, flank.gradient)
+    force += np.einsum("bi,bij->bj", hole_load, holes.gradient)
+    push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
+    force[:, 0] -= push.real
+    force[:, 1] -= push.imag
+    return np.asarray(force)
+
+
+def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:
+    scaled = stiffness[..., None] * motion.gradient
+    return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))

@@ -1,0 +1,180 @@
+"""A roller between the races: two contact laws in series, its radial place eliminated (Eq. 52, 57, 66).
+
+The roller stands at the distance s from the inner-race centre on its cage ray n. It balances when the inner
+load equals the outer load projected on the ray, F_i = F_o (n_o·n), which is the minimum of
+U_i(δ_i(s)) + U_o(δ_o(s, d)) over s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.errors import ConvergenceError
+from ltca.geometry.pairs import RollerRays
+from ltca.laws.contact_law import LoadLaw
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+ITERATIONS = 60
+
+Law = TypeVar("Law", bound=LoadLaw)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerLaws(Generic[Law]):
+    """Load laws of the two contacts of every roller.
+
+    Attributes
+    ----------
+    inner, outer : LoadLaw
+        Laws on the inner race and in the bore.
+    inner_radius, outer_radius : array, shape (n_BR,)
+        Effective radii of curvature, mm.
+    """
+
+    inner: Law
+    outer: Law
+    inner_radius: FloatArray
+    outer_radius: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerState:
+    """Balanced rollers.
+
+    Attributes
+    ----------
+    share : array, shape (positions, n_BR)
+        Part of the total interference taken by the inner contact; the start of the next solution.
+    inner_approach, outer_approach : array, shape (positions, n_BR)
+        mm, negative where open; a free roller rests on the inner race.
+    inner_load, outer_load : array, shape (positions, n_BR)
+        N.
+    outer_direction : array of complex, shape (positions, n_BR)
+        Unit vector from the disc centre to the roller, the direction of the load on the disc.
+    tangent : array, shape (positions, n_BR, 2, 2)
+        Second derivative of the eliminated energy by the displacement (x, y) of the disc, N/mm.
+    """
+
+    share: FloatArray
+    inner_approach: FloatArray
+    outer_approach: FloatArray
+    inner_load: FloatArray
+    outer_load: FloatArray
+    outer_direction: ComplexArray
+    tangent: FloatArray
+
+
+def balance_rollers(
+    rays: RollerRays,
+    displacement: ComplexArray,
+    laws: RollerLaws[Law],
+    start: FloatArray | None = None,
+) -> RollerState:
+    """Place every roller so that its two contacts balance.
+
+    Parameters
+    ----------
+    rays : RollerRays
+        Cage rays of the positions.
+    displacement : array of complex, shape (positions,)
+        Disc centre from inner-race centre, mm.
+    laws : RollerLaws
+        Laws of the inner and the outer contacts.
+    start : array, shape (positions, n_BR), optional
+        Shares of a neighbouring solution.
+
+    Returns
+    -------
+    RollerState
+        Loads, approaches and tangent.
+
+    Raises
+    ------
+    ConvergenceError
+        When a law gives no number or a roller does not settle.
+    """
+    direction = rays.direction
+    lowest = rays.touching_distance(displacement)
+    along = direction.real * displacement.real[:, None] + direction.imag * displacement.imag[:, None]
+    interference = rays.outermost - lowest
+    pressed = interference > 0.0
+    total = np.where(pressed, interference, 1.0)
+    share = np.full(direction.shape, 0.5) if start is None else start
+    low, high = np.zeros_like(total), np.ones_like(total)
+    history: list[float] = []
+    for _ in range(ITERATIONS):
+        place = rays.outermost - share * total
+        arm = place * direction - displacement[:, None]
+        length = np.abs(arm)
+        outward = arm / length
+        cosine = outward.real * direction.real + outward.imag * direction.imag
+        inner_approach = np.where(pressed, share * total, 0.0)
+        # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
+        reach = place + lowest - 2.0 * along
+        outer_approach = (1.0 - share) * total * reach / (length + rays.bore_play)
+        inner_load, inner_stiffness = laws.inner.load_and_stiffness(inner_approach, laws.inner_radius)
+        outer_load, outer_stiffness = laws.outer.load_and_stiffness(
+            np.where(pressed, outer_approach, 0.0), laws.outer_radius
+        )
+        bend = outer_load * (1.0 - cosine**2) / length
+        stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
+        imbalance = np.where(pressed, inner_load - outer_load * cosine, 0.0)
+        if np.isnan(imbalance).any():  # bisection would settle on it all the same
+            raise ConvergenceError("rollers do not balance between the races: a load is not a number", history)
+        low = np.where(imbalance < 0.0, share, low)
+        high = np.where(imbalance > 0.0, share, high)
+        safe = np.where(pressed & (stiffness > 0.0), stiffness, 1.0)
+        step = imbalance / (safe * total)
+        following = share - step
+        # Newton within the bracket, bisection where it leaves it.
+        following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
+        following = np.where(pressed & (imbalance != 0.0), following, share)
+        history.append(float(np.max(np.abs(following - share), initial=0.0)))
+        if history[-1] <= 1e-11:
+            break
+        share = following
+    else:
+        raise ConvergenceError("rollers do not balance between the races; change of their share", history)
+    if not np.all(pressed):
+        # A free roller rests on the inner race; its outer gap follows from there.
+        resting = np.abs(rays.outermost * direction - displacement[:, None])
+        outer_approach = np.where(pressed, outer_approach, resting - rays.bore_play)
+    tangent = _eliminated_tangent(
+        direction, outward, cosine, length, outer_load, outer_stiffness, np.where(stiffness > 0.0, stiffness, 1.0)
+    )
+    return RollerState(
+        share=share,
+        inner_approach=inner_approach,
+        outer_approach=outer_approach,
+        inner_load=inner_load,
+        outer_load=outer_load,
+        outer_direction=outward,
+        tangent=tangent,
+    )
+
+
+def _eliminated_tangent(
+    direction: ComplexArray,
+    outward: ComplexArray,
+    cosine: FloatArray,
+    length: FloatArray,
+    load: FloatArray,
+    outer_stiffness: FloatArray,
+    place_stiffness: FloatArray,
+) -> FloatArray:
+    """Schur complement of the roller's place in the Hessian of U_i + U_o over (d, s)."""
+    sideways = 1j * outward
+    normal = np.stack((outward.real, outward.imag), axis=-1)
+    across = np.stack((sideways.real, sideways.imag), axis=-1)
+    slant = direction.real * sideways.real + direction.imag * sideways.imag
+    bend = load / length
+    direct = outer_stiffness[..., None, None] * normal[..., :, None] * normal[..., None, :]
+    direct = direct + bend[..., None, None] * across[..., :, None] * across[..., None, :]
+    mixed = -(outer_stiffness * cosine)[..., None] * normal - (bend * slant)[..., None] * across
+    return np.asarray(direct - mixed[..., :, None] * mixed[..., None, :] / place_stiffness[..., None, None])

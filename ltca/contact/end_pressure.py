@@ -1,0 +1,101 @@
+"""The largest pressure of a contact and how much it exceeds the one at mid-width.
+
+At the end of an unrelieved roller the half-space pressure is singular: what a grid finds there depends on its end
+cell. So the largest pressure is that of an end cell of stated size on any grid: the largest mean over a hundredth
+of the length (`ltca.contact.tracked_grid.ContactKind.end_cell`). For cylinders its ratio to mid-width is a function of
+L/√(ρδ) alone; profiled contacts are sampled over the approaches and radii asked for.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.contact.pressure_cells import PatchSolution
+from ltca.contact.tracked_grid import ContactKind, GridContact
+
+FloatArray = NDArray[np.float64]
+
+_NODES = 19
+_LONGEST, _SHORTEST = 3.0e3, 1.0
+_APPROACHES, _RADII = 9, 3
+_LIGHTEST = 1e-2  # of the largest approach: lighter contacts take the ratio found there
+
+
+def largest_pressure(solved: PatchSolution, stretch: float) -> float:
+    """Return the largest pressure [MPa] as a mean over a stretch along the width, at least the one at mid-width.
+
+    Parameters
+    ----------
+    solved : PatchSolution
+        A patch symmetric about mid-width.
+    stretch : float
+        Length of the stretch, mm.
+    """
+    edges = solved.grid.y_edges
+    end = float(edges[-1])
+    stretch = min(stretch, end)
+    # ∫ p dy from mid-width is piecewise linear: its differences over the stretch are exact means.
+    sums = np.zeros((solved.pressure.shape[0], edges.size))
+    np.cumsum(solved.pressure * np.diff(edges), axis=1, out=sums[:, 1:])
+    starts = np.unique(np.clip(np.concatenate([edges, edges - stretch]), 0.0, end - stretch))
+    means = [(np.interp(starts + stretch, edges, row) - np.interp(starts, edges, row)) / stretch for row in sums]
+    return max(float(np.max(means)), solved.mid_pressure)
+
+
+def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
+    contact = GridContact(kind)
+    for _ in range(2):  # once more with the half-width that the first solution found
+        contact.fit(approach, radius)
+        contact.shape(0.0, lambda x: x**2 / (2.0 * radius))
+        contact.press(approach)
+    solved = contact.solution(approach)
+    return largest_pressure(solved, kind.end_cell) / solved.mid_pressure
+
+
+@cache
+def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes of ln(L/√(ρδ)) and the ratio there."""
+    kind = ContactKind(length=1.0, contact_modulus=1.0, generator=None, symmetric=True, cells=cells)
+    nodes = np.linspace(np.log(_SHORTEST), np.log(_LONGEST), _NODES)
+    return nodes, np.array([_ratio(kind, float(np.exp(-node)), float(np.exp(-node))) for node in nodes])
+
+
+def largest_pressure_ratio(kind: ContactKind, approach: FloatArray, effective_radius: FloatArray) -> FloatArray:
+    """Return largest pressure by pressure at mid-width, 1 where open.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        Length, profile and cells.
+    approach : array, shape (positions, pairs)
+        δ, mm.
+    effective_radius : array, broadcast to that shape
+        ρ, mm.
+    """
+    radius = np.broadcast_to(effective_radius, approach.shape)
+    closed = approach > 0.0
+    ratio = np.ones(approach.shape)
+    if not np.any(closed):
+        return ratio
+    delta, rho = approach[closed], radius[closed]
+    if kind.generator is None:
+        nodes, values = _cylinder_ratio(kind.cells)
+        ratio[closed] = np.interp(np.log(kind.length) - 0.5 * np.log(rho * delta), nodes, values)
+        return ratio
+    approaches = np.linspace(np.log(_LIGHTEST * delta.max()), np.log(delta.max()), _APPROACHES)
+    spread = rho.max() / rho.min() > 1.01
+    radii = np.linspace(np.log(rho.min()), np.log(rho.max()), _RADII if spread else 1)
+    table = np.array([[_ratio(kind, float(np.exp(d)), float(np.exp(r))) for d in approaches] for r in radii])
+    along = np.array([np.interp(np.log(delta), approaches, row) for row in table])
+    if not spread:
+        ratio[closed] = along[0]
+        return ratio
+    place = (np.log(rho) - radii[0]) / (radii[1] - radii[0])
+    lower = np.clip(place.astype(np.intp), 0, _RADII - 2)
+    part = place - lower
+    columns = np.arange(delta.size)
+    ratio[closed] = (1.0 - part) * along[lower, columns] + part * along[lower + 1, columns]
+    return ratio

@@ -1,0 +1,74 @@
+"""Generator of a roller or pin as the drive defines it: crown, logarithmic relief and end relief added up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ltca.contact import length_profile
+from ltca.drive import parts as drive
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SummedProfile:
+    """Profile whose relief is the sum of several, each growing from mid-width to the ends.
+
+    Parameters
+    ----------
+    length : float
+        Length, mm.
+    parts : tuple of ltca.contact.length_profile.LengthProfile
+        The terms, all of that length.
+    """
+
+    length: float
+    parts: tuple[length_profile.LengthProfile, ...]
+
+    def relief(self, y: ArrayLike) -> FloatArray:
+        """Return z(y), mm."""
+        return np.asarray(sum(part.relief(y) for part in self.parts))
+
+    def overlap_half_length(self, approach: float) -> float:
+        """Return the largest |y| ≤ length/2 with z(y) < approach, mm (bisection: z grows with |y|)."""
+        high = min(part.overlap_half_length(approach) for part in self.parts)
+        if len(self.parts) == 1 or float(self.relief(high)) <= approach:
+            return high
+        low = 0.0
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if float(self.relief(middle)) < approach:
+                low = middle
+            else:
+                high = middle
+        return low
+
+
+def generator_profile(profile: drive.LengthProfile, length: float, radius: float) -> SummedProfile | None:
+    """Return the generator profile of a roller or pin, None for a cylinder.
+
+    Parameters
+    ----------
+    profile : ltca.drive.parts.LengthProfile
+        The fields of the drive.
+    length, radius : float
+        Length of the contact and radius of the part, mm.
+    """
+    if profile.is_cylinder:
+        return None
+    parts: list[length_profile.LengthProfile] = []
+    if profile.crown_drop > 0.0:
+        parts.append(length_profile.CircularCrown(length=length, crown_radius=length**2 / (8.0 * profile.crown_drop)))
+    if profile.logarithmic_factor > 0.0:
+        amplitude = 0.00035 * profile.logarithmic_factor
+        parts.append(length_profile.LogarithmicRelief(length=length, diameter=2.0 * radius, amplitude=amplitude))
+    if profile.end_relief_length > 0.0 and profile.end_relief_depth > 0.0:
+        parts.append(
+            length_profile.EndRelief(
+                length=length, relief_length=profile.end_relief_length, depth=profile.end_relief_depth
+            )
+        )
+    return SummedProfile(length=length, parts=tuple(parts))

@@ -1,0 +1,176 @@
+"""Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929).
+
+With V = ∫∫ 1/r and χ = ∫∫ ln(z + r) over the rectangle (Boussinesq's potentials per unit pressure) the stresses are
+
+    σx = (2ν V_z − (1−2ν) χ_xx − z V_xx)/2π,  σy alike,  σz = (V_z − z V_zz)/2π,
+    τxy = −((1−2ν) χ_xy + z V_xy)/2π,  τxz = −z V_xz/2π,  τyz = −z V_yz/2π
+
+(Johnson, Contact Mechanics, Eq. 3.10). The derivatives are written so that nothing cancels when the rectangle is
+long: every term is a corner function that stays of order one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ltca.contact.pressure_cells import PatchSolution
+
+Array = NDArray[np.float64]
+
+_DEPTHS = 48
+
+
+def rectangle_stress(
+    x: ArrayLike,
+    y: ArrayLike,
+    depth: ArrayLike,
+    half_length_x: ArrayLike,
+    half_length_y: ArrayLike,
+    poisson_ratio: float,
+) -> Array:
+    """Stress tensor below a rectangle under unit pressure, centred on the origin.
+
+    Parameters
+    ----------
+    x, y, depth : array_like
+        Points [mm], depth > 0.
+    half_length_x, half_length_y : array_like
+        Half sides [mm].
+    poisson_ratio : float
+        ν of the body.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+        σx, σy, σz, τxy, τxz, τyz per unit pressure (compression negative; z into the body).
+    """
+    x, y, z, a, b = np.broadcast_arrays(
+        *(np.asarray(value, dtype=float) for value in (x, y, depth, half_length_x, half_length_y))
+    )
+    total = np.zeros((*x.shape, 6))
+    slack = 1.0 - 2.0 * poisson_ratio
+    for sign, across, along in (
+        (1.0, x + a, y + b),
+        (-1.0, x + a, y - b),
+        (-1.0, x - a, y + b),
+        (1.0, x - a, y - b),
+    ):
+        r = np.sqrt(across**2 + along**2 + z**2)
+        square_x, square_y = across**2 + z**2, along**2 + z**2
+        product = across * along
+        v_z = -np.arctan2(product, z * r)
+        v_xx, v_yy = -product / (r * square_x), -product / (r * square_y)
+        chi_xx = np.arctan2(product * (r - z), across**2 * r + z * along**2)
+        chi_yy = np.arctan2(product * (r - z), along**2 * r + z * across**2)
+        total[..., 0] += sign * (2.0 * poisson_ratio * v_z - slack * chi_xx - z * v_xx)
+        total[..., 1] += sign * (2.0 * poisson_ratio * v_z - slack * chi_yy - z * v_yy)
+        total[..., 2] += sign * (v_z + z * (v_xx + v_yy))
+        total[..., 3] -= sign * (slack * np.log(z + r) + z / r)
+        total[..., 4] += sign * z * z * along / (r * square_x)
+        total[..., 5] += sign * z * z * across / (r * square_y)
+    return np.asarray(total / (2.0 * np.pi))
+
+
+def patch_stress(solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float) -> Array:
+    """Stress tensor at points below a solved patch [MPa]; the free ends' images are not included.
+
+    Parameters
+    ----------
+    solution : PatchSolution
+        Pressure over the patch.
+    x, y, depth : array_like
+        Points [mm], depth > 0, broadcast together.
+    poisson_ratio : float
+        ν of the body looked into.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+        σx, σy, σz, τxy, τxz, τyz [MPa].
+    """
+    x, y, z = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (x, y, depth)))
+    grid = solution.grid
+    inside = solution.contact
+    i, j = np.nonzero(inside)
+    pressure = solution.pressure[inside]
+    half_x, half_y = 0.5 * np.diff(grid.x_edges)[i], 0.5 * np.diff(grid.y_edges)[j]
+    total = np.zeros((*x.shape, 6))
+    for sign_x in (1.0, -1.0) if grid.symmetric_x else (1.0,):
+        for sign_y in (1.0, -1.0) if grid.symmetric_y else (1.0,):
+            unit = rectangle_stress(
+                x[..., None] - sign_x * grid.x_centres[i],
+                y[..., None] - sign_y * grid.y_centres[j],
+                z[..., None],
+                half_x,
+                half_y,
+                poisson_ratio,
+            )
+            total += np.einsum("...kc,k->...c", unit, pressure)
+    return total
+
+
+def max_shear_stress(stress: Array) -> Array:
+    """Half the difference of the largest and smallest principal stress; stress in the last axis as above."""
+    tensor = np.empty((*stress.shape[:-1], 3, 3))
+    for component, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+        tensor[..., i, j] = tensor[..., j, i] = stress[..., component]
+    principal = np.linalg.eigvalsh(tensor)
+    return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SubsurfaceShear:
+    """Largest shear stress below mid-width.
+
+    Attributes
+    ----------
+    max_shear : float
+        [MPa]
+    depth : float
+        [mm]
+    x : float
+        Place along the profile, under the peak of the pressure [mm].
+    """
+
+    max_shear: float
+    depth: float
+    x: float
+
+
+def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> SubsurfaceShear:
+    """Largest shear stress on the normal through the pressure peak at mid-width, and its depth.
+
+    Depths from 0.2 to 2.5 half-widths are scanned and the crest is refined by a parabola.
+
+    Parameters
+    ----------
+    solution : PatchSolution
+        A patch with contact at mid-width.
+    poisson_ratio : float
+        ν of the body looked into.
+
+    Returns
+    -------
+    SubsurfaceShear
+
+    Raises
+    ------
+    ValueError
+        If nothing touches at mid-width.
+    """
+    half_width = solution.half_width
+    if half_width <= 0.0:
+        raise ValueError("no contact at mid-width: there is no subsurface shear to find")
+    x, pressure = solution.mid_profile
+    place = 0.0 if solution.grid.symmetric_x else float(x[np.argmax(pressure)])
+    depths = half_width * np.geomspace(0.2, 2.5, _DEPTHS)
+    shear = max_shear_stress(patch_stress(solution, place, 0.0, depths, poisson_ratio))
+    top = int(np.clip(np.argmax(shear), 1, _DEPTHS - 2))
+    bend, slope, crest = np.polyfit(np.log(depths[top - 1 : top + 2] / depths[top]), shear[top - 1 : top + 2], 2)
+    offset = float(np.clip(-0.5 * slope / bend, -0.1, 0.1))
+    return SubsurfaceShear(
+        max_shear=float(crest + 0.5 * slope * offset), depth=float(depths[top] * np.exp(offset)), x=place
+    )

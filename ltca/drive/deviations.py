@@ -1,0 +1,116 @@
+"""Deviations of real parts from their drawing: part of the drive's definition, all zero unless given.
+
+Every one is a change of shape or place that the geometry takes exactly; none adds a spring. Angles are in the frame of
+the body that carries the deviation, at crank angle zero.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import ConfigDict, Field
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.units import quantity
+
+SignedLength = Annotated[float, quantity("mm")]
+Angle = Annotated[float, quantity("rad")]
+Errors = tuple[SignedLength, ...]
+
+STRICT = ConfigDict(extra="forbid", strict=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class PlacementErrors:
+    """Errors of each pin or hole of a circle; an empty tuple means zero for all.
+
+    Attributes
+    ----------
+    radial : tuple of float
+        Outward along the radius of the circle the part stands on, mm.
+    tangential : tuple of float
+        Counter-clockwise, at a right angle to that radius, mm.
+    diameter : tuple of float
+        Actual less nominal diameter, mm.
+    """
+
+    radial: Errors = ()
+    tangential: Errors = ()
+    diameter: Errors = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class RollerErrors:
+    """Errors of each roller; an empty tuple means zero for all.
+
+    A roller floats along its cage ray, so a radial error has no meaning for it.
+
+    Attributes
+    ----------
+    tangential : tuple of float
+        Counter-clockwise shift of the cage pocket on the roller pitch circle, mm.
+    diameter : tuple of float
+        Actual less nominal diameter, mm.
+    """
+
+    tangential: Errors = ()
+    diameter: Errors = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class AxisOffset:
+    """Place of an axis in the fixed frame, whose origin is the centre of the pin shaft, mm."""
+
+    x: SignedLength = 0.0
+    y: SignedLength = 0.0
+
+    @property
+    def place(self) -> complex:
+        """The offset as a complex number, mm."""
+        return complex(self.x, self.y)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Runout:
+    """Centre of the flank against the bore of the disc (the full indicator reading is twice the amount).
+
+    Attributes
+    ----------
+    amount : float
+        Distance of the centres, mm; a negative one points the other way.
+    angle : float
+        Direction from the bore to the centre of the flank in the frame of the disc, rad.
+    """
+
+    amount: SignedLength = 0.0
+    angle: Angle = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class ProfileErrors:
+    """Deviation of the flank along its normal over the parameter θ of Eq. 1, positive where metal is left, mm.
+
+    Harmonics and measured points add up.
+
+    Attributes
+    ----------
+    orders : tuple of int
+        Waves around the disc, k of ``cosine cos kθ + sine sin kθ``.
+    cosine, sine : tuple of float
+        Amplitudes, one for each order; an empty tuple means zero for all, mm.
+    parameter : tuple of float
+        Measured places θ, ascending in [0, 2π), rad; a root of the flank lies at 0.
+    deviation : tuple of float
+        Deviation measured there, mm; a periodic cubic spline joins them.
+    """
+
+    orders: tuple[Annotated[int, Field(ge=0, le=1000)], ...] = ()
+    cosine: Errors = ()
+    sine: Errors = ()
+    parameter: tuple[Angle, ...] = ()
+    deviation: Errors = ()
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the flank is as designed."""
+        return not (any(self.cosine) or any(self.sine) or any(self.deviation))

@@ -1,0 +1,230 @@
+r"""Distributions of the fields of a drive: the ``[tolerances]`` table that studies read.
+
+A tolerance is the ±T of the drawing about the field's value. A normal distribution takes its standard deviation from
+it by the process capability, C_pk = (T − |mean|)/(3σ) (ISO 22514-2 for a symmetric tolerance); truncated means that
+parts outside ±T are sorted out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.fields import element_count, field_kinds, read_field
+from ltca.drive.mistakes import describe_mistake
+from ltca.drive.parts import Drive
+from ltca.drive.units import quantity
+from ltca.errors import DriveError
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=ConfigDict(extra="forbid"))
+class Distribution:
+    """How a field scatters about its value; an array field draws every element for itself.
+
+    Attributes
+    ----------
+    distribution : {"normal", "uniform", "truncated-normal"}
+        Normal without bounds, uniform over the tolerance, normal with what is out of tolerance sorted out.
+    tolerance : float
+        T of ±T about the field's value, in the unit of the field.
+    cpk : float
+        Process capability C_pk of a normal distribution: σ = (T − |mean|)/(3 C_pk).
+    mean : float
+        Mean deviation from the field's value, smaller in size than T.
+    """
+
+    distribution: Literal["normal", "uniform", "truncated-normal"]
+    tolerance: float
+    cpk: Annotated[float, quantity("dimensionless", gt=0.0)] = 1.0
+    mean: float = 0.0
+
+    @property
+    def standard_deviation(self) -> float:
+        """σ of the distribution before truncation; of the rectangle for a uniform one."""
+        room = self.tolerance - abs(self.mean)
+        return room / 3.0**0.5 if self.distribution == "uniform" else room / (3.0 * self.cpk)
+
+    def quantile(self, probability: FloatArray) -> FloatArray:
+        """Return the deviation below which a part of all falls: the inverse distribution function.
+
+        Parameters
+        ----------
+        probability : array
+            Between 0 and 1, both excluded for the unbounded normal distribution.
+
+        Examples
+        --------
+        >>> rectangle = Distribution(distribution="uniform", tolerance=0.02)
+        >>> rectangle.quantile(np.array([0.0, 0.5, 1.0])).tolist()
+        [-0.02, 0.0, 0.02]
+        """
+        probability = np.asarray(probability, dtype=float)
+        room = self.tolerance - abs(self.mean)
+        if self.distribution == "uniform":
+            return self.mean + room * (2.0 * probability - 1.0)
+        from scipy.special import ndtr, ndtri
+
+        sigma = self.standard_deviation
+        if self.distribution == "normal":
+            return np.asarray(self.mean + sigma * ndtri(probability))
+        low, high = ndtr((-self.tolerance - self.mean) / sigma), ndtr((self.tolerance - self.mean) / sigma)
+        deviation = self.mean + sigma * ndtri(low + probability * (high - low))
+        return np.asarray(np.clip(deviation, -self.tolerance, self.tolerance))
+
+
+_ADAPTER: TypeAdapter[Distribution] = TypeAdapter(Distribution)
+Tolerances = dict[str, Distribution]
+
+
+def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
+    """Read a ``[tolerances]`` table.
+
+    Parameters
+    ----------
+    table : mapping
+        Nested tables of the drive's fields; a table with ``distribution`` is an entry.
+    problems : list of str
+        Takes what is wrong, one sentence each.
+
+    Returns
+    -------
+    dict of str to Distribution
+        By dotted path, in the order of the file.
+    """
+    found: Tolerances = {}
+    for path, entry in _entries(table, "", problems):
+        kind = field_kinds().get(path)
+        if kind is None or not kind.unit:
+            problems.append(f"tolerances.{path}: is not a field of the drive that can scatter")
+            continue
+        values = dict(entry)
+        try:
+            for name in ("tolerance", "mean"):
+                if name in values:
+                    bound = {"gt": 0.0} if name == "tolerance" else {}
+                    values[name] = TypeAdapter(Annotated[float, quantity(kind.unit, **bound)]).validate_python(
+                        values[name]
+                    )
+            distribution = _ADAPTER.validate_python(values)
+        except ValidationError as error:
+            for detail in error.errors():
+                detail["loc"] = ("tolerances", path, *(detail["loc"] or (name,)))
+                problems.append(describe_mistake(detail))
+            continue
+        if abs(distribution.mean) >= distribution.tolerance:
+            problems.append(
+                f"tolerances.{path}.mean = {distribution.mean:g}: must be smaller in size than the tolerance"
+            )
+        elif distribution.distribution == "uniform" and "cpk" in values:
+            problems.append(f"tolerances.{path}.cpk: has no meaning for a uniform distribution")
+        else:
+            found[path] = distribution
+    return found
+
+
+def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Mapping[str, Any]]]:
+    if not isinstance(table, Mapping):
+        problems.append(f"tolerances.{prefix.rstrip('.')}: must be a table with a distribution")
+        return []
+    entries = []
+    for name, value in table.items():
+        if isinstance(value, Mapping) and "distribution" in value:
+            entries.append((f"{prefix}{name}", value))
+        else:
+            entries += _entries(value, f"{prefix}{name}.", problems)
+    return entries
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Factors:
+    """The scattering numbers of a drive in a row: what one sample draws.
+
+    Attributes
+    ----------
+    fields : tuple of (str, int or None)
+        Path of each field that scatters, and its number of elements if it is an array.
+    centres : tuple of float
+        Values of the fields in the drive, elements of arrays one by one.
+    distributions : tuple of Distribution
+        Of each field.
+    """
+
+    fields: tuple[tuple[str, int | None], ...]
+    centres: tuple[float, ...]
+    distributions: tuple[Distribution, ...]
+
+    @classmethod
+    def of_tolerances(cls, drive: Drive, tolerances: Tolerances) -> Factors:
+        """Return the factors of a drive.
+
+        Raises
+        ------
+        DriveError
+            When nothing scatters, or an array with an entry has no elements in this drive (harmonics without orders).
+        """
+        found: list[tuple[str, int | None]] = []
+        centres: list[float] = []
+        problems = []
+        for path in tolerances:
+            count = element_count(drive, path)
+            if count == 0:
+                problems.append(
+                    f"tolerances.{path}: has no elements to scatter in this drive; give disc.profile_errors.orders"
+                )
+            found.append((path, count))
+            value = read_field(drive, path)
+            centres += [value] if count is None else value
+        if not found:
+            problems.append(
+                "tolerances: is missing or empty, so nothing scatters; see the shipped drive for an example"
+            )
+        if problems:
+            raise DriveError(problems)
+        return cls(fields=tuple(found), centres=tuple(centres), distributions=tuple(tolerances.values()))
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Dotted path of each number, elements of arrays one by one."""
+        return tuple(
+            name
+            for path, count in self.fields
+            for name in ([path] if count is None else [f"{path}.{number}" for number in range(count)])
+        )
+
+    def draw(self, probability: FloatArray) -> FloatArray:
+        """Return the numbers of samples from uniform ones.
+
+        Parameters
+        ----------
+        probability : array, shape (samples, numbers)
+            Between 0 and 1.
+
+        Returns
+        -------
+        array, same shape
+            Values of the fields, in their units.
+        """
+        drawn = np.empty_like(probability)
+        column = 0
+        for (_, count), distribution in zip(self.fields, self.distributions, strict=True):
+            columns = slice(column, column + (count or 1))
+            drawn[:, columns] = distribution.quantile(probability[:, columns])
+            column = columns.stop
+        return np.asarray(drawn + np.array(self.centres))
+
+    def values(self, row: FloatArray) -> dict[str, float | tuple[float, ...]]:
+        """Return the fields of one sample by path, arrays whole."""
+        numbers = row.tolist()
+        fields: dict[str, float | tuple[float, ...]] = {}
+        column = 0
+        for path, count in self.fields:
+            fields[path] = numbers[column] if count is None else tuple(numbers[column : column + count])
+            column += count or 1
+        return fields

@@ -1,0 +1,12 @@
+"""The pose that balances.
+
+Modules in the order data passes:
+
+==============  ============================================================
+balance         Equilibrium of the floating disc at held crank angles (Eq. 43–44, 70–72, 85–89)
+paper_method    The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
+                43–46, 90–93)
+clearance_free  Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system
+                (Eq. 7–40)
+==============  ============================================================
+"""

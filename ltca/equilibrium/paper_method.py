@@ -1,0 +1,257 @@
+"""The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq. 43–46, 90–93).
+
+The wheel stands at φ_P; the unknowns are the displacements δ_r, δ_t of the disc centre from its ideal place, the
+rotation δ_φ of the disc and the lead δ_φC of the crank. The residual is that of `ltca.equilibrium.balance`, on any
+compliance model. Mapped back: the actual crank angle is u φ_P + δ_φC and the wheel deviates from its ideal place
+there by −δ_φC/u. To give the answer at a requested actual crank angle the held φ_P is corrected from outside.
+
+Newton's step is taken in full, as the paper takes it: nothing is damped, nothing is bounded, so the iteration
+may fail, above all where a body floats free of contact and the tangent is singular.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import ComplianceModel, Response, Start
+from ltca.equilibrium.balance import TOLERANCE, Equilibrium, lever_arms
+from ltca.errors import ConvergenceError
+
+FloatArray = NDArray[np.float64]
+
+ITERATIONS = 60
+DIFFERENCE = 1e-6
+"""ε of Eq. 91 and 93, mm (rotations: by their lever arms): small against an approach, large against round-off."""
+CORRECTIONS = 12
+LABEL = 1e-11
+"""Largest difference of the actual crank angle from the requested one, rad: it moves loads by 1e-9 of themselves."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaperIteration:
+    """Where the iteration of the paper ended for each position of a batch.
+
+    Attributes
+    ----------
+    unknowns : array, shape (positions, 4)
+        δ_r, δ_t in mm, δ_φ, δ_φC in rad.
+    converged : array of bool, shape (positions,)
+        Whether the residual fell below `ltca.equilibrium.balance.TOLERANCE` of the load.
+    iterations : array of int, shape (positions,)
+        Newton steps taken.
+    failure : tuple of str
+        Why each position failed, empty where it converged.
+    history : tuple of tuple of float
+        Residuals of each position, N.
+    """
+
+    unknowns: FloatArray
+    converged: NDArray[np.bool_]
+    iterations: NDArray[np.intp]
+    failure: tuple[str, ...]
+    history: tuple[tuple[float, ...], ...]
+
+
+def pose_of_lead(
+    model: ComplianceModel, wheel_position: FloatArray, unknowns: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return actual crank angle and pose (`ltca.geometry.pairs`) of the unknowns of the paper (Eq. 45–46).
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        For its geometry.
+    wheel_position : array, shape (positions,)
+        Held φ_P, rad.
+    unknowns : array, shape (positions, 4)
+        δ_r, δ_t, δ_φ, δ_φC.
+    """
+    place = model.geometry.placement
+    ideal = place.reduction_ratio * wheel_position
+    lead = unknowns[:, 3]
+    turned = np.exp(1j * ideal)
+    # e e^{iφ_C} − e e^{i(φ_C + δ)} without the difference of two nearly equal numbers.
+    race_shift = place.eccentricity * turned * np.exp(0.5j * lead) * 2j * np.sin(0.5 * lead)
+    displacement = (unknowns[:, 0] + 1j * unknowns[:, 1]) * turned - race_shift
+    pose = np.stack((displacement.real, displacement.imag, unknowns[:, 2], -lead / place.reduction_ratio), axis=1)
+    return ideal + lead, pose
+
+
+def lead_of_pose(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted."""
+    place = model.geometry.placement
+    lead = -place.reduction_ratio * pose[:, 3]
+    ideal = crank_angle - lead
+    race_shift = place.eccentricity * np.exp(0.5j * lead) * 2j * np.sin(0.5 * lead)
+    displacement = (pose[:, 0] + 1j * pose[:, 1]) * np.exp(-1j * ideal) + race_shift
+    unknowns = np.stack((displacement.real, displacement.imag, pose[:, 2], lead), axis=1)
+    return ideal / place.reduction_ratio, unknowns
+
+
+def iterate_held_wheel(
+    model: ComplianceModel, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
+) -> PaperIteration:
+    """Iterate Eq. 90–93 at held wheel from given guesses; failures are told, not raised.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        Loads at a pose: tables or grids.
+    wheel_position, wheel_moment : array, shape (positions,)
+        Held φ_P in rad, external moment on the wheel in N·mm.
+    unknowns : array, shape (positions, 4)
+        Guesses of δ_r, δ_t, δ_φ, δ_φC.
+    """
+    try:
+        return _iterate(model, wheel_position, wheel_moment, unknowns)
+    except (ConvergenceError, np.linalg.LinAlgError) as error:
+        if wheel_position.size > 1:  # find out which position it was
+            half = wheel_position.size // 2
+            parts = [
+                iterate_held_wheel(model, wheel_position[rows], wheel_moment[rows], unknowns[rows])
+                for rows in (slice(None, half), slice(half, None))
+            ]
+            return PaperIteration(
+                unknowns=np.concatenate([part.unknowns for part in parts]),
+                converged=np.concatenate([part.converged for part in parts]),
+                iterations=np.concatenate([part.iterations for part in parts]),
+                failure=sum((part.failure for part in parts), ()),
+                history=sum((part.history for part in parts), ()),
+            )
+        singular = isinstance(error, np.linalg.LinAlgError)
+        history = getattr(error, "history", ())
+        return PaperIteration(
+            unknowns=unknowns.copy(),
+            converged=np.zeros(1, dtype=bool),
+            iterations=np.zeros(1, dtype=np.intp),
+            failure=("singular tangent (a body floats)" if singular else "contact point not found",),
+            history=(tuple(history),),
+        )
+
+
+def _iterate(
+    model: ComplianceModel, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
+) -> PaperIteration:
+    lever = lever_arms(model)
+    reach = model.geometry.placement.eccentricity
+    load = np.abs(wheel_moment) / lever[3]
+    guess = np.array(unknowns, dtype=float)
+    count = guess.shape[0]
+    iterations = np.zeros(count, dtype=np.intp)
+    failure = ["" for _ in range(count)]
+    history: list[list[float]] = [[] for _ in range(count)]
+    going = np.ones(count, dtype=bool)
+    converged = np.zeros(count, dtype=bool)
+    # δ_φC moves the disc's race by e δ_φC: its lever is e, not e z_P.
+    steps = DIFFERENCE / np.array([1.0, 1.0, lever[2], reach])
+    start: Start | None = None
+
+    def unbalanced(rows: NDArray[np.intp], values: FloatArray, before: Start | None) -> tuple[FloatArray, Response]:
+        angle, pose = pose_of_lead(model, wheel_position[rows], values)
+        response = model.respond(angle, pose, before)
+        residual = response.force.copy()
+        residual[:, 3] -= wheel_moment[rows]
+        return residual / lever, response
+
+    for _ in range(ITERATIONS + 1):
+        rows = np.nonzero(going)[0]
+        residual, response = unbalanced(rows, guess[rows], start)
+        size = np.max(np.abs(residual), axis=1)
+        for row, value in zip(rows, size, strict=True):
+            history[row].append(float(value))
+        done = size <= TOLERANCE * load[rows]
+        converged[rows[done]] = True
+        going[rows[done]] = False
+        rows, residual, before = rows[~done], residual[~done], Start.after(response).take(~done)
+        if rows.size == 0:
+            break
+        tangent = np.empty((rows.size, 4, 4))
+        for column, step in enumerate(steps):
+            moved = guess[rows]
+            moved[:, column] += step
+            tangent[:, :, column] = (unbalanced(rows, moved, before)[0] - residual) / step
+        guess[rows] -= np.linalg.solve(tangent, residual[..., None])[..., 0]
+        iterations[rows] += 1
+        away = np.max(np.abs(guess[rows]) * np.array([1.0, 1.0, lever[2], reach]), axis=1)
+        lost = ~(away < reach)
+        for row in rows[lost]:
+            failure[row] = "left the drive (a displacement beyond the eccentricity)"
+        going[rows[lost]] = False
+        start = before.take(~lost)
+        if not np.any(going):
+            break
+    for row in np.nonzero(~converged)[0]:
+        failure[row] = failure[row] or f"no balance after {ITERATIONS} iterations"
+    return PaperIteration(
+        unknowns=guess,
+        converged=converged,
+        iterations=iterations,
+        failure=tuple(failure),
+        history=tuple(tuple(values) for values in history),
+    )
+
+
+def solve_paper_equilibrium(
+    model: ComplianceModel, crank_angle: FloatArray, wheel_moment: FloatArray | float, start: FloatArray
+) -> Equilibrium:
+    """Balance every position by the iteration of the paper, at requested actual crank angles.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        Loads at a pose: tables or grids.
+    crank_angle : array, shape (positions,)
+        Actual φ_C that the answer shall have, rad.
+    wheel_moment : float or array, shape (positions,)
+        External moment on the wheel, N·mm.
+    start : array, shape (positions, 4)
+        Poses to start from.
+
+    Returns
+    -------
+    Equilibrium
+        As from `ltca.equilibrium.balance.solve_equilibrium`; iterations counts all Newton steps.
+
+    Raises
+    ------
+    ConvergenceError
+        When a position fails; the history holds its residuals in N.
+    """
+    requested = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), requested.shape)
+    ratio = model.geometry.placement.reduction_ratio
+    wheel, unknowns = lead_of_pose(model, requested, start)
+    steps = np.zeros(requested.size, dtype=np.intp)
+    off: list[float] = []
+    for _ in range(CORRECTIONS):
+        found = iterate_held_wheel(model, wheel, moment, unknowns)
+        steps += found.iterations
+        if not np.all(found.converged):
+            worst = int(np.argmin(found.converged))
+            raise ConvergenceError(
+                f"the iteration of the paper fails at crank angle {requested[worst]:.6g} rad (position {worst} of "
+                f"{requested.size}, {np.count_nonzero(~found.converged)} failed): {found.failure[worst]}; "
+                "residual in N",
+                found.history[worst],
+            )
+        unknowns = found.unknowns
+        actual, pose = pose_of_lead(model, wheel, unknowns)
+        away = requested - actual
+        off.append(float(np.max(np.abs(away))))
+        if off[-1] <= LABEL:
+            response = model.respond(requested, pose)
+            residual = response.force.copy()
+            residual[:, 3] -= moment
+            return Equilibrium(
+                crank_angle=requested,
+                wheel_moment=np.array(moment),
+                pose=pose,
+                response=response,
+                residual=np.max(np.abs(residual / lever_arms(model)), axis=1),
+                iterations=steps,
+            )
+        wheel = wheel + away / ratio
+    raise ConvergenceError("the wheel position for the requested crank angle is not found; difference in rad", off)

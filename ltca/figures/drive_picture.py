@@ -1,0 +1,132 @@
+"""Picture of a drive at one crank angle: its parts, contact normals, and loads as arrows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.collections import PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.drive.parts import Drive
+from ltca.figures.run_figures import STYLE
+from ltca.geometry.pairs import ContactGeometry
+from ltca.output.files import whole_file
+
+STEEL, PIN, ROLLER, RACE, SHAFT = "#e9edf2", "#cfd6de", "#d9dde3", "#bfc8d2", "#c9cfd8"
+LOAD, NORMAL = "#D55E00", "#5B7FA6"
+
+
+def _circles(axes: Any, centres: Any, radii: Any, colour: str, zorder: int) -> None:
+    patches = [Circle((c.real, c.imag), r) for c, r in zip(centres, np.broadcast_to(radii, centres.shape), strict=True)]
+    axes.add_collection(PatchCollection(patches, facecolor=colour, edgecolor="#4a5560", linewidth=0.7, zorder=zorder))
+
+
+def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path) -> None:
+    """Write a picture of the drive at one analysed position.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    analysis : LoadedAnalysis
+        Its analysis.
+    position : int
+        Which position of the analysis.
+    path : Path
+        Picture file; the suffix chooses the format.
+    """
+    geometry = ContactGeometry.of_drive(drive)
+    place, profile = geometry.placement, geometry.profile
+    full = analysis.full
+    angle, pose = float(full.crank_angle[position]), full.pose[position]
+    contacts = full.response
+    race = complex(place.race_centre(np.asarray(angle)))
+    disc = race + complex(pose[0], pose[1])
+    turn = np.exp(1j * pose[2])
+    wheel = place.wheel_pin_centres * np.exp(1j * (angle / place.reduction_ratio + pose[3]))
+
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.0, 8.6))
+        axes = figure.subplots()
+        outline = disc + turn * profile.flank(np.linspace(0.0, 2.0 * np.pi, 4000))
+        axes.add_patch(
+            Polygon(np.column_stack((outline.real, outline.imag)), facecolor=STEEL, edgecolor="#4a5560", linewidth=0.9)
+        )
+        holes = disc + turn * place.hole_centres
+        _circles(axes, holes, place.hole_radii, "white", 2)
+        _circles(axes, place.shaft_pin_centres, place.shaft_pin_radii, SHAFT, 3)
+        _circles(axes, np.array([disc]), place.bore_radius, "white", 2)
+        _circles(axes, np.array([race]), place.inner_race_radius, RACE, 3)
+        rays = geometry.rollers(np.array([angle]))
+        free = rays.outermost - contacts.rollers.inner_approach[position]
+        rollers = race + rays.direction[0] * free
+        _circles(axes, rollers, place.roller_radii, ROLLER, 4)
+        _circles(axes, wheel, place.wheel_pin_radii, PIN, 4)
+
+        loads = [
+            (wheel, contacts.pin_load[position], place.wheel_pin_radii, _pin_directions(geometry, full, position)),
+            (
+                rollers,
+                contacts.rollers.outer_load[position],
+                place.roller_radii,
+                contacts.rollers.outer_direction[position],
+            ),
+            (
+                place.shaft_pin_centres,
+                contacts.hole_load[position],
+                place.shaft_pin_radii,
+                _hole_directions(place, disc, turn),
+            ),
+        ]
+        largest = max(float(np.max(load)) for _, load, _, _ in loads)
+        longest = 0.2 * place.eccentricity * place.reduction_ratio + 12.0
+        for centres, load, radii, towards in loads:
+            for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):
+                contact = centre + radius * direction
+                ends = np.array([contact - 0.6 * radius * direction, contact + 0.6 * radius * direction])
+                axes.plot(ends.real, ends.imag, color=NORMAL, linewidth=0.7, zorder=5)
+                if force > 1e-3 * largest:
+                    tip = contact + direction * longest * force / largest
+                    axes.annotate(
+                        "",
+                        xy=(tip.real, tip.imag),
+                        xytext=(contact.real, contact.imag),
+                        arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0},
+                        zorder=7,
+                    )
+                    axes.text(
+                        tip.real, tip.imag, f" {force:.0f} N", fontsize=6.5, color=LOAD, zorder=8,
+                        ha="left" if direction.real >= 0 else "right", va="center",
+                    )  # fmt: skip
+        axes.plot([0.0, race.real], [0.0, race.imag], color="black", linewidth=1.2, zorder=6)
+        axes.plot([0.0], [0.0], marker="+", color="black", markersize=9, zorder=6)
+        axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
+        reach = 1.06 * (np.abs(wheel).max() + place.wheel_pin_radii.max())
+        axes.set_xlim(-reach, reach)
+        axes.set_ylim(-reach, reach)
+        axes.set_aspect("equal")
+        axes.grid(visible=False)
+        axes.set_xlabel("x [mm]")
+        axes.set_ylabel("y [mm]")
+        axes.set_title(
+            f"{drive.name}: forces on the disc at φ_C = {angle:.4g} rad, torque {analysis.torque / 1000.0:g} N·m\n"
+            "blue: contact normals; + crank axis, • inner-race centre (eccentricity)",
+            fontsize=9.0,
+        )
+        with whole_file(path) as part:
+            figure.savefig(part, dpi=130)
+
+
+def _pin_directions(geometry: ContactGeometry, full: Any, position: int) -> Any:
+    parameter = full.response.flank.parameter[position]
+    return -geometry.profile.normal(parameter) * np.exp(1j * full.pose[position, 2])
+
+
+def _hole_directions(place: Any, disc: complex, turn: complex) -> Any:
+    play = place.shaft_pin_centres - (disc + turn * place.hole_centres)
+    return play / np.abs(play)

@@ -1,0 +1,252 @@
+"""Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: six cases per axes, labelled directly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ltca.analysis.results import ARCSEC, LOADED_FRACTION
+from ltca.output.files import whole_file
+
+FloatArray = NDArray[np.float64]
+
+# Okabe and Ito's palette, readable with every kind of colour vision; black first for the clearance-free case.
+COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A7A7A")
+STYLE: Any = {
+    "font.size": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.2,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "cyclo",
+    "figure.constrained_layout.use": True,
+}
+
+
+def _degrees(dataset: xr.Dataset) -> FloatArray:
+    return np.asarray(np.degrees(dataset["crank_angle"].values))
+
+
+def draw_curves(
+    figure: Figure, axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str], x_label: str, y_label: str
+) -> None:
+    """Draw one curve for each case and put its name at its right end, moved apart where ends coincide."""
+    order = np.argsort(x, kind="stable")
+    few = x.size < 40
+    for number, curve in enumerate(curves):
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(x[order], curve[order], color=colour, marker="o" if few else None, markersize=3.0)
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    axes.margins(x=0.0)
+    if np.nanmin(curves) >= 0.0:
+        axes.set_ylim(bottom=0.0)
+    if x.size > 1 and np.isclose(x[order][0], 0.0) and x[order][-1] > 300.0:
+        axes.set_xlim(0.0, 360.0)
+        axes.set_xticks(np.arange(0.0, 361.0, 60.0))
+    _label_ends(axes, x[order], curves[:, order], names)
+
+
+def _label_ends(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str]) -> None:
+    low, high = axes.get_ylim()
+    ends = (curves[:, -1] - low) / (high - low)
+    order = np.argsort(ends, kind="stable")
+    gap = 0.062
+    places = ends[order].copy()
+    for _ in range(200):  # push overlapping labels apart, half each way
+        moved = False
+        for i in range(1, places.size):
+            overlap = gap - (places[i] - places[i - 1])
+            if overlap > 1e-6:
+                places[i] += 0.5 * overlap
+                places[i - 1] -= 0.5 * overlap
+                moved = True
+        if not moved:
+            break
+    places += max(0.0, -places[0]) if places[-1] <= 1.0 else min(0.0, 1.0 - places[-1])
+    right = (x[-1] - axes.get_xlim()[0]) / (axes.get_xlim()[1] - axes.get_xlim()[0])
+    for place, number in zip(places, order, strict=True):
+        colour = COLOURS[number % len(COLOURS)]
+        axes.annotate(
+            names[number],
+            xy=(right, ends[number]),
+            xytext=(1.045, place),
+            xycoords="axes fraction",
+            textcoords="axes fraction",
+            color=colour,
+            va="center",
+            fontsize=8.5,
+            annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 0.0},
+        )
+
+
+def _cases(dataset: xr.Dataset) -> list[str]:
+    return [str(name) for name in dataset["case"].values]
+
+
+def _loaded(dataset: xr.Dataset, name: str) -> FloatArray:
+    load = dataset[name].values
+    largest = load.max(axis=(1, 2), keepdims=True)
+    return np.asarray((load > LOADED_FRACTION * largest).sum(axis=2), dtype=float)
+
+
+CRANK = "crank angle φ_C [°]"
+
+
+def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    names = _cases(data)
+    light, full = (data[name].values * ARCSEC for name in ("transmission_error_light", "transmission_error"))
+    draw_curves(figure, upper, _degrees(data), light - light.mean(axis=1, keepdims=True), names, "", "light torque [″]")
+    draw_curves(figure, lower, _degrees(data), full - full.mean(axis=1, keepdims=True), names, CRANK, "full torque [″]")
+    figure.suptitle("Transmission error at the wheel, deviation from its mean (Fig. 23)")
+
+
+def _one_quantity(
+    name: str, element: int | None, label: str, title: str, factor: float = 1.0
+) -> Callable[[Figure, xr.Dataset], None]:
+    def draw(figure: Figure, data: xr.Dataset) -> None:
+        values = data[name].values * factor
+        if element is not None:
+            values = values[:, :, element]
+        axes = figure.subplots()
+        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
+        axes.set_title(title)
+
+    return draw
+
+
+def _number_loaded(name: str, title: str) -> Callable[[Figure, xr.Dataset], None]:
+    def draw(figure: Figure, data: xr.Dataset) -> None:
+        names, x, counts = _cases(data), _degrees(data), _loaded(data, name)
+        # Whole numbers of six cases would lie on each other: one narrow axes each.
+        axes = np.atleast_1d(figure.subplots(len(names), 1, sharex=True, sharey=True))
+        for number, (axis, case) in enumerate(zip(axes, names, strict=True)):
+            axis.step(x, counts[number], where="mid", color=COLOURS[number % len(COLOURS)])
+            axis.set_ylim(counts.min() - 0.5, counts.max() + 0.5)
+            axis.yaxis.set_major_locator(mpl.ticker.MaxNLocator(integer=True, nbins=3))
+            axis.text(
+                1.01, 0.5, f"{case}\nmean {counts[number].mean():.2f}", transform=axis.transAxes, va="center",
+                color=COLOURS[number % len(COLOURS)], fontsize=8.5,
+            )  # fmt: skip
+            axis.margins(x=0.0)
+        axes[-1].set_xlabel(CRANK)
+        figure.supylabel("number", fontsize=9.0)
+        figure.suptitle(title)
+
+    return draw
+
+
+def _bearing(figure: Figure, data: xr.Dataset) -> None:
+    total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
+    axes = figure.subplots()
+    draw_curves(figure, axes, _degrees(data), total, _cases(data), CRANK, "total bearing load [N]")
+    axes.set_title("Bearing load of the crank (Fig. 28)")
+    axes.set_ylim(auto=True)
+    axes.set_ylim(0.98 * total.min(), 1.01 * total.max())
+    _relabel(axes, _degrees(data), total, _cases(data))
+
+
+def _relabel(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str]) -> None:
+    for text in list(axes.texts):
+        text.remove()
+    order = np.argsort(x, kind="stable")
+    _label_ends(axes, x[order], curves[:, order], names)
+
+
+def _bearing_component(name: str, label: str, title: str) -> Callable[[Figure, xr.Dataset], None]:
+    def draw(figure: Figure, data: xr.Dataset) -> None:
+        values = data[name].values
+        axes = figure.subplots()
+        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
+        room = 0.06 * max(np.ptp(values), 1e-6)
+        axes.set_ylim(values.min() - room, values.max() + room)
+        axes.set_title(title)
+        _relabel(axes, _degrees(data), values, _cases(data))
+
+    return draw
+
+
+def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
+    """Load of all rollers at all positions over their place against the eccentricity."""
+    rollers = data.sizes["roller"]
+    angle = data["crank_angle"].values
+    speed = float(data.attrs["cage_speed"])
+    place = speed * angle[:, None] + 2.0 * np.pi * np.arange(rollers) / rollers - angle[:, None]
+    place = np.degrees(np.mod(place, 2.0 * np.pi))
+    edges = np.linspace(0.0, 360.0, 121)
+    centres = 0.5 * (edges[1:] + edges[:-1])
+    bins = np.digitize(place, edges[1:-1])
+    names = _cases(data)
+    axes = figure.subplots()
+    load = data["roller_load"].values
+    if place.size < 4 * centres.size:
+        order = np.argsort(place.ravel(), kind="stable")
+        x, curves = place.ravel()[order], load.reshape(len(names), -1)[:, order]
+    else:
+        count = np.maximum(np.bincount(bins.ravel(), minlength=centres.size), 1)
+        x = centres
+        curves = np.stack([np.bincount(bins.ravel(), case.ravel(), minlength=centres.size) / count for case in load])
+    draw_curves(figure, axes, x, curves, names, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
+    axes.set_xlim(0.0, 360.0)
+    axes.set_xticks(np.arange(0.0, 361.0, 60.0))
+    axes.set_title("Load distribution over the rollers (Fig. 34)")
+
+
+FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
+    "fig23_transmission_error": _transmission_error,
+    "fig24_pin_load": _one_quantity("pin_load", 0, "load [N]", "Load of wheel pin 0 over its mesh (Fig. 24)"),
+    "fig25_loaded_pins": _number_loaded("pin_load", "Number of loaded wheel pins (Fig. 25)"),
+    "fig26_pin_pressure": _one_quantity(
+        "pin_pressure_mid", 0, "pressure at mid-width [MPa]", "Largest flank pressure at wheel pin 0 (Fig. 26)"
+    ),
+    "fig28_bearing_load": _bearing,
+    "fig29_tangential_bearing_load": _bearing_component(
+        "bearing_tangential", "tangential bearing load [N]", "Tangential bearing load (Fig. 29)"
+    ),
+    "fig30_radial_bearing_load": _bearing_component(
+        "bearing_radial", "radial bearing load [N]", "Radial bearing load (Fig. 30)"
+    ),
+    "fig34_roller_load": _roller_distribution,
+    "fig35_pin_shaft_load": _one_quantity("pin_shaft_load", 0, "load [N]", "Load of shaft pin 0 (Fig. 35)"),
+    "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins (Fig. 36)"),
+}
+
+
+def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
+    """Write every figure as SVG and PNG.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of `ltca.analysis.results.build_dataset`.
+    folder : Path
+        Where to write; made when missing.
+
+    Yields
+    ------
+    Path
+        The PNG of each figure when both files are written.
+    """
+    with mpl.rc_context(STYLE):
+        for name, draw in FIGURES.items():
+            figure = Figure(figsize=(7.2, 4.4))
+            draw(figure, dataset)
+            for suffix in (".svg", ".png"):
+                path = folder / f"{name}{suffix}"
+                metadata = {"Date": None} if suffix == ".svg" else None
+                with whole_file(path) as part:
+                    figure.savefig(part, dpi=130, metadata=metadata)
+            yield path

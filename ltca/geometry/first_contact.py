@@ -1,0 +1,173 @@
+"""Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry (Eq. 2–6).
+
+The disc is held on the nominal eccentricity without rotation, as bearing and pin holes without clearance hold it;
+what is left is the backlash between flank and pins.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.errors import ConvergenceError
+from ltca.geometry.pairs import ContactGeometry
+
+FloatArray = NDArray[np.float64]
+
+DISC_ROTATION, WHEEL_ANGLE = 2, 3
+
+
+def first_contact(
+    geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
+) -> tuple[FloatArray, NDArray[np.intp]]:
+    """Turn disc or wheel about the nominal pose until the first pin touches.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        The drive.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    coordinate : {2, 3}
+        What turns: the disc about its centre (2) or the wheel (3).
+    sense : {+1, −1}
+        Counter-clockwise or clockwise.
+
+    Returns
+    -------
+    rotation : array, shape (positions,)
+        Signed rotation at first contact, rad.
+    pin : array of int, shape (positions,)
+        The pin that touches first.
+
+    Raises
+    ------
+    ConvergenceError
+        When no pin can touch in that sense, or pins interfere at every rotation.
+    """
+    rotation, pin, settled, history = turn_to_contact(geometry, crank_angle, coordinate, sense)
+    if not np.all(settled):
+        raise ConvergenceError(
+            "no pin touches the flank, or some interfere at every rotation, the disc in its nominal place; last "
+            "rotations in rad",
+            history,
+        )
+    return rotation, pin
+
+
+def turn_to_contact(
+    geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
+) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_], list[float]]:
+    """Turn as `first_contact` does and tell where that found contact.
+
+    Returns
+    -------
+    rotation : array, shape (positions,)
+        rad, zero where no contact was found.
+    pin : array of int, shape (positions,)
+        The pin that touches first.
+    settled : array of bool, shape (positions,)
+        Whether contact was found.
+    history : list of float
+        Largest rotation of each round, rad.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    pose = np.zeros((angle.size, 4))
+    lever = geometry.placement.eccentricity * geometry.placement.reduction_ratio
+    history: list[float] = []
+    settled = np.zeros(angle.size, dtype=bool)
+    pin = np.zeros(angle.size, dtype=np.intp)
+    for _ in range(60):
+        motion = geometry.flank(angle, pose)
+        rate = sense * motion.gradient[..., coordinate]
+        closing = rate > 1e-3 * lever
+        travel = np.where(closing, -motion.approach / np.where(closing, rate, 1.0), np.inf)
+        pin = np.argmin(travel, axis=1)
+        step = np.take_along_axis(travel, pin[:, None], axis=1)[:, 0]
+        reachable = np.isfinite(step)
+        step = np.where(reachable, step, 0.0)
+        pose[:, coordinate] += sense * step
+        settled = reachable & (np.abs(step) < 1e-14)
+        history.append(float(np.max(np.abs(step))))
+        if np.all(settled | ~reachable):
+            break
+    pose[~settled, coordinate] = 0.0
+    return pose[:, coordinate], pin, settled, history
+
+
+def backlash(geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int) -> FloatArray:
+    """Return the backlash of disc (2) or wheel (3): rotation between first contact in both senses, rad.
+
+    Parameters are those of `first_contact`.
+    """
+    forward, _ = first_contact(geometry, crank_angle, coordinate, 1)
+    backward, _ = first_contact(geometry, crank_angle, coordinate, -1)
+    return np.asarray(forward - backward)
+
+
+def unloaded_transmission_error(
+    geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1
+) -> FloatArray:
+    """Return the transmission error without load and without clearances, from geometry alone (Eq. 6), rad.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        The drive.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    driving_sign : {+1, −1}
+        Sense in which the crank drives.
+
+    Returns
+    -------
+    array, shape (positions,)
+        Wheel angle at first contact: negative when a crank driving counter-clockwise takes up the backlash.
+    """
+    rotation, _ = first_contact(geometry, crank_angle, WHEEL_ANGLE, -driving_sign)
+    return rotation
+
+
+def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:
+    """Return which wheel pins can drive the wheel against its load, shape (positions, z_P).
+
+    A pin carries when pressing it on the flank turns the wheel in the driving sense: the lever of its contact
+    normal about the wheel axis has that sign.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    motion = geometry.flank(angle, np.zeros((angle.size, 4)))
+    return np.asarray(driving_sign * motion.gradient[..., WHEEL_ANGLE] < 0.0)
+
+
+def carrying_holes(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:
+    """Return which pin holes can hold the disc against rotation (Eq. 2–4), shape (positions, z_PS).
+
+    The product of n = (−sin θ, cos θ) at the hole and the direction from disc centre to crank axis is positive.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    hole = np.angle(geometry.placement.hole_centres)
+    return np.asarray(driving_sign * np.sin(hole - angle[:, None]) > 0.0)
+
+
+def carrying_rollers(
+    geometry: ContactGeometry,
+    crank_angle: FloatArray,
+    load_direction: FloatArray,
+    loaded_zone: float = 0.5 * np.pi,
+) -> NDArray[np.bool_]:
+    """Return which rollers stand within ± the loaded zone about a direction of load (Eq. 5), shape (positions, n_BR).
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        The drive.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    load_direction : array, shape (positions,)
+        Direction of the bearing force on the disc, θ_F, rad.
+    loaded_zone : float
+        θ_predict, rad.
+    """
+    rollers = geometry.placement.roller_angles(np.atleast_1d(np.asarray(crank_angle, dtype=float)))
+    away = rollers - np.atleast_1d(np.asarray(load_direction, dtype=float))[:, None]
+    return np.asarray(np.cos(away) >= np.cos(loaded_zone))

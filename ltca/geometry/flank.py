@@ -1,0 +1,332 @@
+r"""Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1).
+
+Points of the plane are complex numbers in the frame of the disc. The flank is the inward parallel curve,
+at the distance :math:`r_P + \Delta r_P`, of the trochoid that a pin centre describes about the disc,
+
+.. math:: c(\theta) = (R_C + \Delta R_C) e^{i\theta} - e\, e^{i u \theta},
+
+so flank and trochoid share their normals, and the distance of a pin from the flank is the distance of its
+centre from the trochoid. A root of the flank lies at θ = 0.
+
+A real flank departs from it by δ(θ) along that normal and its centre by the runout from the bore. With a
+deviation it is a curve of its own, F = c − (offset − δ) n: everything below is then asked of F itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError
+from ltca.geometry.flank_deviation import ProfileDeviation
+from ltca.geometry.placement import BatchScalar
+from ltca.geometry.rotation import integer_power, small_turn, unit
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+class Curve(NamedTuple):
+    """Points of a curve with two derivatives by θ: complex, mm, mm/rad, mm/rad²."""
+
+    point: ComplexArray
+    tangent: ComplexArray
+    second: ComplexArray
+
+    @property
+    def normal(self) -> ComplexArray:
+        """Unit normal out of the disc."""
+        return -1j * self.tangent / np.abs(self.tangent)
+
+    @property
+    def curvature(self) -> FloatArray:
+        """1/mm, positive where the disc is convex."""
+        return np.asarray((self.tangent.conjugate() * self.second).imag / np.abs(self.tangent) ** 3)
+
+
+class NearestPoint(NamedTuple):
+    """Where the normal of the flank passes through a point: θ and the curve of `FlankProfile.contact_curve` there."""
+
+    parameter: FloatArray
+    curve: Curve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlankProfile:
+    """Flank of the disc, or flanks of a batch of discs.
+
+    Numbers of a batch are arrays of shape (positions, 1): axis 0 of every parameter is then the position.
+
+    Attributes
+    ----------
+    generating_radius : float
+        R_C + ΔR_C, mm.
+    eccentricity : float
+        e of the generating motion, mm.
+    reduction_ratio : float
+        u = z_P/Δz, the frequency of the trochoid, a whole number.
+    offset : float
+        r_P + Δr_P, distance of the flank from the trochoid, mm.
+    centre : complex
+        Centre of the flank in the frame of the disc, whose origin is the centre of the bore, mm.
+    deviation : ProfileDeviation or None
+        Departure from the design along its normal.
+    """
+
+    generating_radius: BatchScalar
+    eccentricity: BatchScalar
+    reduction_ratio: float
+    offset: BatchScalar
+    centre: complex | ComplexArray = 0.0
+    deviation: ProfileDeviation | None = None
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> FlankProfile:
+        """Return the flank of a drive's disc."""
+        runout = drive.disc.runout
+        return cls(
+            generating_radius=drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset,
+            eccentricity=drive.crank.eccentricity,
+            reduction_ratio=drive.reduction_ratio,
+            offset=drive.pin_wheel.pin_radius + drive.disc.equidistant_offset,
+            centre=runout.amount * complex(unit(runout.angle)),
+            deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
+        )
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
+        """Return the flanks of some positions of a batch."""
+        picked = {item.name: getattr(self, item.name) for item in fields(self)}
+        picked = {name: value[rows] if np.ndim(value) else value for name, value in picked.items()}
+        if self.deviation is not None:
+            picked["deviation"] = self.deviation.take(rows)
+        return FlankProfile(**picked)
+
+    @classmethod
+    def stack(cls, drives: Sequence[Drive], positions: int) -> FlankProfile:
+        """Return the flanks of several drives of equal reduction ratio, see `ltca.geometry.placement.Placement.stack`."""
+        flanks = [(d.pin_wheel, d.disc, d.crank.eccentricity, d.disc.runout) for d in drives]
+        columns = np.array(
+            [
+                (wheel.pin_circle_radius + disc.shifting_offset, e, wheel.pin_radius + disc.equidistant_offset)
+                for wheel, disc, e, _ in flanks
+            ]
+        )
+        centres = np.array([(runout.amount, runout.angle) for *_, runout in flanks])
+        rows = np.repeat(columns, positions, axis=0)
+        centre = np.repeat(centres[:, 0] * unit(centres[:, 1]), positions)
+        return cls(
+            generating_radius=rows[:, 0:1],
+            eccentricity=rows[:, 1:2],
+            reduction_ratio=drives[0].reduction_ratio,
+            offset=rows[:, 2:3],
+            centre=centre[:, None],
+            deviation=ProfileDeviation.stack([d.disc.profile_errors for d in drives], positions),
+        )
+
+    def locus(self, parameter: FloatArray) -> Curve:
+        """Return the design trochoid about its own centre, and its first two derivatives by the parameter θ.
+
+        Parameters
+        ----------
+        parameter : array of float
+            θ, rad.
+
+        Returns
+        -------
+        c, dc, ddc : arrays of complex, same shape
+            mm, mm/rad, mm/rad².
+        """
+        return self._locus(unit(parameter))
+
+    def _locus(self, direction: ComplexArray) -> Curve:
+        u = self.reduction_ratio
+        circle = self.generating_radius * direction
+        crank = self.eccentricity * integer_power(direction, round(u))
+        return Curve(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
+
+    @property
+    def contact_offset(self) -> BatchScalar:
+        """Distance of the actual flank from `contact_curve`, mm."""
+        return self.offset if self.deviation is None else 0.0
+
+    def contact_curve(self, direction: ComplexArray) -> Curve:
+        """Return a curve whose inward parallel at `contact_offset` is the actual flank: nearest points are common.
+
+        Parameters
+        ----------
+        direction : array of complex
+            e^{iθ}.
+
+        Returns
+        -------
+        Curve
+            The trochoid; with a deviation the flank itself.
+        """
+        c, dc, ddc = self._locus(direction)
+        if self.deviation is None:
+            return Curve(c + self.centre, dc, ddc)
+        # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
+        u = self.reduction_ratio
+        circle = self.generating_radius * direction
+        dddc = 1j * (u**3 * (circle - c) - circle)
+        speed = np.abs(dc)
+        t = dc / speed
+        n = -1j * t
+        square = speed * speed
+        w = (dc.conjugate() * ddc).imag / square
+        ds = (dc.conjugate() * ddc).real / speed
+        dw = (dc.conjugate() * dddc).imag / square - 2.0 * w * ds / speed
+        delta, slope, bend = self.deviation.value_and_derivatives(direction)
+        d = self.offset - delta
+        along = speed - d * w
+        return Curve(
+            c - d * n + self.centre,
+            along * t + slope * n,
+            (ds + 2.0 * slope * w - d * dw) * t + (bend - w * along) * n,
+        )
+
+    def normal(self, parameter: FloatArray) -> ComplexArray:
+        """Return the unit normal out of the disc at θ: e^{i(θ+ψ)} of Eq. 1 for a flank as designed."""
+        return self.contact_curve(unit(parameter)).normal
+
+    def flank(self, parameter: FloatArray) -> ComplexArray:
+        """Return the points r_C(θ) of the flank (Eq. 1), mm."""
+        curve = self.contact_curve(unit(parameter))
+        return np.asarray(curve.point - self.contact_offset * curve.normal)
+
+    def flank_tangent(self, parameter: FloatArray) -> ComplexArray:
+        """Return dr_C/dθ of the flank, mm/rad."""
+        curve = self.contact_curve(unit(parameter))
+        return np.asarray(curve.tangent * (1.0 - self.contact_offset * curve.curvature))
+
+    def locus_curvature(self, parameter: FloatArray) -> FloatArray:
+        """Return the curvature of the design trochoid at θ, 1/mm, positive where the disc is convex."""
+        return self.locus(parameter).curvature
+
+    def curvature(self, parameter: FloatArray) -> FloatArray:
+        """Return the curvature of the flank at θ, 1/mm, positive where the disc is convex.
+
+        Parallel curves share centres of curvature: ρ_flank = ρ_trochoid − offset.
+        """
+        curvature = self.contact_curve(unit(parameter)).curvature
+        return np.asarray(curvature / (1.0 - self.contact_offset * curvature))
+
+    def effective_radius(self, parameter: FloatArray, pin_radius: FloatArray | float) -> FloatArray:
+        """Return the effective radius of curvature of flank and pin: 1/ρ = 1/r_pin + κ_flank, mm."""
+        return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
+
+    def nearest_parameter(
+        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 100
+    ) -> FloatArray:
+        """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
+        return self.nearest_point(point, start, tolerance=tolerance, limit=limit).parameter
+
+    def nearest_point(
+        self,
+        point: ComplexArray,
+        start: FloatArray,
+        *,
+        tolerance: float = 1e-13,
+        limit: int = 100,
+        across_root: bool = True,
+    ) -> NearestPoint:
+        """Find the flank point whose normal passes through a point.
+
+        Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
+        settle soon, kept between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g
+        vanishes and Newton's method alone creeps or runs away. The minimum next to the start is found; for points
+        about a pin radius away from the flank that is the nearest one.
+
+        Parameters
+        ----------
+        point : array of complex
+            Points in the disc frame, mm.
+        start : array of float, same shape
+            First guess of θ, rad.
+        tolerance : float
+            Largest accepted step, rad.
+        limit : int
+            Iterations.
+        across_root : bool
+            Whether to look at the other side of a sharp root as well.
+
+        Returns
+        -------
+        NearestPoint
+            θ in rad, near the start (not reduced to one turn), and the contact curve there.
+
+        Raises
+        ------
+        ConvergenceError
+            When a point does not settle; the history holds the largest steps.
+        """
+        theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
+        direction = unit(theta)
+        bound = 0.4 * np.pi / self.reduction_ratio
+        low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
+        history: list[float] = []
+        for iteration in range(limit):
+            curve = self.contact_curve(direction)
+            away = curve.point - point
+            tangent = curve.tangent
+            speed = tangent.real**2 + tangent.imag**2
+            value = tangent.real * away.real + tangent.imag * away.imag
+            slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
+            # Beyond a centre of curvature the slope is negative, the point next to a largest distance: leave it.
+            step = np.clip(value / np.maximum(np.abs(slope), 1e-3 * speed), -bound, bound)
+            if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
+                low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
+                outside = ((theta - step < low) | (theta - step > high)) & np.isfinite(high - low)
+                step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
+            theta -= step
+            direction = direction * small_turn(-step)
+            history.append(float(np.max(np.abs(step), initial=0.0)))
+            # Convergence is quadratic: a step of 1e-8 leaves an error below round-off.
+            if history[-1] <= max(tolerance, 1e-8) and (len(history) > 1 or history[-1] <= tolerance):
+                found = NearestPoint(theta, self.contact_curve(direction))
+                return self._nearer_side(point, found) if across_root else found
+        raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
+
+    def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
+        """Change to the other side of the root where the flank is nearer there.
+
+        With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin that has left it by
+        more than its radius there has a nearest point on either side.
+        """
+        u = self.reduction_ratio
+        bend = np.asarray(self.eccentricity * u * u - self.generating_radius)
+        if np.all(bend <= 0.0):
+            return found
+        sharp = (self.generating_radius - self.eccentricity * u) ** 2 / np.where(bend > 0.0, bend, np.nan)
+        theta = found.parameter
+        away = np.abs(self.locus(theta).point + self.centre - point)
+        pitch = 2.0 * np.pi / (u - 1.0)
+        root = pitch * np.round(theta / pitch)
+        doubtful = (away > 0.3 * sharp) & (np.abs(theta - root) < 0.25 * pitch)
+        if not np.any(doubtful):
+            return found
+        mirrored = np.where(doubtful, 2.0 * root - theta, theta)
+        other = self.nearest_point(point, mirrored, across_root=False)
+        nearer = doubtful & (np.abs(self.locus(other.parameter).point + self.centre - point) < away)
+        chosen = (np.where(nearer, one, two) for one, two in zip(other.curve, found.curve, strict=True))
+        return NearestPoint(np.where(nearer, other.parameter, theta), Curve(*chosen))
+
+    def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
+        """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""
+        curve = self.contact_curve(unit(parameter))
+        return np.asarray(((point - curve.point) * curve.normal.conjugate()).real + self.contact_offset)
+
+    @property
+    def root_radius(self) -> float:
+        """Smallest radius of the disc as designed, mm (at θ = 0)."""
+        return float(self.generating_radius - self.eccentricity - self.offset)
+
+    @property
+    def tip_radius(self) -> float:
+        """Largest radius of the disc as designed, mm (at θ = π/z_C for Δz = 1)."""
+        return float(self.generating_radius + self.eccentricity - self.offset)

@@ -1,0 +1,109 @@
+r"""Deviation of the flank from its design along the design normal, δ(θ), with two derivatives.
+
+Harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and a periodic cubic spline through measured points
+(twice continuously differentiable, so contact and its tangent are continuous) add up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.deviations import ProfileErrors
+from ltca.geometry.rotation import integer_power
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProfileDeviation:
+    """Deviation of one flank, or of the flanks of a batch.
+
+    Attributes
+    ----------
+    orders : tuple of int
+        Waves around the disc.
+    amplitudes : array of complex, shape (orders,) or (positions, orders)
+        a − i b of each order, mm.
+    knots : array, shape (n + 1,)
+        Measured parameters and the first one a turn later, rad; empty without points.
+    pieces : array, shape (4, n)
+        Powers 3 … 0 of the distance from the knot before, mm.
+    """
+
+    orders: tuple[int, ...]
+    amplitudes: ComplexArray
+    knots: FloatArray
+    pieces: FloatArray
+
+    @classmethod
+    def of_errors(cls, errors: ProfileErrors) -> ProfileDeviation | None:
+        """Return the deviation a drive defines, None for the flank as designed."""
+        if errors.is_zero:
+            return None
+        count = len(errors.orders)
+        cosine = np.array(errors.cosine) if errors.cosine else np.zeros(count)
+        sine = np.array(errors.sine) if errors.sine else np.zeros(count)
+        knots, pieces = np.empty(0), np.empty((4, 0))
+        if any(errors.deviation):
+            from scipy.interpolate import CubicSpline  # 0.1 s to import, for measured flanks only
+
+            knots = np.array([*errors.parameter, errors.parameter[0] + 2.0 * pi])
+            pieces = CubicSpline(knots, [*errors.deviation, errors.deviation[0]], bc_type="periodic").c
+        return cls(
+            orders=errors.orders, amplitudes=np.asarray(cosine - 1j * sine, dtype=complex), knots=knots, pieces=pieces
+        )
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ProfileDeviation:
+        """Return the deviation of some positions of a batch."""
+        return replace(self, amplitudes=self.amplitudes[rows])
+
+    @classmethod
+    def stack(cls, errors: Sequence[ProfileErrors], positions: int) -> ProfileDeviation | None:
+        """Return the deviations of several flanks of equal orders and measured points, see `Placement.stack`."""
+        if all(item.is_zero for item in errors):
+            return None
+        orders = errors[0].orders
+        zeros = (0.0,) * len(orders)
+        amplitudes = np.array([item.cosine or zeros for item in errors]) - 1j * np.array(
+            [item.sine or zeros for item in errors]
+        )
+        measured = cls.of_errors(ProfileErrors(parameter=errors[0].parameter, deviation=errors[0].deviation))
+        return cls(
+            orders=orders,
+            amplitudes=np.repeat(amplitudes, positions, axis=0),
+            knots=np.empty(0) if measured is None else measured.knots,
+            pieces=np.empty((4, 0)) if measured is None else measured.pieces,
+        )
+
+    def value_and_derivatives(self, direction: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return δ, δ′ and δ″ at θ, mm by powers of rad.
+
+        Parameters
+        ----------
+        direction : array of complex, shape (…) or (positions, …)
+            e^{iθ}; with a batch of flanks axis 0 is the position.
+        """
+        value, first, second = (np.zeros(direction.shape) for _ in range(3))
+        for number, order in enumerate(self.orders):
+            amplitude = self.amplitudes[..., number]
+            if amplitude.ndim:
+                amplitude = amplitude.reshape(-1, *(1,) * (direction.ndim - 1))
+            wave = amplitude * integer_power(direction, order)
+            value += wave.real
+            first -= order * wave.imag
+            second -= order * order * wave.real
+        if self.knots.size:
+            at = np.mod(np.angle(direction) - self.knots[0], 2.0 * pi) + self.knots[0]
+            piece = np.clip(np.searchsorted(self.knots, at, side="right") - 1, 0, self.pieces.shape[1] - 1)
+            t = at - self.knots[piece]
+            c3, c2, c1, c0 = self.pieces[:, piece]
+            value += c0 + t * (c1 + t * (c2 + t * c3))
+            first += c1 + t * (2.0 * c2 + t * 3.0 * c3)
+            second += 2.0 * c2 + 6.0 * c3 * t
+        return value, first, second

@@ -1,0 +1,248 @@
+r"""How far each pair is pressed together at a pose, and how that changes with the pose (Eq. 45–64).
+
+A pose of the disc and the wheel at a held crank angle is q = (x, y, disc rotation, wheel angle): x and y in
+mm are the displacement of the disc centre from the inner-race centre in the fixed frame, the angles in rad;
+the wheel angle is its deviation from φ_C/u. All arrays carry the position on axis 0 and the pair on axis 1.
+Approaches are positive where the bodies are pressed together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+from ltca.geometry.rotation import unit
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
+    return first.real * second.real + first.imag * second.imag
+
+
+def _cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
+    return first.real * second.imag - first.imag * second.real
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PairMotion:
+    """Approach of pairs of one kind, with first and second derivatives by the pose.
+
+    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its
+    tangent, and turning terms made of s again. They are only formed summed over the pairs, see `bend`.
+
+    Attributes
+    ----------
+    approach : array, shape (positions, pairs)
+        δ, mm.
+    gradient : array, shape (positions, pairs, 4)
+        ∂δ/∂q, in mm/mm and mm/rad.
+    along : array, shape (positions, pairs, 4)
+        Slip along the tangent by the pose, in mm/mm and mm/rad.
+    bending : array, shape (positions, pairs)
+        κ of the path of equal approach, 1/mm.
+    """
+
+    approach: FloatArray
+    gradient: FloatArray
+    along: FloatArray
+    bending: FloatArray
+
+    def bend(self, load: FloatArray) -> FloatArray:
+        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, 4, 4).
+
+        Parameters
+        ----------
+        load : array, shape (positions, pairs)
+            F, N.
+        """
+        return self._sum(load, self.bending, self.along)
+
+    @property
+    def curvature(self) -> FloatArray:
+        """∂²δ/∂q² of every pair, shape (positions, pairs, 4, 4)."""
+        one = np.ones((*self.bending.shape, 1))
+        return self._sum(one, self.bending[..., None], self.along[..., None, :])
+
+    @staticmethod
+    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
+        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ with the disc rotation as coordinate 2."""
+        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
+        total[..., 2, 2] += (load * along[..., 2]).sum(axis=-1)
+        return np.asarray(total)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlankMotion(PairMotion):
+    """Pairs of wheel pin and flank.
+
+    Attributes
+    ----------
+    parameter : array, shape (positions, z_P)
+        Place θ of the contact on the flank, rad.
+    effective_radius : array, shape (positions, z_P)
+        ρ of pin and flank there, mm.
+    """
+
+    parameter: FloatArray
+    effective_radius: FloatArray
+
+    @staticmethod
+    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
+        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s₃ e₃e₃ᵀ), wheel angle as coordinate 3."""
+        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
+        slip = np.matmul(load[..., None, :], along)[..., 0, :]
+        total[..., 2, :] += slip
+        total[..., :, 2] += slip
+        total[..., 2, 2] -= slip[..., 2]
+        total[..., 3, 3] -= slip[..., 3]
+        return np.asarray(-total)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerRays:
+    """Rollers on their cage rays about the inner-race centre.
+
+    Attributes
+    ----------
+    direction : array of complex, shape (positions, n_BR)
+        Unit vector n of each ray in the fixed frame.
+    outermost : array, shape (n_BR,)
+        Distance s of the roller centre from the race centre when it rests on the inner race, mm.
+    bore_play : array, shape (n_BR,)
+        Bore radius less roller radius: distance from the disc centre at which it touches the bore, mm.
+    """
+
+    direction: ComplexArray
+    outermost: FloatArray
+    bore_play: FloatArray
+
+    def touching_distance(self, displacement: ComplexArray) -> FloatArray:
+        """Return the distance s at which each roller just touches the bore, mm, shape (positions, n_BR).
+
+        Parameters
+        ----------
+        displacement : array of complex, shape (positions,)
+            Disc centre from inner-race centre, mm.
+        """
+        along = _dot(self.direction, displacement[:, None])
+        across = (self.direction.conjugate() * displacement[:, None]).imag
+        # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
+        return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactGeometry:
+    """The drive as its contact pairs see it."""
+
+    placement: Placement
+    profile: FlankProfile
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> ContactGeometry:
+        """Return the contact geometry of a drive."""
+        return cls(placement=Placement.of_drive(drive), profile=FlankProfile.of_drive(drive))
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], positions: int) -> ContactGeometry:
+        """Return the contact geometry of a batch: every drive at the same number of positions, drive by drive."""
+        places = [Placement.of_drive(drive) for drive in drives]
+        return cls(placement=Placement.stack(places, positions), profile=FlankProfile.stack(drives, positions))
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ContactGeometry:
+        """Return the geometry of some positions: itself for one drive, these rows of a batch."""
+        if not self.placement.is_batch:
+            return self
+        return ContactGeometry(placement=self.placement.take(rows), profile=self.profile.take(rows))
+
+    def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
+        """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, rad.
+
+        Parameters
+        ----------
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        """
+        pins = np.angle(self.placement.wheel_pin_centres)
+        return np.asarray(crank_angle)[:, None] / self.placement.reduction_ratio + pins
+
+    def flank(self, crank_angle: FloatArray, pose: FloatArray, start: FloatArray | None = None) -> FlankMotion:
+        """Return the pairs of wheel pin and flank (Eq. 60–64).
+
+        Parameters
+        ----------
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        pose : array, shape (positions, 4)
+            q.
+        start : array, shape (positions, z_P), optional
+            First guess of the contact parameters; the nominal ones by default.
+        """
+        place = self.placement
+        rotation, wheel_angle = pose[:, 2, None], pose[:, 3, None]
+        disc_centre = (place.race_centre(crank_angle) + pose[:, 0] + 1j * pose[:, 1])[:, None]
+        pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
+        arm = place.wheel_axis + pin - disc_centre
+        turn = unit(rotation)
+        point = arm * turn.conjugate()
+        if start is None:
+            start = self.nominal_parameter(crank_angle) + wheel_angle - rotation
+        parameter, curve = self.profile.nearest_point(point, start)
+        tangent, second = curve.tangent, curve.second
+        speed = np.sqrt(tangent.real**2 + tangent.imag**2)
+        normal = -1j * tangent / speed
+        distance = _dot(normal, point - curve.point)
+        curvature = _cross(tangent, second) / speed**3
+        offset = self.profile.contact_offset
+        approach = place.wheel_pin_radii - offset - distance
+        flank_curvature = curvature / (1.0 - offset * curvature)
+        effective_radius = 1.0 / (1.0 / place.wheel_pin_radii + flank_curvature)
+
+        # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
+        # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
+        outward = normal * turn
+        gradient, along = np.empty((*approach.shape, 4)), np.empty((*approach.shape, 4))
+        gradient[..., 0], gradient[..., 1] = outward.real, outward.imag
+        gradient[..., 2], gradient[..., 3] = _cross(arm, outward), -_cross(pin, outward)
+        along[..., 0], along[..., 1] = outward.imag, -outward.real
+        along[..., 2], along[..., 3] = -_dot(outward, arm), _dot(outward, pin)
+        return FlankMotion(
+            approach=approach,
+            gradient=gradient,
+            along=along,
+            bending=curvature / (1.0 + curvature * distance),
+            parameter=parameter,
+            effective_radius=effective_radius,
+        )
+
+    def holes(self, crank_angle: FloatArray, pose: FloatArray) -> PairMotion:
+        """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
+        place = self.placement
+        disc_centre = (place.race_centre(crank_angle) + pose[:, 0] + 1j * pose[:, 1])[:, None]
+        arm = place.hole_centres * unit(pose[:, 2, None])
+        play = place.shaft_pin_centres - disc_centre - arm
+        distance = np.sqrt(play.real**2 + play.imag**2)
+        direction = play / distance
+        gradient, along = np.zeros((*distance.shape, 4)), np.zeros((*distance.shape, 4))
+        gradient[..., 0], gradient[..., 1] = -direction.real, -direction.imag
+        gradient[..., 2] = -_cross(arm, direction)
+        along[..., 0], along[..., 1] = -direction.imag, direction.real
+        along[..., 2] = _dot(direction, arm)
+        approach = distance - (place.hole_radii - place.shaft_pin_radii)
+        return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
+
+    def rollers(self, crank_angle: FloatArray) -> RollerRays:
+        """Return the cage rays of the rollers (Eq. 48); they depend on the crank angle alone."""
+        place = self.placement
+        return RollerRays(
+            direction=place.roller_rays(crank_angle),
+            outermost=place.inner_race_radius + place.roller_radii,
+            bore_play=place.bore_radius - place.roller_radii,
+        )

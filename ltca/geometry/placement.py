@@ -1,0 +1,170 @@
+"""Where pins, rollers and holes stand and how large they are, errors included.
+
+Each part is given in the frame of the body that carries it, as complex numbers in mm: wheel pins in the
+wheel frame, holes in the disc frame, shaft pins in the fixed frame, rollers by their cage angle. Numbering
+starts at 0 and runs counter-clockwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.deviations import PlacementErrors
+from ltca.drive.parts import Drive
+from ltca.geometry.rotation import unit
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+BatchScalar: TypeAlias = Any
+"""A number of one drive, a float; of a batch of drives an array of shape (positions, 1)."""
+
+
+def _filled(values: Sequence[float], count: int) -> FloatArray:
+    return np.array(values, dtype=float) if len(values) else np.zeros(count)
+
+
+def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
+    ray = np.exp(2j * np.pi * np.arange(count) / count)
+    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * ray)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Placement:
+    """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives.
+
+    In a batch axis 0 of every array is the position, and the single numbers are arrays of shape (positions, 1).
+
+    Attributes
+    ----------
+    wheel_pin_centres : array of complex, shape (z_P,)
+        In the wheel frame, from the wheel's axis, mm.
+    wheel_pin_radii : array of float, shape (z_P,)
+        mm.
+    hole_centres : array of complex, shape (z_PS,)
+        In the disc frame, mm.
+    hole_radii : array of float, shape (z_PS,)
+        With the pin-hole clearance, mm.
+    shaft_pin_centres : array of complex, shape (z_PS,)
+        In the fixed frame, mm.
+    shaft_pin_radii : array of float, shape (z_PS,)
+        mm.
+    roller_cage_angles : array of float, shape (n_BR,)
+        Angle of each roller in the cage, rad.
+    roller_radii : array of float, shape (n_BR,)
+        mm.
+    inner_race_radius, bore_radius : float
+        r_i, and r_o with half the bearing clearance, mm.
+    eccentricity : float
+        Actual e, mm.
+    crank_axis, wheel_axis : complex
+        Places of both axes in the fixed frame, mm.
+    cage_speed : float
+        Cage angle by crank angle, r_i/(r_i + r_o) with the nominal r_o.
+    reduction_ratio : float
+        u.
+    """
+
+    wheel_pin_centres: ComplexArray
+    wheel_pin_radii: FloatArray
+    hole_centres: ComplexArray
+    hole_radii: FloatArray
+    shaft_pin_centres: ComplexArray
+    shaft_pin_radii: FloatArray
+    roller_cage_angles: FloatArray
+    roller_radii: FloatArray
+    inner_race_radius: BatchScalar
+    bore_radius: BatchScalar
+    eccentricity: BatchScalar
+    crank_axis: complex | ComplexArray
+    wheel_axis: complex | ComplexArray
+    cage_speed: BatchScalar
+    reduction_ratio: float
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> Placement:
+        """Return the places of a drive's parts."""
+        wheel, bearing, shaft = drive.pin_wheel, drive.crank_bearing, drive.pin_shaft
+        holes = shaft.number_of_pins
+        rollers = bearing.number_of_rollers
+        pitch_radius = bearing.inner_race_radius + bearing.roller_radius
+        pocket_error = _filled(bearing.roller_errors.tangential, rollers) / pitch_radius
+        return cls(
+            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
+            wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
+            hole_centres=_circle(shaft.pin_circle_radius, holes, drive.disc.hole_errors),
+            hole_radii=drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, holes),
+            shaft_pin_centres=_circle(shaft.pin_circle_radius, holes, shaft.pin_errors),
+            shaft_pin_radii=shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, holes),
+            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error,
+            roller_radii=bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers),
+            inner_race_radius=bearing.inner_race_radius,
+            bore_radius=drive.bore_radius,
+            eccentricity=drive.crank.eccentricity + drive.crank.eccentricity_error,
+            crank_axis=drive.crank.axis_offset.place,
+            wheel_axis=wheel.axis_offset.place,
+            cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
+            reduction_ratio=drive.reduction_ratio,
+        )
+
+    @property
+    def is_batch(self) -> bool:
+        """Whether every position has a drive of its own."""
+        return isinstance(self.eccentricity, np.ndarray)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Placement:
+        """Return the places of some positions of a batch."""
+        picked = {item.name: getattr(self, item.name) for item in fields(self)}
+        return Placement(**{name: value[rows] if np.ndim(value) else value for name, value in picked.items()})
+
+    @classmethod
+    def stack(cls, places: Sequence[Placement], positions: int) -> Placement:
+        """Return the batch of several drives, each at the same number of positions.
+
+        Parameters
+        ----------
+        places : sequence of Placement
+            One for each drive, with equal numbers of parts and equal reduction ratio.
+        positions : int
+            Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
+        """
+        stacked = {}
+        for item in fields(cls):
+            values = [getattr(place, item.name) for place in places]
+            if item.name == "reduction_ratio":
+                stacked[item.name] = values[0]
+            else:
+                rows = np.array(values)
+                stacked[item.name] = np.repeat(rows.reshape(len(places), -1), positions, axis=0)
+        return cls(**stacked)
+
+    def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return the centre of inner race and cage, e·e^{iφ_C} from the crank axis, in the fixed frame, mm (Eq. 47)."""
+        return np.asarray(_flat(self.crank_axis) + _flat(self.eccentricity) * unit(crank_angle))
+
+    def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
+        """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, n_BR)."""
+        return np.asarray(self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles)
+
+    def roller_rays(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return the unit vectors of the cage rays, e^{iθ_b,n}, in the fixed frame, shape (…, n_BR)."""
+        turn = unit(_flat(self.cage_speed) * np.asarray(crank_angle))
+        return np.asarray(turn[..., None] * unit(self.roller_cage_angles))
+
+    def wheel_rotation(self, crank_angle: FloatArray) -> FloatArray:
+        """Return φ_P = φ_C/u, the ideal rotation of the wheel, rad."""
+        return np.asarray(crank_angle) / self.reduction_ratio
+
+
+def _flat(value: complex | FloatArray | ComplexArray) -> complex | FloatArray | ComplexArray:
+    """A single number as it is, the column of a batch as one number for each position."""
+    return value[:, 0] if isinstance(value, np.ndarray) else value
+
+
+def position_angles(positions: int) -> FloatArray:
+    """Return the crank angles of a run of N positions over one turn: 2πk/N, rad."""
+    return 2.0 * np.pi * np.arange(positions) / positions

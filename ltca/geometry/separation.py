@@ -1,0 +1,83 @@
+r"""True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65).
+
+At the distance l from the contact point along the tangent a circle of radius r has left it by r − √(r² − l²); the
+flank by h(l), found from its own equation. To second order both are the parabola l²/(2ρ) of the tables; the
+higher orders are what ``direct`` adds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.errors import ConvergenceError
+from ltca.geometry.flank import FlankProfile
+
+FloatArray = NDArray[np.float64]
+
+
+def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
+    """Return r − √(r² − l²), how far a circle has left its tangent, mm (Eq. 17).
+
+    Parameters
+    ----------
+    tangent_distance : array
+        l, mm.
+    radius : float
+        r, mm; negative for the concave side (a bore), whose departure is negative.
+
+    Notes
+    -----
+    Written l²/(r + √(r² − l²)), which does not cancel. Beyond the radius the circle has no points: infinite.
+    """
+    size = abs(radius)
+    square = np.asarray(tangent_distance, dtype=float) ** 2
+    inside = square < size**2
+    departure = np.where(inside, square / (size + np.sqrt(np.where(inside, size**2 - square, 0.0))), np.inf)
+    return np.asarray(np.copysign(departure, radius))
+
+
+def flank_departure(
+    profile: FlankProfile, parameter: float, tangent_distance: FloatArray, *, limit: int = 40
+) -> FloatArray:
+    """Return how far the flank has left its tangent at a contact point (Eq. 18–19).
+
+    Parameters
+    ----------
+    profile : FlankProfile
+        The flank.
+    parameter : float
+        Its contact point θ, rad.
+    tangent_distance : array
+        l along the tangent in the sense of growing θ, mm.
+    limit : int
+        Newton iterations.
+
+    Returns
+    -------
+    array, same shape
+        h, mm, positive where the flank falls back into the disc.
+
+    Raises
+    ------
+    ConvergenceError
+        When the flank has no point at such a distance next to the contact point.
+    """
+    at = np.array(parameter)
+    origin = profile.flank(at)
+    normal = profile.normal(at)
+    tangent = 1j * normal
+    theta = np.full(tangent_distance.shape, float(parameter))
+    bound = 0.4 * np.pi / profile.reduction_ratio
+    history: list[float] = []
+    for _ in range(limit):
+        rate = (profile.flank_tangent(theta) * np.conj(tangent)).real
+        away = ((profile.flank(theta) - origin) * np.conj(tangent)).real - tangent_distance
+        floor = 0.05 * np.abs(profile.locus(theta).tangent)
+        step = np.clip(away / np.where(rate > floor, rate, floor), -bound, bound)
+        theta -= step
+        history.append(float(np.max(np.abs(step), initial=0.0)))
+        if history[-1] < 1e-9:
+            leaving = profile.flank(theta) - origin
+            return np.asarray(-(leaving * np.conj(normal)).real)
+    raise ConvergenceError("no point of the flank at that distance from the contact; largest step in rad", history)

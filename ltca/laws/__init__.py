@@ -1,0 +1,16 @@
+"""Load–approach laws of single contacts: tables of the half-space, plane strain, springs, laws in series.
+
+Modules in the order data passes:
+
+=====================  ============================================================
+contact_law            What the mechanics needs of a load–approach law, whoever provides it: a table, a grid, a
+                       finite-element fit
+slenderness_curve      Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast
+                       to evaluate
+line_contact           Load–approach law of an uncrowned line contact between two half-spaces
+profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
+generator_law          The tabulated law of a roller or pin with the generator that the drive gives it
+plane_strain           Load–approach law of a line contact in plane strain, with a datum
+series                 Laws made of laws: springs, laws in series, and the approach at a given load
+=====================  ============================================================
+"""

@@ -1,0 +1,44 @@
+"""The tabulated law of a roller or pin with the generator that the drive gives it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.contact.generator import generator_profile
+from ltca.drive import parts as drive
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.line_contact import LineContactLaw
+
+FloatArray = NDArray[np.float64]
+
+
+def law_for_profile(
+    profile: drive.LengthProfile,
+    *,
+    length: float,
+    radius: float,
+    contact_modulus: float,
+    effective_radii: FloatArray,
+) -> ContactLaw:
+    """Return the tabulated law of a roller or pin.
+
+    Parameters
+    ----------
+    profile : ltca.drive.parts.LengthProfile
+        Crown and relief along the length.
+    length, radius : float
+        Length of the contact and radius of the part, mm.
+    contact_modulus : float
+        E*, MPa.
+    effective_radii : array
+        Effective radii the law will be asked for, mm; only their range matters, and only for profiled parts.
+    """
+    generator = generator_profile(profile, length, radius)
+    if generator is None:
+        return LineContactLaw(length, contact_modulus)
+    # Tables of profiles build for a second or so: cylinders do without their module.
+    from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
+
+    smallest, largest = float(np.min(effective_radii)), float(np.max(effective_radii))
+    return ProfiledLineContactLaw.for_radii(generator, contact_modulus, smallest, largest)

@@ -1,0 +1,14 @@
+"""Drive files: read, checked against physics, changed field by field, written.
+
+Modules in the order data passes:
+
+================  ============================================================
+drive_file        Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
+                  once
+physical_checks   Physical checks of a drive: what its numbers, each fine on its own, cannot be together
+deviation_checks  Physical checks of the deviations of a drive: counts, size, and a flank that neither folds nor
+                  traps its pins
+changes           A drive with some fields replaced, validated like a drive file
+writing           A drive as the text of a drive file
+================  ============================================================
+"""

@@ -1,0 +1,110 @@
+"""Physical checks of the deviations of a drive: counts, size, and a flank that neither folds nor traps its pins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+
+from ltca.drive.parts import Drive
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.rotation import unit
+
+POINTS_PER_WAVE = 24
+"""Points on which the flank is looked at, for each wave of the highest order."""
+
+
+def deviation_bound(drive: Drive) -> float:
+    """Return the largest deviation accepted, mm: beyond a tenth of the smallest radius it is a different design."""
+    return 0.1 * min(drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius, drive.pin_shaft.pin_radius)
+
+
+def find_deviation_problems(drive: Drive) -> Iterator[str]:
+    """Yield what is wrong with counts and sizes of the deviations, one sentence each."""
+    pins, holes = drive.pin_wheel.number_of_pins, drive.pin_shaft.number_of_pins
+    rollers = drive.crank_bearing.number_of_rollers
+    parts = [
+        ("pin_wheel.pin_errors", drive.pin_wheel.pin_errors, pins, "pins"),
+        ("disc.hole_errors", drive.disc.hole_errors, holes, "holes"),
+        ("pin_shaft.pin_errors", drive.pin_shaft.pin_errors, holes, "pins"),
+        ("crank_bearing.roller_errors", drive.crank_bearing.roller_errors, rollers, "rollers"),
+    ]
+    bound = deviation_bound(drive)
+    for path, errors, count, things in parts:
+        for name in ("radial", "tangential", "diameter"):
+            values = getattr(errors, name, ())
+            if values and len(values) != count:
+                yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
+            worst = max(values, key=abs, default=0.0)
+            if abs(worst) > bound:
+                yield (
+                    f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
+                    "a tenth of the smallest pin or roller radius"
+                )
+    lengths = {
+        "crank.eccentricity_error": drive.crank.eccentricity_error,
+        "crank.axis_offset.x": drive.crank.axis_offset.x,
+        "crank.axis_offset.y": drive.crank.axis_offset.y,
+        "pin_wheel.axis_offset.x": drive.pin_wheel.axis_offset.x,
+        "pin_wheel.axis_offset.y": drive.pin_wheel.axis_offset.y,
+        "disc.runout.amount": drive.disc.runout.amount,
+    }
+    limit = min(bound, 0.5 * drive.crank.eccentricity)
+    for path, value in lengths.items():
+        if abs(value) > limit:
+            yield (
+                f"{path} = {value:g} mm: must be at most {limit:g} mm in size, a tenth of the smallest pin or "
+                "roller radius and half the eccentricity"
+            )
+    yield from _profile_errors(drive, bound)
+
+
+def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
+    errors = drive.disc.profile_errors
+    path = "disc.profile_errors"
+    if len(set(errors.orders)) != len(errors.orders):
+        yield f"{path}.orders: must name each order once"
+    for name in ("cosine", "sine"):
+        values = getattr(errors, name)
+        if values and len(values) != len(errors.orders):
+            yield f"{path}.{name} has {len(values)} values: must have {len(errors.orders)}, one for each of the orders"
+    if len(errors.deviation) != len(errors.parameter):
+        yield (
+            f"{path}.deviation has {len(errors.deviation)} values: must have {len(errors.parameter)}, "
+            "one for each measured parameter"
+        )
+    if errors.parameter:
+        at = np.array(errors.parameter)
+        if at.size < 3 or at[0] < 0.0 or at[-1] >= 2.0 * pi or not np.all(np.diff(at) > 0.0):
+            yield f"{path}.parameter: must be at least 3 angles ascending from 0 rad or more to less than 2π rad"
+    size = sum(abs(value) for value in (*errors.cosine, *errors.sine)) + max(map(abs, errors.deviation), default=0.0)
+    if size > bound:
+        yield (
+            f"{path} reaches {size:g} mm: must be at most {bound:g} mm, a tenth of the smallest pin or roller radius"
+        )
+
+
+def find_flank_problems(drive: Drive) -> Iterator[str]:
+    """Yield what a deviated flank cannot be: folded, or hollower than its pins are round."""
+    errors = drive.disc.profile_errors
+    if errors.is_zero:
+        return
+    waves = max((drive.pin_wheel.number_of_pins, *errors.orders, len(errors.parameter)))
+    theta = np.linspace(0.0, 2.0 * pi, POINTS_PER_WAVE * waves, endpoint=False)
+    profile = FlankProfile.of_drive(drive)
+    flank = profile.contact_curve(unit(theta))
+    design = profile.locus(theta)
+    forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
+    if np.min(forward) <= 0.0:
+        worst = float(theta[np.argmin(forward)])
+        yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
+        return
+    hollow = -np.asarray(flank.curvature) * drive.pin_wheel.pin_radius
+    if np.max(hollow) >= 1.0:
+        worst = float(theta[np.argmax(hollow)])
+        radius = drive.pin_wheel.pin_radius / float(np.max(hollow))
+        yield (
+            f"disc.profile_errors: the flank has a hollow of radius {radius:.4g} mm at θ = {worst:.4g} rad: must be "
+            f"greater than {drive.pin_wheel.pin_radius:g} mm, the pin radius"
+        )

@@ -1,0 +1,221 @@
+"""Physical checks of a drive: what its numbers, each fine on its own, cannot be together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from math import pi, sin
+
+import numpy as np
+
+from ltca.drive.parts import Drive, LengthProfile
+from ltca.geometry.flank import FlankProfile
+from ltca.reading.deviation_checks import find_deviation_problems, find_flank_problems
+
+# Fits that are exact in the definition (r_i + 2 r_BR = r_o) must survive the rounding of their sum.
+ROUNDING = 1e-9
+
+
+def find_contradictions(drive: Drive) -> list[str]:
+    """Return every physical contradiction of a drive.
+
+    Parameters
+    ----------
+    drive : Drive
+        A drive whose single numbers are already valid.
+
+    Returns
+    -------
+    list of str
+        One sentence each, with field, value, bound and unit; empty for a sound drive.
+    """
+    problems = list(find_deviation_problems(drive))
+    problems += _tooth_numbers(drive)
+    if problems:
+        return problems  # the geometry below needs them
+    problems += _flank(drive)
+    if not problems:
+        problems += find_flank_problems(drive)
+    problems += _pins(drive)
+    problems += _bearing(drive)
+    problems += _holes(drive)
+    problems += _length_profiles(drive)
+    return problems
+
+
+def _tooth_numbers(drive: Drive) -> Iterator[str]:
+    pins, teeth = drive.pin_wheel.number_of_pins, drive.disc.number_of_teeth
+    if pins - teeth != 1:
+        yield (
+            f"disc.number_of_teeth = {teeth}: must be {pins - 1}, one less than pin_wheel.number_of_pins = {pins} "
+            "(other tooth-number differences are not supported)"
+        )
+
+
+def _flank(drive: Drive) -> Iterator[str]:
+    wheel, disc, e = drive.pin_wheel, drive.disc, drive.crank.eccentricity
+    pitch_radius = e * drive.reduction_ratio
+    smallest = min(wheel.pin_circle_radius, wheel.pin_circle_radius + disc.shifting_offset)
+    if pitch_radius >= smallest:
+        yield (
+            f"crank.eccentricity = {e:g} mm: must be less than {smallest / drive.reduction_ratio:.6g} mm "
+            "(pin circle radius by number of pins, shifting offset included), or the flank has loops"
+        )
+        return
+    profile = FlankProfile.of_drive(drive)
+    if profile.offset <= 0.0:
+        yield (
+            f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be greater than "
+            f"{-wheel.pin_radius:g} mm (minus the pin radius)"
+        )
+        return
+    smallest_radius = _smallest_path_radius(wheel.pin_circle_radius + disc.shifting_offset, e, drive.reduction_ratio)
+    if smallest_radius <= profile.offset:
+        yield (
+            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than "
+            f"{smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
+            "convex side less the equidistant offset), or the flank is undercut"
+        )
+    if profile.root_radius <= 0.0:
+        yield (
+            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: leaves a root radius of "
+            f"{profile.root_radius:.6g} mm, must be greater than 0 mm"
+        )
+    # Gap of every pin in the nominal position: Δr_P − ΔR_C cos ψ, ψ between 0 and asin(e z_P/R).
+    steepest = float(np.sqrt(1.0 - (pitch_radius / profile.generating_radius) ** 2))
+    gap = disc.equidistant_offset - max(disc.shifting_offset, disc.shifting_offset * steepest)
+    if gap < -ROUNDING:
+        yield (
+            f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
+            f"{disc.equidistant_offset - gap:.6g} mm with this shifting offset, or disc and pins interfere"
+        )
+
+
+@lru_cache(maxsize=64)
+def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
+    """Smallest convex radius of the pin-centre path, mm; kept, since studies check one design thousands of times."""
+    path = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
+    largest = float(np.max(path.locus_curvature(np.linspace(0.0, 2.0 * pi / ratio, 4001))))
+    return 1.0 / largest if largest > 0.0 else float("inf")
+
+
+def _pins(drive: Drive) -> Iterator[str]:
+    wheel = drive.pin_wheel
+    room = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins)
+    if wheel.pin_radius >= room:
+        yield (
+            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than {room:.6g} mm, "
+            "or neighbouring pins overlap"
+        )
+    shaft = drive.pin_shaft
+    room = shaft.pin_circle_radius * sin(pi / shaft.number_of_pins)
+    if shaft.pin_radius >= room:
+        yield (
+            f"pin_shaft.pin_radius = {shaft.pin_radius:g} mm: must be less than {room:.6g} mm, "
+            "or neighbouring pins overlap"
+        )
+
+
+def _bearing(drive: Drive) -> Iterator[str]:
+    bearing = drive.crank_bearing
+    space = bearing.outer_race_radius - bearing.inner_race_radius
+    if 2.0 * bearing.roller_radius > space + ROUNDING:
+        yield (
+            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most {0.5 * space:.6g} mm, "
+            "half the space between the races"
+        )
+    elif 2.0 * bearing.roller_radius < 0.9 * space:
+        yield (
+            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at least {0.45 * space:.6g} mm, "
+            "or the rollers are loose between the races (give clearance as clearance.bearing)"
+        )
+    room = (bearing.inner_race_radius + bearing.roller_radius) * sin(pi / bearing.number_of_rollers)
+    if bearing.roller_radius >= room:
+        yield (
+            f"crank_bearing.number_of_rollers = {bearing.number_of_rollers}: rollers of radius "
+            f"{bearing.roller_radius:g} mm overlap, their radius must be less than {room:.6g} mm"
+        )
+    if bearing.roller_length > drive.disc.thickness + ROUNDING:
+        yield (
+            f"crank_bearing.roller_length = {bearing.roller_length:g} mm: must be at most "
+            f"{drive.disc.thickness:g} mm, the thickness of the disc"
+        )
+    if drive.clearance.bearing > bearing.roller_radius:
+        yield (
+            f"clearance.bearing = {drive.clearance.bearing:g} mm: must be at most {bearing.roller_radius:g} mm, "
+            "the roller radius"
+        )
+
+
+def _holes(drive: Drive) -> Iterator[str]:
+    shaft, e = drive.pin_shaft, drive.crank.eccentricity
+    play = shaft.hole_radius - shaft.pin_radius
+    if play < e - ROUNDING:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {shaft.pin_radius + e:g} mm, "
+            "pin radius plus eccentricity"
+        )
+    elif play > 1.5 * e:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at most {shaft.pin_radius + 1.5 * e:g} mm, "
+            "pin radius plus 1.5 eccentricities, or the pins cannot lead the disc"
+        )
+    if drive.clearance.pin_hole > 0.5 * e:
+        yield (
+            f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be at most {0.5 * e:g} mm, "
+            "half the eccentricity"
+        )
+    radius = drive.hole_radius
+    wall = shaft.pin_circle_radius - radius - drive.bore_radius
+    if wall <= 0.0:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: holes cut into the bore by {-wall:.6g} mm; "
+            f"must be less than {shaft.hole_radius + wall:.6g} mm"
+        )
+    wall = 2.0 * (shaft.pin_circle_radius * sin(pi / shaft.number_of_pins) - radius)
+    if wall <= 0.0:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: neighbouring holes cut into each other by "
+            f"{-wall:.6g} mm; must be less than {shaft.hole_radius + 0.5 * wall:.6g} mm"
+        )
+    root = FlankProfile.of_drive(drive).root_radius
+    wall = root - shaft.pin_circle_radius - radius
+    if wall <= 0.0:
+        yield (
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: holes cut through the root circle of the disc "
+            f"(radius {root:.6g} mm) by {-wall:.6g} mm; must be less than {shaft.hole_radius + wall:.6g} mm"
+        )
+    if drive.bore_radius >= root:
+        yield (
+            f"crank_bearing.outer_race_radius = {drive.crank_bearing.outer_race_radius:g} mm: must be less than "
+            f"{root:.6g} mm, the root radius of the disc"
+        )
+
+
+def _length_profiles(drive: Drive) -> Iterator[str]:
+    bearing = drive.crank_bearing
+    profiles: list[tuple[str, LengthProfile, float, float]] = [
+        (
+            "crank_bearing.roller_profile",
+            bearing.roller_profile,
+            bearing.roller_length,
+            bearing.roller_radius,
+        ),
+        (
+            "pin_wheel.pin_profile",
+            drive.pin_wheel.pin_profile,
+            drive.disc.thickness,
+            drive.pin_wheel.pin_radius,
+        ),
+    ]
+    for path, profile, length, radius in profiles:
+        if profile.end_relief_length > 0.5 * length:
+            yield (
+                f"{path}.end_relief_length = {profile.end_relief_length:g} mm: must be at most "
+                f"{0.5 * length:g} mm, half the contact length"
+            )
+        for name in ("crown_drop", "end_relief_depth"):
+            if (drop := getattr(profile, name)) > 0.1 * radius:
+                yield f"{path}.{name} = {drop:g} mm: must be at most {0.1 * radius:g} mm, a tenth of the radius"
+        if profile.logarithmic_factor > 100.0:
+            yield f"{path}.logarithmic_factor = {profile.logarithmic_factor:g}: must be at most 100"

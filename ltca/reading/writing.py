@@ -1,0 +1,46 @@
+"""A drive as the text of a drive file."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from ltca.drive.parts import Drive
+
+
+def drive_text(drive: Drive) -> str:
+    """Return a drive as the text of a drive file that reads back as the same drive, bit for bit.
+
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import load_drive, parse_drive
+    >>> drive = load_drive("paper").cases["CS-3"]
+    >>> parse_drive(drive_text(drive)).cases["nominal"] == drive
+    True
+    """
+    lines: list[str] = []
+    _write_table(drive, "", lines)
+    return "\n".join(lines).strip() + "\n"
+
+
+def _write_table(part: Any, path: str, lines: list[str]) -> None:
+    inner = []
+    if path:
+        lines.append(f"\n[{path}]")
+    for item in fields(part):
+        value = getattr(part, item.name)
+        if is_dataclass(value):
+            inner.append((f"{path}.{item.name}" if path else item.name, value))
+        elif value != ():
+            lines.append(f"{item.name} = {_literal(value)}")
+    for name, value in inner:
+        _write_table(value, name, lines)
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, tuple):
+        return "[" + ", ".join(_literal(item) for item in value) + "]"
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return f'"{escaped}"'
+    return repr(value)

@@ -1,0 +1,13 @@
+"""Who solves the batches of a study, and where their results are kept.
+
+Modules in the order data passes:
+
+===========  ============================================================
+engine       Batches on this process, on a local pool of processes or on a dask.distributed cluster: one loop for all
+             of them
+storage      Files of a study: finished batches while it runs, then one dataset and one table that are whole or not
+             there
+warm_worker  What every worker needs, imported and built: the fork server of `ltca.studies.execution.engine` loads
+             this module once
+===========  ============================================================
+"""

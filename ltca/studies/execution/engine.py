@@ -1,0 +1,165 @@
+"""Batches on this process, on a local pool of processes or on a dask.distributed cluster: one loop for all of them.
+
+Every engine is an executor of `concurrent.futures`. Results come as they are done; a batch depends on its number
+alone, so who solves it and when shows nowhere in them.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_all_start_methods, get_context
+from typing import Any, cast
+
+from ltca.errors import CycloError
+from ltca.studies.study import BatchResult, Study, run_batch
+
+LOSSES = 3
+"""Times the local pool is built anew after a worker has died before the study gives up."""
+
+QUEUE = 4
+"""Batches handed out for each worker: enough that none waits, few enough that memory stays flat."""
+
+
+class ThisProcess(Executor):
+    """Executor that runs a task when it is handed in."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Run the task and return its finished future."""
+        future: Future[Any] = Future()
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Engine:
+    """Where batches are solved.
+
+    Attributes
+    ----------
+    workers : int
+        Processes of the local pool; 1 is this process alone.
+    scheduler : str
+        Address of a dask.distributed scheduler, empty for none.
+    """
+
+    workers: int = 1
+    scheduler: str = ""
+
+    @contextmanager
+    def executor(self) -> Iterator[tuple[Executor, int]]:
+        """Give the executor and its number of workers.
+
+        Raises
+        ------
+        CycloError
+            When dask.distributed is not installed or the scheduler does not answer.
+        """
+        if self.scheduler:
+            with _cluster(self.scheduler) as found:
+                yield found
+        elif self.workers > 1:
+            # Never a fork of this process, which may have threads; where there is a fork server it imports the suite and
+            # builds the tables once, and every worker starts as its copy.
+            server = "forkserver" in get_all_start_methods()
+            context = get_context("forkserver" if server else "spawn")
+            if server:
+                context.set_forkserver_preload(["ltca.studies.execution.warm_worker"])
+            pool = ProcessPoolExecutor(self.workers, mp_context=context, initializer=_calm_threads)
+            try:
+                yield pool, self.workers
+            finally:
+                pool.shutdown(wait=True, cancel_futures=True)
+        else:
+            from threadpoolctl import threadpool_limits
+
+            with threadpool_limits(1):
+                yield ThisProcess(), 1
+
+
+def _calm_threads() -> None:
+    """One thread a worker: threads of small dense algebra wait for each other (up to 40 times slower, measured)."""
+    import signal
+
+    from threadpoolctl import threadpool_limits
+
+    os.environ["OMP_NUM_THREADS"] = "1"
+    threadpool_limits(1)
+    # Ctrl-C reaches the whole group; the parent decides what ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise CycloError(
+            "--scheduler needs dask.distributed, which is not installed: pip install 'cyclo-ltca[cluster]'"
+        ) from error
+    try:
+        client: Any = cast(Any, Client)(address, timeout="10s", set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise CycloError(f"--scheduler = {address}: no scheduler answers there: {error}") from error
+    try:
+        workers = max(1, sum(client.nthreads().values()))
+        yield client.get_executor(pure=False, retries=LOSSES), workers
+    finally:
+        client.close()
+
+
+def solve_batches(study: Study, numbers: Iterable[int], engine: Engine) -> Iterator[BatchResult]:
+    """Solve batches and yield them as they are done.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    numbers : iterable of int
+        Batches to solve.
+    engine : Engine
+        Where.
+
+    Yields
+    ------
+    BatchResult
+        In no particular order.
+
+    Raises
+    ------
+    CycloError
+        When workers die again and again.
+    """
+    left = list(numbers)[::-1]
+    for _ in range(LOSSES + 1):
+        done: set[int] = set()
+        try:
+            with engine.executor() as (executor, workers):
+                for result in _flow(study, left, executor, QUEUE * workers):
+                    done.add(result.number)
+                    yield result
+            return
+        except BrokenProcessPool:
+            # A worker died (killed, out of memory): its pool is gone with it, what was not finished starts again.
+            left = [number for number in left if number not in done]
+    raise CycloError(
+        f"workers died {LOSSES + 1} times; {len(left)} batches are left: finished ones are kept, continue with --resume"
+    )
+
+
+def _flow(study: Study, numbers: list[int], executor: Executor, window: int) -> Iterator[BatchResult]:
+    """Keep a window of batches in flight."""
+    waiting = list(numbers)
+    flying: set[Future[BatchResult]] = set()
+    while waiting or flying:
+        while waiting and len(flying) < window:
+            flying.add(executor.submit(run_batch, study, waiting.pop()))
+            if isinstance(executor, ThisProcess):
+                break
+        finished, flying = wait(flying, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield future.result()

@@ -1,0 +1,9 @@
+"""What serves checking alone, importable by tests of your own.
+
+Modules in the order data passes:
+
+=============  ============================================================
+random_drives  Random but valid drives, to try the analysis on what nobody thought of
+balance_check  Whether a pose balances, found without the code that balances it
+=============  ============================================================
+"""

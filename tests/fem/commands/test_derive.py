@@ -1,0 +1,230 @@
+"""``cyclo derive``: the file, its checks, messages."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from fem.coefficients.dataset import derive_coefficients
+from fem.coefficients.file import read_coefficients, write_coefficients
+from fem.coefficients.laws import check_coefficients
+from fem.coefficients.stations import DiscStations, nominal_shape
+from fem.commands import derive
+from fem.errors import MeshError
+from fem.shapes import DriveShapes
+from ltca.errors import CycloError
+from ltca.reading.drive_file import load_drive
+
+COARSE = ("--stations", "0.25", "--size", "1.5")
+
+
+# One derivation serves them all, and takes most of a minute.
+pytestmark = pytest.mark.slow
+
+
+def run(*words: str) -> int:
+    parser = argparse.ArgumentParser()
+    derive.configure(parser)
+    return derive.execute(parser.parse_args(words))
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """File, printed text and exit status of a coarse run for CS-6."""
+    path = tmp_path_factory.mktemp("derive") / "new" / "coefficients.nc"
+    command = [
+        sys.executable,
+        "-c",
+        "import sys; from fem.commands import derive; import argparse; "
+        "p = argparse.ArgumentParser(); derive.configure(p); sys.exit(derive.execute(p.parse_args()))",
+    ]
+    words = ["paper", "--case", "CS-6", *COARSE, "--out", str(path)]
+    done = subprocess.run([*command, *words], capture_output=True, text=True, check=False, env=dict(os.environ))
+    return path, done
+
+
+@pytest.fixture(scope="module")
+def dataset(made):
+    return read_coefficients(made[0])
+
+
+def test_file_is_made_and_checked(made):
+    path, done = made
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "FAILED" not in done.stdout
+    assert done.stdout.count(" ok\n") == len(check_coefficients(read_coefficients(path)))
+    # No terminal: no progress; no half file beside the whole one.
+    assert done.stderr == ""
+    assert [entry.name for entry in path.parent.iterdir()] == [path.name]
+
+
+def test_file_follows_its_format(dataset):
+    drive = load_drive("paper").cases["CS-1"]
+    stations = DiscStations.of_disc(DriveShapes.of_drive(nominal_shape(drive)).disc, 0.25)
+    np.testing.assert_array_equal(dataset["station_boundary"], stations.boundary)
+    np.testing.assert_allclose(dataset["station_x"] + 1j * dataset["station_y"], stations.points)
+    np.testing.assert_allclose(dataset["station_normal_x"] + 1j * dataset["station_normal_y"], stations.normals)
+    for boundary in range(10):
+        own = dataset["station_parameter"].values[dataset["station_boundary"].values == boundary]
+        np.testing.assert_allclose(own, 2.0 * np.pi * np.arange(len(own)) / len(own))
+    count = stations.count
+    assert dataset["disc_approach"].dims == ("station", "station_loaded")
+    assert dataset["disc_approach"].shape == (count, count)
+    assert dataset["roller_approach"].shape == (2, 2)
+    assert dataset["race_approach"].shape == dataset["race_angle"].shape
+    assert dataset["pin_approach"].shape == dataset["pin_half_width"].shape == ()
+    for name, variable in dataset.variables.items():
+        assert "units" in variable.attrs, name
+    expected = {
+        "drive": "paper",
+        "case": "CS-6",
+        "plane": "strain",
+        "thickness": 11.8,
+        "core_radius": 2.0,
+        "race_bore_radius": 10.0,
+        "bearing_clearance": 0.0,
+        "pin_hole_clearance": 0.0,
+        "fingerprint": drive.shape_fingerprint(),
+    }
+    assert {name: dataset.attrs[name] for name in expected} == expected
+    for name in ("datum", "unknowns_disc", "mesh_size", "convergence_estimate", "symmetry", "version", "gmsh"):
+        assert dataset.attrs[name], name
+
+
+@pytest.mark.slow
+def test_same_numbers_again_whichever_case(dataset):
+    """Clearances are left out, gmsh is seeded: another case of the drive gives the same numbers, bit by bit."""
+    again = derive_coefficients(load_drive("paper").cases["CS-1"], stations=0.25, size=1.5)
+    np.testing.assert_array_equal(again["disc_approach"], dataset["disc_approach"])
+    np.testing.assert_array_equal(again["race_approach"], dataset["race_approach"])
+
+
+def spoiled(dataset, name):
+    """Return the coefficients with one mistake."""
+    wrong = dataset.copy(deep=True)
+    disc = wrong["disc_approach"].values
+    if name == "symmetry of the stored matrices":
+        disc[3, 5] *= 1.0 + 1e-6
+    elif name == "reciprocity of displacements solved for":
+        wrong.attrs["symmetry"] = 1e-7
+    elif name == "smallest eigenvalue, disc":
+        disc[40, 40] *= 0.5
+    elif name == "smallest eigenvalue, pin, roller, race":
+        wrong["roller_approach"].values[0, 1] = wrong["roller_approach"].values[1, 0] = 1e-6
+    elif name == "rigid motions and change of datum":
+        wrong.attrs["rigid_residual"] = float("nan")
+    elif name == "resultants of the patches and of the stations":
+        wrong["station_normal_x"].values[7] *= -1.0
+    elif name == "near field, disc, worst station":
+        wrong["wide_approach"].values[2] *= 1.01
+    elif name == "near field, pin, roller, race":
+        wrong["pin_wide_approach"] *= 0.9
+    elif name == "roller against the compressed cylinder":
+        wrong["roller_approach"] *= 1.01
+    else:
+        wrong.attrs["convergence_estimate"] = 0.02
+    return wrong
+
+
+NAMES = [
+    "symmetry of the stored matrices",
+    "reciprocity of displacements solved for",
+    "smallest eigenvalue, disc",
+    "smallest eigenvalue, pin, roller, race",
+    "rigid motions and change of datum",
+    "resultants of the patches and of the stations",
+    "near field, disc, worst station",
+    "near field, pin, roller, race",
+    "roller against the compressed cylinder",
+    "convergence: change from a mesh of twice the size",
+]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_check_can_fail(dataset, name):
+    before = {check.name: check.passed for check in check_coefficients(dataset)}
+    assert list(before) == NAMES
+    assert all(before.values())
+    after = {check.name: check.passed for check in check_coefficients(spoiled(dataset, name))}
+    assert not after[name]
+
+
+def test_failed_check_gives_status_one(dataset, tmp_path, monkeypatch, capsys):
+    wrong = spoiled(dataset, "roller against the compressed cylinder")
+    monkeypatch.setattr("fem.coefficients.dataset.derive_coefficients", lambda *args, **options: wrong)
+    assert run("paper", "--out", str(tmp_path / "c.nc")) == 1
+    assert "FAILED" in capsys.readouterr().out
+
+
+def test_failure_leaves_the_old_file(tmp_path, monkeypatch):
+    path = tmp_path / "c.nc"
+    path.write_text("old")
+
+    class Unwritable:
+        def to_netcdf(self, target, engine):
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(MeshError, match="No space left"):
+        write_coefficients(Unwritable(), path)
+    assert path.read_text() == "old"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["c.nc"]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("nowhere.toml",), "nowhere.toml"),
+        (("paper", "--case", "CS-9"), "CS-9"),
+        (("paper", "--stations", "0.1"), "stations 0.1"),
+        (("paper", "--stations", "nan"), "stations nan"),
+        (("paper", "--size", "0"), "size 0"),
+        (("paper", "--size", "-1"), "size -1"),
+        (("paper", "--size", "3"), "size 3: .* at most 2"),
+        (("paper", "--size", "1e-6"), "memory"),
+        (("paper", "--out", "/proc/none/c.nc"), "/proc/none"),
+    ],
+)
+def test_wrong_input_is_refused_before_any_work(words, message, monkeypatch):
+    def never(*args, **options):
+        raise AssertionError("work was begun")
+
+    monkeypatch.setattr("fem.coefficients.bodies.mesh_disc", never)
+    with pytest.raises(CycloError, match=message):
+        run(*words)
+
+
+def test_folder_as_file_is_refused(tmp_path):
+    with pytest.raises(CycloError, match="is a folder"):
+        run("paper", "--out", str(tmp_path))
+
+
+def test_other_files_are_refused(tmp_path):
+    with pytest.raises(MeshError, match="no such file"):
+        read_coefficients(tmp_path / "none.nc")
+    text = tmp_path / "text.nc"
+    text.write_text("nothing")
+    with pytest.raises(MeshError, match="cannot be read"):
+        read_coefficients(text)
+
+
+def test_other_datasets_are_refused(tmp_path):
+    import xarray as xr
+
+    other = tmp_path / "other.nc"
+    xr.Dataset({"a": ("x", [1.0])}).to_netcdf(other, engine="h5netcdf")
+    with pytest.raises(MeshError, match="holds no influence coefficients"):
+        read_coefficients(other)
+
+
+def test_help_is_light():
+    """Listing the command loads neither gmsh nor scikit-fem."""
+    code = (
+        "import sys, argparse; from fem.commands import derive; derive.configure(argparse.ArgumentParser()); "
+        "sys.exit(any(m in sys.modules for m in ('gmsh', 'skfem', 'xarray', 'numpy')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,136 @@
+"""``cyclo fem``: files, keys, pictures, and one clear message for each mistake."""
+
+import argparse
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fem.commands import fem as command
+from ltca.errors import CycloError
+
+# Every key the issue names; arrays by length.
+ARRAYS = {
+    "pin_load_N": 14,
+    "roller_load_outer_N": 11,
+    "roller_load_inner_N": 11,
+    "pin_shaft_load_N": 8,
+    "pin_pressure_max_MPa": 14,
+    "roller_pressure_max_outer_MPa": 11,
+    "roller_pressure_max_inner_MPa": 11,
+    "pin_half_width_mm": 14,
+    "roller_half_width_outer_mm": 11,
+    "roller_half_width_inner_mm": 11,
+}
+SCALARS = (
+    "wheel_angle_rad",
+    "bearing_radial_N",
+    "bearing_tangential_N",
+    "equilibrium_residual_N",
+    "pose_iterations",
+    "dof",
+    "seconds",
+)
+
+
+def run(*words):
+    parser = argparse.ArgumentParser()
+    command.configure(parser)
+    return command.execute(parser.parse_args(words))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    out = tmp_path_factory.mktemp("fem")
+    words = ("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(out), "--export", "calculix")
+    words += ("--no-pictures",)
+    assert run(*words) == 0
+    return out
+
+
+def test_summary_has_the_agreed_keys(folder):
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert "cases" not in summary
+    for name, length in ARRAYS.items():
+        assert len(summary[name]) == length, name
+    for name in SCALARS:
+        assert isinstance(summary[name], int | float), name
+    for name in ("disc_displacement", "disc_displacement_area"):
+        assert set(summary[name]) == {"x_mm", "y_mm", "rotation_rad"}
+    assert summary["bearing_tangential_N"] == pytest.approx(6737.5, rel=2e-3)
+
+
+def test_dataset_agrees_with_the_summary(folder):
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    with xr.open_dataset(folder / "fem.nc", engine="h5netcdf") as data:
+        assert data["pin_load"].dims == ("case", "position", "pin")
+        assert data["pin_load"].attrs["units"] == "N"
+        np.testing.assert_allclose(data["pin_load"].values[0, 0], summary["pin_load_N"])
+        assert data["case"].values.tolist() == ["CS-3"]
+        assert data["pressure"].max() > 100.0
+
+
+def test_fields_and_deck_are_there(folder):
+    import meshio
+
+    disc = meshio.read(folder / "disc.vtu")
+    assert {"displacement_mm", "von_mises_MPa", "principal_MPa", "maximum_shear_MPa"} <= set(disc.point_data)
+    zz = disc.point_data["stress_zz_MPa"]
+    np.testing.assert_allclose(
+        zz, 0.3 * (disc.point_data["stress_xx_MPa"] + disc.point_data["stress_yy_MPa"]), atol=1e-9 * np.abs(zz).max()
+    )
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+    assert (folder / "calculix.inp").read_text(encoding="ascii").count("*CONTACT PAIR") >= 10
+
+
+@pytest.mark.slow
+def test_pictures(tmp_path):
+    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "4", "--out", str(tmp_path)) == 0
+    for name in ("von_mises.png", "contacts.png", "deformed.png"):
+        assert (tmp_path / name).stat().st_size > 20_000
+
+
+def test_pictures_without_gl(monkeypatch, tmp_path):
+    """matplotlib draws the same scenes where pyvista must not be tried."""
+    from fem.pictures.offscreen import rendering_problem
+    from fem.pictures.scene import Lines, Panel, Patch, render
+
+    monkeypatch.setenv("CYCLO_NO_PYVISTA", "1")
+    rendering_problem.cache_clear()
+    corners = np.array([0.0, 1.0, 1j, 1.0 + 1j])
+    patch = Patch(points=corners, faces=np.array([[0, 1, 2], [1, 3, 2]]), values=np.arange(4.0))
+    lines = Lines(points=corners[None, [0, 1, 3]])
+    panel = Panel(title="square", centre=0.5 + 0.5j, half_side=1.0, patches=(patch,), lines=(lines,), label="value")
+    assert "CYCLO_NO_PYVISTA" in render(tmp_path / "square.png", [panel, panel], side=300)
+    assert (tmp_path / "square.png").stat().st_size > 2_000
+    rendering_problem.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("paper", "--angle", "nan"), "--angle nan: must be a finite number"),
+        (("paper", "--size", "0"), "--size 0: must be a finite number greater than 0"),
+        (("paper", "--size", "0.001"), "unknowns and need about"),
+        (("paper", "--torque", "-5"), "--torque -5: must be"),
+        (("paper", "--case", "CS-9"), "case 'CS-9' is not defined"),
+        (("nowhere.toml",), "no such file"),
+    ],
+)
+def test_mistakes_are_named(words, message, tmp_path):
+    with pytest.raises(CycloError, match=message):
+        run(*words, "--out", str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+
+
+def test_file_in_place_of_the_folder(tmp_path):
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(CycloError, match="is a file, not a folder"):
+        run("paper", "--out", str(tmp_path / "taken"))
+
+
+def test_missing_referee_is_said_before_any_work(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(CycloError, match="ccx is not installed"):
+        run("paper", "--referee", "calculix", "--out", str(tmp_path / "out"))

@@ -1,0 +1,219 @@
+"""The whole drive: balance, bearing force, mesh, start, further loads, limits and refusals."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from fem.drive.fields import recover_fields
+from fem.drive.solution import solve_drive, solve_load
+from fem.drive.solution_files import bearing_components, summarise
+from fem.errors import MemoryLimitError
+from ltca.errors import ConvergenceError
+from ltca.reading.drive_file import load_drive
+
+# Crank torque over eccentricity, T_out/(u e).
+TANGENTIAL = 377_300.0 / (14.0 * 4.0)
+CONTACT_KINDS = (
+    ("pin_load", "pin_pressure_max"),
+    ("roller_load_outer", "roller_pressure_max_outer"),
+    ("roller_load_inner", "roller_pressure_max_inner"),
+    ("pin_shaft_load", "hole_pressure_max"),
+)
+
+
+def drive(case="CS-1"):
+    return load_drive("paper").cases[case]
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    """A third of the elements: quick, loads good to some hundredths of a per cent."""
+    return solve_drive(drive(), 0.5, scale=3.0)
+
+
+@pytest.fixture(scope="module")
+def default():
+    return solve_drive(drive(), 0.5)
+
+
+def check_balance(solution):
+    contacts, model = solution.contacts, solution.model
+    largest = contacts.pin_load.max()
+    assert contacts.equilibrium_residual < 1e-6 * largest
+    # The moment of the pins about the crank axis, from forces and exact contact points alone.
+    pose = solution.pose
+    moment = 0.0
+    for index in np.flatnonzero(contacts.pin_load):
+        centre = model.circle_centre("pin", int(index), pose)
+        # Normal forces of a circle act through its centre.
+        moment += (np.conj(centre) * -contacts.pin_force[index]).imag
+    # The resultant leaves the centre by what the pressure is skewed under the loaded, turning normals.
+    assert moment == pytest.approx(-solution.state.wheel_moment, rel=2e-5)
+    np.testing.assert_allclose(contacts.roller_load_outer, contacts.roller_load_inner, rtol=1e-5)
+    total = contacts.pin_force.sum() + contacts.roller_force.sum() + contacts.shaft_pin_force.sum()
+    assert abs(total) < 1e-6 * largest
+
+
+def test_coarse_drive_balances(coarse):
+    check_balance(coarse)
+    _, tangential = bearing_components(coarse.contacts, 0.5)
+    assert tangential == pytest.approx(TANGENTIAL, rel=1.5e-3)
+
+
+def test_arrays_have_full_length(coarse):
+    summary = summarise(coarse)
+    assert [len(summary[name]) for name in ("pin_load_N", "roller_load_outer_N", "pin_shaft_load_N")] == [14, 11, 8]
+    assert summary["dof"] > 50_000
+    assert summary["wheel_angle_rad"] < 0.0
+    # Bore and area of one disc move alike, but not equally: it bends by some micrometres.
+    bore, area = summary["disc_displacement"], summary["disc_displacement_area"]
+    assert abs(bore["x_mm"] - area["x_mm"]) < 0.01
+    assert bore != area
+
+
+@pytest.mark.slow
+def test_start_pose_does_not_matter(coarse):
+    """From 0.1 mm and 1 mrad away, past the backlash on the wrong side, the same loads."""
+    again = solve_drive(drive(), 0.5, scale=3.0, start=(0.05, -0.08, 1.0e-3, 1.0e-3))
+    for name, _ in CONTACT_KINDS:
+        first, second = getattr(coarse.contacts, name), getattr(again.contacts, name)
+        assert np.max(np.abs(first - second)) < 1e-3 * first.max()
+    assert again.pose.wheel_angle == pytest.approx(coarse.pose.wheel_angle, rel=1e-5)
+
+
+def test_further_load_uses_the_same_factors(coarse):
+    more = solve_load(coarse, 1.1 * 377_300.0)
+    assert more.model is coarse.model
+    _, tangential = bearing_components(more.contacts, 0.5)
+    assert tangential == pytest.approx(1.1 * TANGENTIAL, rel=1.5e-3)
+
+
+@pytest.mark.slow
+def test_further_load_is_that_of_fresh_meshes(coarse):
+    more = solve_load(coarse, 1.1 * 377_300.0)
+    fresh = solve_drive(drive(), 0.5, torque=1.1 * 377_300.0, scale=3.0)
+    for name, _ in CONTACT_KINDS:
+        first, second = getattr(more.contacts, name), getattr(fresh.contacts, name)
+        assert np.max(np.abs(first - second)) < 3e-3 * first.max()
+
+
+def test_displacements_carry_the_contact(coarse):
+    """Fields rebuilt from the pressures close the gaps: u of the disc at loaded contacts points inward."""
+    fields = recover_fields(coarse.model, coarse.state)
+    assert [field.kind for field in fields].count("roller") == 11
+    disc = fields[0]
+    assert np.abs(disc.elastic).max() < 0.02
+    for pair, detail in zip(coarse.model.pairs, coarse.contacts.details, strict=True):
+        if pair.kind == "pin" and detail.share > 0.5:
+            middle = pair.zone.nodes[pair.zone.edge_count // 2, 1]
+            _, normal = pair.zone.exact(pair.zone.places[pair.zone.edge_count // 2, 1:2])
+            assert (disc.elastic[middle] * np.conj(normal[0])).real < 0.0
+            places = disc.body.mesh.doflocs[0] + 1j * disc.body.mesh.doflocs[1]
+            near = np.abs(places - places[middle]) < 1.5 * detail.half_width
+            # Below the surface von Mises reaches 0.557 p0 (plane strain, ν = 0.3: Johnson 4.2(c)); three elements
+            # for each half-width find it within a tenth.
+            assert disc.stress.von_mises[near].max() == pytest.approx(0.557 * detail.peak_pressure, rel=0.1)
+
+
+@pytest.mark.slow
+def test_reverse_drive_mirrors_forward():
+    """result(φ, cw) is the mirror image of result(−φ, ccw)."""
+    forward = drive()
+    backward = dataclasses.replace(forward, load=dataclasses.replace(forward.load, direction="cw"))
+    first = solve_drive(forward, -0.3, scale=4.0).contacts
+    second = solve_drive(backward, 0.3, scale=4.0).contacts
+    mirrored = second.pin_load[(-np.arange(14)) % 14]
+    # Different triangles on both sides of the mirror at two elements for each half-width.
+    assert np.max(np.abs(first.pin_load - mirrored)) < 3e-3 * first.pin_load.max()
+    assert first.bearing_force == pytest.approx(np.conj(second.bearing_force), rel=3e-3)
+
+
+def test_too_fine_is_refused_with_the_number():
+    with pytest.raises(MemoryLimitError, match="unknowns"):
+        solve_drive(drive(), 0.5, scale=0.002)
+
+
+def test_nothing_that_can_carry_is_one_error():
+    """A disc too small to reach the pins never meets them: the wheel would turn for ever."""
+    loose = drive()
+    loose = dataclasses.replace(loose, disc=dataclasses.replace(loose.disc, shifting_offset=-12.0))
+    with pytest.raises(ConvergenceError):
+        solve_drive(loose, 0.5, scale=3.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["CS-1", "CS-3"])
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.0])
+def test_default_drive_balances(case, angle):
+    solution = solve_drive(drive(case), angle)
+    check_balance(solution)
+    _, tangential = bearing_components(solution.contacts, angle)
+    # It swings by tens of newtons with the slope of the transmission error; 0.15 % is 10 N.
+    assert tangential == pytest.approx(TANGENTIAL, rel=1.5e-3)
+    for pair, detail in zip(solution.model.pairs, solution.contacts.details, strict=True):
+        if detail.share > 0.05:
+            assert detail.half_width / detail.largest_edge >= 8.0, pair.kind
+
+
+@pytest.mark.slow
+def test_halved_mesh_changes_little(default):
+    fine = solve_drive(drive(), 0.5, scale=0.5)
+    for load, pressure in CONTACT_KINDS:
+        first, second = getattr(default.contacts, load), getattr(fine.contacts, load)
+        assert np.max(np.abs(first - second)) < 3e-3 * second.max()
+        counts = second > 0.05 * second.max()
+        ratio = getattr(default.contacts, pressure)[counts] / getattr(fine.contacts, pressure)[counts]
+        np.testing.assert_allclose(ratio, 1.0, atol=1e-2)
+
+
+@pytest.mark.slow
+def test_default_start_pose_does_not_matter(default):
+    again = solve_drive(drive(), 0.5, start=(-0.03, 0.02, -5.0e-4, 5.0e-4))
+    for name, _ in CONTACT_KINDS:
+        first, second = getattr(default.contacts, name), getattr(again.contacts, name)
+        assert np.max(np.abs(first - second)) < 1e-3 * first.max()
+
+
+@pytest.mark.slow
+def test_rigid_body_limit_comes_near_the_half_space_drive():
+    """Disc and race 1000 times as stiff, pins and rollers half: every E* unchanged, only local yielding left.
+
+    What stays different: the half-space laws are those of the finite width (a line contact's approach depends on the
+    width), the FE pins end at a rigid core of 2 mm and the rollers at their other contact. That changes
+    approaches by about a fifth, and pins that share a load by gaps of some micrometres feel it most.
+    """
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.drive.parts import Material
+
+    steel = drive()
+    soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
+    materials = dataclasses.replace(steel.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
+    contacts = solve_drive(dataclasses.replace(steel, materials=materials), 0.5, scale=3.0).contacts
+    elastic = solve_drive(steel, 0.5, scale=3.0).contacts
+    half_space = analyse(steel, np.array([0.5]), None).full.response
+    for name, limit, theirs in (
+        ("pin_load", 0.15, half_space.pin_load[0]),
+        ("roller_load_outer", 0.05, half_space.rollers.outer_load[0]),
+        ("pin_shaft_load", 0.02, half_space.hole_load[0]),
+    ):
+        away = np.max(np.abs(getattr(contacts, name) - theirs)) / theirs.max()
+        flexible = np.max(np.abs(getattr(elastic, name) - theirs)) / theirs.max()
+        assert away < limit, name
+        assert away < 0.5 * flexible, name
+
+
+@pytest.mark.slow
+def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
+    """Disc and pin alike: E* is half that of a rigid pin, so at one load b grows and p0 falls by √2 (Hertz)."""
+    yielding = solve_drive(drive(), 0.5, scale=3.0, elastic_shaft_pins=True)
+    check_balance(yielding)
+    rigid, soft = coarse.contacts, yielding.contacts
+    on = rigid.pin_shaft_load > 0.0
+    loads = np.sqrt(soft.pin_shaft_load[on] / rigid.pin_shaft_load[on])
+    # Three elements for each half-width: half-widths good to 2 %, pressures to 3 %.
+    np.testing.assert_allclose(soft.hole_half_width[on] / rigid.hole_half_width[on], np.sqrt(2.0) * loads, rtol=0.03)
+    # The pins give way locally by some micrometres, so the wheel turns back further.
+    assert yielding.pose.wheel_angle < coarse.pose.wheel_angle
+    kinds = [field.kind for field in recover_fields(yielding.model, yielding.state)]
+    assert kinds.count("shaft_pin") == 8

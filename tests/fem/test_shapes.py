@@ -1,0 +1,134 @@
+"""Shapes of the bodies: the flank as envelope of the pins, normals, areas and places against closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.errors import MeshError
+from fem.shapes import CircleCurve, CircleShape, DiscShape, DriveShapes, RingShape
+from ltca.drive.parts import Drive, PlacementErrors
+from ltca.reading.drive_file import load_drive
+
+
+@pytest.fixture(scope="module")
+def drive() -> Drive:
+    return load_drive("paper").cases["CS-3"]
+
+
+@pytest.fixture(scope="module")
+def shapes(drive: Drive) -> DriveShapes:
+    return DriveShapes.of_drive(drive)
+
+
+def test_flank_is_the_envelope_of_the_generating_pins(drive: Drive, shapes: DriveShapes) -> None:
+    """No generating pin cuts into the flank, and each flank point is touched by one (independent motion)."""
+    wheel, e, disc = drive.pin_wheel, drive.crank.eccentricity, drive.disc
+    radius = wheel.pin_circle_radius + disc.shifting_offset
+    offset = wheel.pin_radius + disc.equidistant_offset
+    # Motion written anew: disc centre on the crank, wheel turning u times slower, pin centres seen from the disc.
+    crank = np.linspace(0.0, 2.0 * np.pi, 20000, endpoint=False)
+    pins = 2.0 * np.pi * np.arange(wheel.number_of_pins)[:, None] / wheel.number_of_pins
+    centres = radius * np.exp(1j * (crank / wheel.number_of_pins + pins)) - e * np.exp(1j * crank)
+    for theta in np.linspace(0.0, 2.0 * np.pi, 57):
+        nearest = np.abs(centres - shapes.disc.flank.points(np.array(theta))).min()
+        # The step of 3e-4 rad moves a centre by 4e-3 mm at most: (2e-3)²/(2·6.65) = 3e-7 mm beside the minimum.
+        assert nearest == pytest.approx(offset, abs=1e-6)
+
+
+def test_flank_normals_and_curvature_match_finite_differences(shapes: DriveShapes) -> None:
+    flank = shapes.disc.flank
+    theta, step = np.linspace(0.0, 2.0 * np.pi, 400), 1e-5
+    ahead, here, behind = (flank.points(theta + k * step) for k in (1, 0, -1))
+    tangent = (ahead - behind) / (2.0 * step)
+    np.testing.assert_allclose(flank.normals(theta), -1j * tangent / np.abs(tangent), atol=1e-8)
+    second = (ahead - 2.0 * here + behind) / step**2
+    curvature = np.abs((tangent.conjugate() * second).imag) / np.abs(tangent) ** 3
+    # Second differences of points of 88 mm at a step of 1e-5 carry 2e-14/1e-10 = 2e-4 of round-off.
+    np.testing.assert_allclose(1.0 / flank.curvature_radius(theta), curvature, atol=1e-6)
+
+
+def test_normals_point_out_of_the_body(shapes: DriveShapes) -> None:
+    disc = shapes.disc
+    theta = np.linspace(0.0, 2.0 * np.pi, 200)
+    step = 1e-3
+
+    def material(points: np.ndarray) -> np.ndarray:
+        inside = np.abs(points) < disc.flank.profile.root_radius
+        near = points[~inside]
+        inside[~inside] = disc.flank.profile.distance(near, disc.flank.parameter_of(near)) < 0.0
+        inside &= np.abs(points) > disc.bore.radius
+        for hole in disc.holes:
+            inside &= np.abs(points - hole.centre) > hole.radius
+        return inside
+
+    for curve in (disc.flank, *disc.holes):
+        points, normals = curve.points(theta), curve.normals(theta)
+        assert not material(points + step * normals).any()
+        assert material(points - step * normals).all()
+    points, normals = disc.bore.points(theta), disc.bore.normals(theta)
+    assert np.all(np.abs(points + step * normals) < disc.bore.radius)
+
+
+def test_disc_area_matches_a_fine_polygon(shapes: DriveShapes) -> None:
+    theta = np.linspace(0.0, 2.0 * np.pi, 400_001)
+    points = shapes.disc.flank.points(theta)
+    polygon = 0.5 * np.sum((points[:-1].conjugate() * points[1:]).imag)
+    circles = np.pi * (shapes.disc.bore.radius**2 + sum(hole.radius**2 for hole in shapes.disc.holes))
+    # A polygon of 4e5 sides of 1.4e-3 mm lacks about perimeter · h²/(12 ρ) = 3e-5 mm².
+    assert shapes.disc.area == pytest.approx(polygon - circles, abs=1e-4)
+
+
+def test_parameter_of_inverts_points(shapes: DriveShapes) -> None:
+    theta = np.linspace(0.001, 6.28, 997)
+    for curve in (*shapes.disc.curves, *shapes.inner_race.curves):
+        np.testing.assert_allclose(curve.parameter_of(curve.points(theta)), theta, atol=1e-9)
+
+
+def test_clearances_and_errors_enter_the_shapes(drive: Drive) -> None:
+    errors = PlacementErrors(radial=(0.02, *[0.0] * 7), tangential=(0.03, *[0.0] * 7), diameter=(0.04, *[0.0] * 7))
+    clearance = replace(drive.clearance, bearing=0.03, pin_hole=0.01)
+    changed = replace(drive, clearance=clearance, disc=replace(drive.disc, hole_errors=errors))
+    disc = DiscShape.of_drive(changed)
+    assert disc.bore.radius == pytest.approx(29.5 + 0.015, abs=1e-12)  # the clearance is diametral
+    assert disc.holes[0].centre == pytest.approx(56.02 + 0.03j, abs=1e-12)
+    assert disc.holes[0].radius == pytest.approx(14.075 + 0.01 + 0.02, abs=1e-12)
+    assert disc.holes[3].radius == pytest.approx(14.075 + 0.01, abs=1e-12)
+
+
+def test_default_core_and_race_bore_shrink_with_the_part(drive: Drive) -> None:
+    assert DriveShapes.of_drive(drive).wheel_pins[0].core_radius == 2.0
+    assert DriveShapes.of_drive(drive).inner_race.inner_radius == 10.0
+    small = replace(
+        drive,
+        pin_wheel=replace(drive.pin_wheel, pin_radius=3.0),
+        crank_bearing=replace(drive.crank_bearing, inner_race_radius=8.0, outer_race_radius=18.0),
+    )
+    assert DriveShapes.of_drive(small).wheel_pins[0].core_radius == pytest.approx(1.0)
+    assert DriveShapes.of_drive(small).inner_race.inner_radius == pytest.approx(4.8)
+
+
+def test_narrowest_wall_of_the_disc(shapes: DriveShapes) -> None:
+    # Between root circle and hole: (88.09 − 4 − 6.65) − (56 + 14.075).
+    assert shapes.disc.narrowest_wall == pytest.approx(77.44 - 70.075, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: CircleShape(name="pin_0", radius=6.5, core_radius=6.5), "core radius 6.5 mm of pin_0"),
+        (lambda: CircleShape(name="pin_0", radius=6.5, core_radius=-1.0), "core radius -1 mm of pin_0"),
+        (lambda: RingShape(inner_radius=20.0, outer_radius=19.5), "inner radius 20 mm of inner_race"),
+    ],
+)
+def test_shapes_without_material_are_refused(make, message: str) -> None:
+    with pytest.raises(MeshError, match=message):
+        make()
+
+
+def test_circle_curve_closed_forms() -> None:
+    circle = CircleCurve(name="hole", radius=2.0, centre=1.0 + 1.0j, encloses_body=False)
+    assert circle.points(np.array(0.5 * np.pi)) == pytest.approx(1.0 + 3.0j)
+    assert circle.normals(np.array(0.0)) == pytest.approx(-1.0)

@@ -1,0 +1,170 @@
+"""``tables``, ``direct`` and ``paper`` give one answer; figures asked for by issue 3, part 2."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ltca.analysis.loaded_analysis
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import position_angles
+from ltca.commands.program import main
+from ltca.compliance.grids import GridCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.parts import LengthProfile
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
+from ltca.errors import ConvergenceError, DriveError
+from ltca.reading.drive_file import load_drive
+
+CASES = load_drive("paper").cases
+
+
+def loads(contacts):
+    return contacts.pin_load, contacts.rollers.outer_load, contacts.rollers.inner_load, contacts.hole_load
+
+
+def apart(first, second):
+    """Largest difference of loads as a part of the largest of their kind."""
+    return max(np.max(np.abs(a - b)) / np.max(a) for a, b in zip(loads(first), loads(second), strict=True))
+
+
+def pressures_apart(first, second):
+    pairs = [(first.pins, second.pins), (first.outer, second.outer), (first.inner, second.inner)]
+    return max(np.max(np.abs(a.mid - b.mid)) / np.max(a.mid) for a, b in pairs)
+
+
+def compare_direct(case, angles):
+    tables, direct = analyse(CASES[case], angles), analyse(CASES[case], angles, method="direct")
+    # The issue asks for 0.1 % and 0.5 %; 12 cells per half-width leave 0.013 % and 0.12 %.
+    assert apart(tables.full.response, direct.full.response) < 1e-3
+    assert pressures_apart(tables.pressures, direct.pressures) < 5e-3
+    return tables, direct
+
+
+def test_direct_agrees_with_tables():
+    compare_direct("CS-3", np.array([0.4]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_direct_agrees_with_tables_in_six_cases(case):
+    compare_direct(case, position_angles(8) + 0.1)
+
+
+def test_direct_does_not_depend_on_its_start():
+    """From first contact as from the tables: grids on neighbouring rungs of the ladder differ by 0.01 % in load."""
+    drive, angle = CASES["CS-4"], np.array([1.3])
+    grids = GridCompliance.of_drive(drive)
+    near = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), angle, drive.wheel_moment())
+    warm = solve_equilibrium(grids, angle, drive.wheel_moment(), near.pose)
+    cold = solve_equilibrium(grids, angle, drive.wheel_moment())
+    assert apart(warm.response, cold.response) < 2e-4
+
+
+@pytest.mark.slow
+def test_grid_halved():
+    """Mid pressure moves by less than 0.3 %, load by less than 0.05 % (measured 0.04 %, 0.01 %)."""
+    drive, angle = CASES["CS-3"], np.array([0.4, 2.0])
+    near = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), angle, drive.wheel_moment())
+    coarse, fine = (GridCompliance.of_drive(drive, cells) for cells in (12, 24))
+    first = solve_equilibrium(coarse, angle, drive.wheel_moment(), near.pose).response
+    second = solve_equilibrium(fine, angle, drive.wheel_moment(), near.pose).response
+    assert apart(second, first) < 5e-4
+    assert pressures_apart(fine.pressures(second), coarse.pressures(first)) < 3e-3
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_paper_agrees_on_the_same_law(case):
+    """The issue asks for 0.01 %; both end at the same residual, so they agree to 1e-8."""
+    angles = position_angles(12) + 0.05
+    ours, theirs = analyse(CASES[case], angles), analyse(CASES[case], angles, method="paper")
+    assert apart(ours.full.response, theirs.full.response) < 1e-7
+    assert apart(ours.light.response, theirs.light.response) < 1e-6
+    np.testing.assert_array_equal(theirs.full.crank_angle, angles)
+    np.testing.assert_allclose(theirs.full.pose, ours.full.pose, rtol=0.0, atol=1e-9)
+    assert np.all(theirs.full.iterations > 0)
+
+
+def test_paper_on_grids_agrees_with_direct():
+    drive, angle = CASES["CS-1"], np.array([0.9])
+    direct = analyse(drive, angle, method="direct")
+    theirs = analyse(drive, angle, method="paper", contacts="grids")
+    assert theirs.contacts == "grids"
+    # Rungs of the ladder may differ, as from different starts.
+    assert apart(direct.full.response, theirs.full.response) < 2e-4
+
+
+def test_paper_answers_at_the_actual_crank_angle():
+    """Held wheel and lead map to the requested angle; without the correction it would be 1.2° to 1.7° off."""
+    drive, angle = CASES["CS-3"], np.array([0.3, 2.2])
+    model = HalfSpaceCompliance.of_drive(drive)
+    found = solve_equilibrium(model, angle, drive.wheel_moment())
+    wheel, unknowns = lead_of_pose(model, angle, found.pose)
+    actual, pose = pose_of_lead(model, wheel, unknowns)
+    np.testing.assert_allclose(actual, angle, rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(pose, found.pose, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(unknowns[:, 3], -14.0 * found.pose[:, 3], rtol=1e-14)
+    assert np.all(np.degrees(unknowns[:, 3]) > 1.0)
+    assert np.all(np.degrees(unknowns[:, 3]) < 2.0)
+
+
+def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys):
+    """From the ideal pose nothing touches and the tangent is singular: ConvergenceError, exit status 2."""
+    drive = CASES["CS-6"]
+    model = HalfSpaceCompliance.of_drive(drive)
+    with pytest.raises(ConvergenceError, match="iteration of the paper fails") as caught:
+        solve_paper_equilibrium(model, np.array([0.3]), drive.wheel_moment(), np.zeros((1, 4)))
+    assert "singular tangent" in str(caught.value)
+    monkeypatch.setattr(
+        ltca.analysis.loaded_analysis, "solve_equilibrium", lambda model, angle, moment, start: _Floating
+    )
+    command = ["run", "paper", "--case", "CS-6", "--positions", "1", "--method", "paper", "--out", str(tmp_path)]
+    assert main(command) == 2
+    assert "the iteration of the paper fails at crank angle 0 rad" in capsys.readouterr().err
+
+
+class _Floating:
+    pose = np.zeros((1, 4))
+
+
+def test_methods_and_contacts_that_contradict_each_other():
+    with pytest.raises(DriveError, match="method tables runs on tables"):
+        analyse(CASES["CS-1"], np.array([0.0]), contacts="grids")
+
+
+def test_flank_pressure_of_cs3_against_cs1():
+    """At mid-width +3.4 %, at the unrelieved ends less than half as much more; contact moves toward the tip.
+
+    The print says about +1 %. At the positions of largest load the end peaks grow by 1.9, 1.5, 1.1 % with end cells of
+    1, 0.5, 0.2 % of the length: reading the largest value of a grid with fine end cells would give what is printed.
+    The paper does not say which value it reads.
+    """
+    angles = position_angles(180)
+    first, third = (analyse(CASES[case], angles) for case in ("CS-1", "CS-3"))
+    mid = np.max(third.pressures.pins.mid) / np.max(first.pressures.pins.mid) - 1.0
+    largest = np.max(third.pressures.pins.largest) / np.max(first.pressures.pins.largest) - 1.0
+    assert 0.01 < mid < 0.05
+    assert 0.01 < largest < 0.02
+    assert largest < 0.6 * mid
+    tooth = 2.0 * np.pi / 13.0
+    places = []
+    for analysis in (first, third):
+        top = np.unravel_index(np.argmax(analysis.pressures.pins.mid), analysis.pressures.pins.mid.shape)
+        theta = analysis.full.response.flank.parameter[top] % tooth
+        places.append(min(theta, tooth - theta))
+    assert places[1] > places[0] + 0.002  # rad of the parameter from the root; measured 0.006
+
+
+@pytest.mark.slow
+def test_relieved_rollers_direct_agrees_with_tables():
+    """A logarithmic profile through its table and through grids."""
+    drive = CASES["CS-1"]
+    bearing = replace(drive.crank_bearing, roller_profile=LengthProfile(logarithmic_factor=1.0))
+    drive = replace(drive, crank_bearing=bearing)
+    angle = np.array([0.4])
+    tables, direct = analyse(drive, angle), analyse(drive, angle, method="direct")
+    assert apart(tables.full.response, direct.full.response) < 1e-3
+    assert pressures_apart(tables.pressures, direct.pressures) < 5e-3
+    straight = analyse(CASES["CS-1"], angle)
+    assert np.max(np.abs(straight.full.pose - tables.full.pose)) > 1e-4  # the profile is not ignored

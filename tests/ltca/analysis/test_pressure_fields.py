@@ -1,0 +1,175 @@
+"""Pressure fields: loads, saddle, relief, layout, pictures."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ltca.figures.pressure_figures
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.pressure_fields import build_pressure_dataset, pin_fields, roller_fields
+from ltca.commands.program import main
+from ltca.contact.tracked_grid import ContactKind, GridContact
+from ltca.drive.parts import LengthProfile
+from ltca.figures.pressure_figures import draw_roller_pressure, even_cells
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.separation import circle_departure, flank_departure
+from ltca.reading.drive_file import load_drive
+
+CASES = load_drive("paper").cases
+ANGLE = np.array([0.3])
+
+
+@pytest.fixture(scope="module")
+def fields():
+    return build_pressure_dataset("paper", {name: analyse(CASES[name], ANGLE) for name in ("CS-1", "CS-3")}, cells=12)
+
+
+@pytest.mark.parametrize("kind", ["pin", "roller"])
+def test_pressure_sums_to_the_load(fields, kind):
+    """Also where nothing touches; and the field carries what the tables say, within the grid's 0.02 %."""
+    areas = (
+        np.diff(fields[f"{kind}_x_edge"].values)[..., :, None] * np.diff(fields[f"{kind}_y_edge"].values)[..., None, :]
+    )
+    total = (fields[f"{kind}_pressure"].values * areas).sum(axis=(-2, -1))
+    np.testing.assert_allclose(total, fields[f"{kind}_field_load"].values, rtol=1e-12, atol=1e-9)
+    contacts = analyse(CASES["CS-1"], ANGLE).full.response
+    expected = contacts.pin_load if kind == "pin" else contacts.rollers.outer_load
+    found = total[0] if kind == "pin" else total[0, :, 0]
+    assert np.max(np.abs(found - expected)) < 2e-4 * np.max(expected)
+
+
+def test_subsurface_shear_of_a_line_contact(fields):
+    """0.300 p0 at a depth of 0.786 b (Johnson, section 4.2); grid and finite length move it by a few per cent."""
+    for kind in ("pin", "roller"):
+        loaded = fields[f"{kind}_field_load"].values > 100.0
+        shear = fields[f"{kind}_max_shear"].values[loaded] / fields[f"{kind}_pressure_mid"].values[loaded]
+        depth = fields[f"{kind}_max_shear_depth"].values[loaded] / fields[f"{kind}_half_width"].values[loaded]
+        np.testing.assert_allclose(shear, 0.300, rtol=0.02)
+        np.testing.assert_allclose(depth, 0.786, rtol=0.04)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_roller_pressure_is_a_saddle(case):
+    """Both ends above the middle along the roller, the middle above the edges across it (Fig. 31)."""
+    field = max(roller_fields(analyse(CASES[case], ANGLE), 0, "inner", cells=10).values(), key=lambda f: f.load)
+    _, along = even_cells(field.y_edges, field.pressure[field.pressure.shape[0] // 2], 100)
+    middle = along[50]
+    assert along[0] > 1.5 * middle
+    assert along[-1] > 1.5 * middle
+    assert np.argmin(along[10:90]) in range(35, 45)
+    assert field.largest > 1.5 * field.mid
+    across = field.pressure[:, field.pressure.shape[1] // 2]
+    assert across[across.size // 2] == pytest.approx(np.max(across), rel=1e-9)
+    assert across[0] == 0.0
+
+
+@pytest.mark.slow
+def test_relief_removes_the_saddle():
+    drive = CASES["CS-3"]
+    bearing = replace(drive.crank_bearing, roller_profile=LengthProfile(logarithmic_factor=1.0))
+    relieved = analyse(replace(drive, crank_bearing=bearing), ANGLE)
+    for side in ("inner", "outer"):
+        for field in roller_fields(relieved, 0, side, cells=12).values():
+            _, along = even_cells(field.y_edges, field.pressure[field.pressure.shape[0] // 2], 100)
+            assert np.max(along) < 1.02 * along[50]
+            assert max(along[0], along[-1]) < 0.7 * along[50]
+
+
+def test_true_separation_of_the_flank():
+    """Its second order is the curvature of the flank; its points lie on the flank (Eq. 18–19)."""
+    profile = FlankProfile.of_drive(CASES["CS-1"])
+    for theta in (0.05, 0.11, 0.2):
+        x = np.array([-0.02, -0.01, 0.01, 0.02])
+        h = flank_departure(profile, theta, x)
+        even = 0.5 * (h + h[::-1])
+        curvature = float(profile.curvature(np.array(theta)))
+        # The fourth order is what is left: (x/ρ)² with ρ of millimetres.
+        np.testing.assert_allclose(even[2:], 0.5 * curvature * x[2:] ** 2, rtol=1e-3)
+        normal = complex(profile.normal(np.array(theta)))
+        points = complex(profile.flank(np.array(theta))) + (1j * x - h) * normal
+        near = profile.nearest_parameter(points, np.full(4, theta))
+        np.testing.assert_allclose(profile.distance(points, near), 0.0, atol=1e-12)
+
+
+def test_circles_leave_their_tangent():
+    x = np.array([0.0, 1.0, 3.0, 6.0])
+    np.testing.assert_allclose(circle_departure(x, 5.0), [0.0, 5.0 - np.sqrt(24.0), 1.0, np.inf])
+    np.testing.assert_allclose(circle_departure(x[:3], -5.0), [0.0, np.sqrt(24.0) - 5.0, -1.0])
+
+
+def contact(cells=12, generator=None):
+    kind = ContactKind(length=11.8, contact_modulus=113e3, generator=generator, symmetric=True, cells=cells)
+    found = GridContact(kind)
+    found.fit(8e-3, 4.0)
+    found.shape(0.0, lambda x: x**2 / 8.0)
+    return found
+
+
+def test_pressing_on_without_a_factorisation_is_exact():
+    """While the same cells touch the load is linear in the approach; a fresh solution agrees to round-off."""
+    used, fresh = contact(), contact()
+    first, stiffness = used.press(8e-3)
+    known = used.factorisations
+    load, _ = used.press(8e-3 + 1e-8)
+    assert used.factorisations == known
+    assert load == pytest.approx(first + 1e-8 * stiffness, rel=1e-12)
+    assert load == pytest.approx(fresh.press(8e-3 + 1e-8)[0], rel=1e-11)
+    back, _ = used.press(5e-3)
+    assert used.factorisations > known
+    assert back == pytest.approx(contact().press(5e-3)[0], rel=1e-11)
+
+
+def test_where_the_edge_falls_moves_the_load_by_less_than_a_ten_thousandth():
+    loads = []
+    for rung in range(-2, 3):
+        one = contact()
+        one.rung += rung
+        from ltca.contact.tracked_grid import unit_grid
+
+        one.grid = unit_grid(one.rung, 0, cells=12, symmetric=True)
+        one._scaled_areas = np.pi * one.grid.areas.ravel()
+        one._unit_separation, one.active = None, None
+        one.shape(0.0, lambda x: x**2 / 8.0)
+        loads.append(one.press(8e-3)[0])
+    # ± 10 % of the half-width; contacts change their rung at 8 %.
+    assert np.ptp(loads) < 2e-4 * np.mean(loads)
+
+
+def test_fields_survive_their_file(fields, tmp_path):
+    path = tmp_path / "pressure.nc"
+    fields.to_netcdf(path, engine="h5netcdf")
+    with xr.open_dataset(path, engine="h5netcdf") as read:
+        xr.testing.assert_equal(read.load(), fields)
+        assert read["roller_pressure_max"].attrs["end_cell_mm"] == pytest.approx(0.118)
+        assert read["pin_pressure"].dims == ("case", "angle", "pin", "pin_x", "pin_y")
+        assert read["roller_pressure"].dims == ("case", "angle", "side", "roller", "roller_x", "roller_y")
+
+
+def test_matplotlib_stands_in_for_pyvista(fields, tmp_path):
+    draw_roller_pressure(fields, "CS-3").savefig(tmp_path / "roller.png")
+    assert (tmp_path / "roller.png").stat().st_size > 20_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renders", [True, False])
+def test_run_with_pressure(renders, monkeypatch, tmp_path, capsys):
+    """The command writes fields and figures, with pyvista or, told so, without."""
+    if not renders:
+        monkeypatch.setattr(ltca.figures.pressure_figures, "can_render", lambda: False)
+    elif not ltca.figures.pressure_figures.can_render():
+        pytest.skip("pyvista cannot render off-screen on this machine (no GL)")
+    command = ["run", "paper", "--case", "CS-3", "--positions", "20", "--pressure", "0.3", "--out", str(tmp_path)]
+    assert main(command) == 0
+    assert ("no GL" in capsys.readouterr().out) is not renders
+    names = {path.name for path in (tmp_path / "figures").iterdir()}
+    assert {"fig27_contact_zone.svg", "fig31_roller_pressure_CS-3.png", "fig32_roller_pressure_along.png"} <= names
+    assert not [name for name in names if ".part" in name]
+
+
+def test_pin_fields_lie_within_the_disc():
+    for field in pin_fields(analyse(CASES["CS-1"], ANGLE), 0, cells=8).values():
+        assert field.y_edges[0] == pytest.approx(-5.9)
+        assert field.y_edges[-1] == pytest.approx(5.9)
+        assert np.all(field.pressure >= 0.0)

@@ -1,0 +1,209 @@
+"""The program: exit status, messages, files whole or not at all, what it imports."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ltca.commands.program import main
+from ltca.reading.drive_file import load_drive, shipped_drive
+
+ROOT = Path(__file__).parents[3]
+
+
+def python(code):
+    """Run code in a fresh interpreter on this tree and return the last line it prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip().splitlines()[-1]
+
+
+@pytest.fixture(scope="module")
+def quick_run(tmp_path_factory):
+    """One run of three angles and two cases with its figures."""
+    out = tmp_path_factory.mktemp("run")
+    status = main(
+        ["run", "paper", "--case", "CS-3", "--case", "CS-1", "--angles", "0.1", "-1.3", "4.0", "--out", str(out)]
+    )
+    assert status == 0
+    return out
+
+
+def test_run_writes_results_summary_and_figures(quick_run):
+    with xr.open_dataset(quick_run / "results.nc", engine="h5netcdf") as data:
+        # to the last bit, whatever the order
+        assert data["crank_angle"].values.tolist() == [0.1, -1.3, 4.0]
+        assert list(data["case"].values) == ["CS-3", "CS-1"]
+        assert data.indexes["position"].dtype.kind == "i"
+    summary = json.loads((quick_run / "summary.json").read_text())
+    assert summary["drive"] == "paper"
+    assert list(summary["cases"]) == ["CS-3", "CS-1"]
+    assert summary["cases"]["CS-1"]["mean_tangential_bearing_load_N"] == pytest.approx(6737.5, rel=5e-3)
+    left = {path.name for path in quick_run.iterdir()}
+    assert left == {"results.nc", "summary.json", "figures"}
+
+
+def test_figures_of_the_paper_as_svg_and_png(quick_run):
+    names = {path.name for path in (quick_run / "figures").iterdir()}
+    stems = {name.rsplit(".", 1)[0] for name in names}
+    assert names == {f"{stem}.{suffix}" for stem in stems for suffix in ("svg", "png")}
+    numbers = {int(stem[3:5]) for stem in stems}
+    assert numbers == {23, 24, 25, 26, 28, 29, 30, 34, 35, 36}  # issue 2
+    for stem in stems:
+        assert (quick_run / "figures" / f"{stem}.png").read_bytes().startswith(b"\x89PNG")
+        svg = (quick_run / "figures" / f"{stem}.svg").read_text()
+        assert svg.rstrip().endswith("</svg>")  # whole
+        for case in ("CS-1", "CS-3"):  # direct labels, as text
+            assert case in svg, stem
+    for stem, unit in (("fig23_transmission_error", "″"), ("fig24_pin_load", "[N]"), ("fig26_pin_pressure", "[MPa]")):
+        assert unit in (quick_run / "figures" / f"{stem}.svg").read_text()
+
+
+def test_torque_with_a_unit_is_that_torque(tmp_path):
+    for name, torque in (("a", "188.65 N m"), ("b", "188650")):
+        arguments = ["run", "paper", "--case", "CS-1", "--positions", "3", "--torque", torque, "--no-figures"]
+        assert main([*arguments, "--out", str(tmp_path / name)]) == 0
+    first, second = ((tmp_path / name / "results.nc") for name in "ab")
+    with xr.open_dataset(first, engine="h5netcdf") as a, xr.open_dataset(second, engine="h5netcdf") as b:
+        np.testing.assert_array_equal(a["pin_load"], b["pin_load"])
+        np.testing.assert_array_equal(a["crank_angle"], [2.0 * np.pi * k / 3 for k in range(3)])
+        # half the torque, about half the mean load: the sum of F times its lever is the torque
+        assert float(a.attrs["torque_N_mm"]) == 188_650.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "nowhere.toml"], "no such file"),
+        (["run", "paper", "--case", "CS-9"], "case 'CS-9' is not defined"),
+        (["run", "paper", "--positions", "0"], "--positions = 0: must be from 1 to 1000000"),
+        (["run", "paper", "--angles", "1.0", "x"], "--angles = 'x'"),
+        (["run", "paper", "--angles", "nan"], "--angles = 'nan': must be finite"),
+        (["run", "paper", "--torque", "-5"], "--torque = -5: must be greater than 0 N·mm"),
+        (["run", "paper", "--torque", "3 mm"], "must have the unit N·mm"),
+        (["run", "paper", "--torque", "1e8", "--positions", "3"], "cannot be carried"),
+        (["show", "paper", "--angle", "one"], "--angle = 'one'"),
+        (["show", "paper", "--case", "CS-9"], "is not defined"),
+    ],
+)
+def test_wrong_input_is_exit_status_2_one_message_and_no_file(arguments, message, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("cyclo: error: ")
+    assert message in told.err
+    assert "Traceback" not in told.err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [[], ["run"], ["fly"], ["run", "paper", "--positions", "3", "--angles", "1"]])
+def test_wrong_usage_is_exit_status_2(arguments, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == 2
+    assert "usage: cyclo" in capsys.readouterr().err
+
+
+def test_wrong_drive_is_told_whole(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = shipped_drive().replace("eccentricity = 4.0", "eccentricity = -4.0").replace("thickness = 11.8", "thick = 1")
+    Path("bad.toml").write_text(text, encoding="utf-8")
+    assert main(["run", "bad.toml"]) == 2
+    told = capsys.readouterr().err
+    for part in ("3 mistakes", "crank.eccentricity = -4.0", "disc.thick", "disc.thickness: is missing"):
+        assert part in told
+    assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
+
+
+def test_output_that_cannot_be_written(tmp_path, capsys):
+    (tmp_path / "out").write_text("a file where the folder should be")
+    assert main(["run", "paper", "--positions", "2", "--case", "CS-1", "--out", str(tmp_path / "out")]) == 2
+    assert "cannot be written" in capsys.readouterr().err
+
+
+def test_init_writes_a_runnable_commented_copy(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "my.toml"]) == 0
+    text = Path("my.toml").read_text(encoding="utf-8")
+    assert text.count("#") > 20
+    file = load_drive("my.toml")
+    assert file.name == "my"
+    assert list(file.cases) == list(load_drive("paper").cases)
+    assert main(["run", "my.toml", "--positions", "2", "--no-figures"]) == 0
+    assert Path("out/my/summary.json").exists()
+    capsys.readouterr()
+    assert main(["init", "my.toml"]) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert main(["init", "my.toml", "--force"]) == 0
+
+
+def test_init_with_a_name_that_toml_must_escape(tmp_path):
+    path = tmp_path / 'my "best" drive.toml'
+    assert main(["init", str(path)]) == 0
+    assert load_drive(path).name == 'my "best" drive'
+
+
+def test_show_prints_the_derived_geometry_and_draws(tmp_path, capsys):
+    assert main(["show", "paper", "--angle", "-0.4", "--case", "CS-2", "--out", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    for part in ("reduction ratio", "backlash at the disc, wheel held", "10.69′", "6737.5 N", "at φ_C = -0.4 rad"):
+        assert part in told
+    pictures = list(tmp_path.iterdir())
+    assert [path.suffix for path in pictures] == [".png"]
+    assert pictures[0].read_bytes().startswith(b"\x89PNG")
+
+
+def test_nothing_on_stderr_in_a_pipe(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "ltca.commands.program", "run", "paper", "--case", "CS-1", "--positions", "2", "--no-figures",
+         "--out", str(tmp_path)],
+        cwd=ROOT, capture_output=True, text=True, check=False, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0
+    assert done.stderr == ""
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(["--version"])
+    assert stopped.value.code == 0
+    assert capsys.readouterr().out.startswith("cyclo 0.")
+
+
+def test_run_imports_no_finite_elements_and_no_system_libraries(tmp_path):
+    code = f"""
+import sys
+from ltca.commands.program import main
+assert main(["run", "paper", "--no-figures", "--positions", "4", "--case", "CS-1", "--out", {str(tmp_path)!r}]) == 0
+heavy = {{"gmsh", "vtk", "vtkmodules", "pyvista", "skfem", "meshio", "validation", "matplotlib", "plotly"}}
+found = heavy & {{name.partition(".")[0] for name in sys.modules}}
+# the packages' commands are listed by the parser, nothing else of them
+found |= {{n for n in sys.modules if n.startswith("fem.") and not n.startswith("fem.commands")}}
+print(sorted(found))
+"""
+    assert python(code) == "[]"
+
+
+def test_help_imports_no_numpy():
+    code = """
+import sys
+from ltca.commands.program import main
+try:
+    main(["--help"])
+except SystemExit:
+    pass
+heavy = {"numpy", "scipy", "xarray", "pydantic", "matplotlib", "pint"}
+print(sorted(heavy & {name.partition(".")[0] for name in sys.modules}))
+"""
+    assert python(code) == "[]"

@@ -1,0 +1,132 @@
+"""Coupled compliance: the half-space as its limit, its tangent, symmetry, and coefficients of the real bodies."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.coefficients.dataset import derive_coefficients
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficients import Boundary, load_coefficients, without_coupling
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.errors import CycloError, DriveError
+from ltca.geometry.pairs import ContactGeometry
+
+ANGLES = np.array([0.0, 0.5, 1.7, 4.0])
+
+
+@pytest.fixture(scope="module")
+def derived(paper_cases, tmp_path_factory):
+    """Coarse coefficients of the paper's drive: half the stations on elements of twice the size, in seconds."""
+    path = tmp_path_factory.mktemp("coefficients") / "coarse.nc"
+    derive_coefficients(paper_cases["CS-1"], stations=0.5, size=2.0).to_netcdf(path, engine="h5netcdf")
+    return path
+
+
+def test_without_coupling_it_is_the_half_space(paper_cases):
+    for case in ("CS-1", "CS-6"):
+        drive = paper_cases[case]
+        coupled = CoupledCompliance.of_drive(drive, without_coupling(drive), "hybrid", hole_near_field=False)
+        plain = HalfSpaceCompliance.of_drive(drive)
+        found = solve_equilibrium(coupled, ANGLES, drive.wheel_moment())
+        expected = solve_equilibrium(plain, ANGLES, drive.wheel_moment())
+        # Both stop at 1e-9 of the load; near-field approaches settle to 1e-13 mm, 1e-7 N.
+        np.testing.assert_allclose(found.response.pin_load, expected.response.pin_load, atol=1e-5)
+        np.testing.assert_allclose(found.response.hole_load, expected.response.hole_load, atol=1e-5)
+        np.testing.assert_allclose(found.response.rollers.outer_load, expected.response.rollers.outer_load, atol=1e-5)
+        np.testing.assert_allclose(found.pose, expected.pose, atol=1e-10)
+
+
+@pytest.mark.parametrize("near_field", ["fe", "hybrid"])
+def test_tangent_and_approaches_of_the_real_bodies(paper_cases, derived, near_field):
+    drive = paper_cases["CS-3"]
+    model = CoupledCompliance.of_drive(drive, load_coefficients(derived, drive), near_field)
+    angle = np.array([0.5])
+    pose = solve_equilibrium(model, angle, drive.wheel_moment()).pose
+    response = model.respond(angle, pose)
+    step = np.array([1e-6, 1e-6, 1e-8, 1e-8])
+    numeric = np.empty((4, 4))
+    for column in range(4):
+        shift = np.zeros((1, 4))
+        shift[0, column] = step[column]
+        up, down = model.respond(angle, pose + shift), model.respond(angle, pose - shift)
+        numeric[:, column] = (up.force - down.force)[0] / (2.0 * step[column])
+    lever = np.array([1.0, 1.0, 52.0, 56.0])
+    scaled = response.tangent[0] / np.outer(lever, lever)
+    # The change of the coefficients with the place is left out of the tangent: some 1e-4 of it.
+    np.testing.assert_allclose(numeric / np.outer(lever, lever), scaled, atol=2e-3 * np.abs(scaled).max())
+    np.testing.assert_allclose(scaled, scaled.T, atol=1e-9 * np.abs(scaled).max())
+    # A pair is pressed together exactly where it carries.
+    assert np.array_equal(response.flank.approach > 0.0, response.pin_load > 0.0)
+    assert np.array_equal(response.rollers.outer_approach > 0.0, response.rollers.outer_load > 0.0)
+    # The overlap of the undeformed bodies is the pair's own approach and what all others add.
+    overlap = ContactGeometry.of_drive(drive).flank(angle, pose).approach
+    assert np.all(np.abs(overlap - response.flank.approach)[response.pin_load > 0.0] < 5e-3)
+
+
+def test_softer_bodies_wind_up_more_and_share_more(paper_cases, derived):
+    drive = paper_cases["CS-1"]
+    coefficients = load_coefficients(derived, drive)
+    plain = analyse(drive, ANGLES)
+    hybrid = analyse(drive, ANGLES, compliance="hybrid", coefficients=coefficients)
+    assert np.all(hybrid.full.pose[:, 3] < plain.full.pose[:, 3])
+    assert np.max(hybrid.full.residual) < 1e-6 * 6737.5
+    assert hybrid.full.response.hole_load.max() < plain.full.response.hole_load.max()
+    assert hybrid.compliance == "hybrid"
+
+
+@pytest.mark.slow
+def test_hybrid_tends_to_plane_strain_with_the_width(paper_cases, tmp_path):
+    """The pair approach differs by end effects, which fade like one over the logarithm of the width."""
+    drive, differences = paper_cases["CS-1"], []
+    for width in (1.0, 16.0):
+        wide = replace(
+            drive,
+            disc=replace(drive.disc, thickness=11.8 * width),
+            crank_bearing=replace(drive.crank_bearing, roller_length=11.8 * width),
+            pin_shaft=replace(drive.pin_shaft, stiffness=1e6 * width),
+            load=replace(drive.load, torque=377_300.0 * width),
+        )
+        path = tmp_path / f"{width}.nc"
+        derive_coefficients(wide, stations=0.5, size=2.0).to_netcdf(path, engine="h5netcdf")
+        coefficients = load_coefficients(path, wide)
+        plane, hybrid = (analyse(wide, ANGLES, compliance=name, coefficients=coefficients) for name in ("fe", "hybrid"))
+        # At equal load: the plane-strain pair approach under the loads of the hybrid model.
+        p, h = plane.full.response, hybrid.full.response
+        loaded = (h.pin_load > 0.05 * h.pin_load.max()) & (p.pin_load > 0.0)
+        near = np.stack(list(p.memory))[:, : loaded.shape[1]][loaded]
+        body = (p.flank.approach[loaded] - near) / p.pin_load[loaded]
+        load, radius = h.pin_load[loaded], h.flank.effective_radius[loaded]
+        expected = plane.model.pin_law.approach_and_compliance(load, radius)[0] + body * load
+        differences.append(np.max(np.abs(h.flank.approach[loaded] / expected - 1.0)))
+    assert differences[1] < 0.006  # the limit of the design
+    assert differences[1] < 0.7 * differences[0]
+
+
+def test_files_of_another_drive_are_refused(paper_cases, derived):
+    other = replace(paper_cases["CS-1"], crank=replace(paper_cases["CS-1"].crank, eccentricity=3.9))
+    with pytest.raises(CycloError, match="belongs to another drive"):
+        load_coefficients(derived, other)
+    with pytest.raises(DriveError, match="needs the influence coefficients"):
+        analyse(paper_cases["CS-1"], ANGLES, compliance="fe")
+
+
+def test_files_that_are_none_are_refused(paper_cases, tmp_path):
+    path = tmp_path / "broken.nc"
+    path.write_bytes(b"not netCDF")
+    with pytest.raises(CycloError, match="cannot be read as a coefficient file"):
+        load_coefficients(path, paper_cases["CS-1"])
+
+
+def test_interpolation_is_exact_for_low_harmonics():
+    boundary = Boundary(first=3, count=24)
+    nodes = 2.0 * np.pi * np.arange(24) / 24
+    values = np.concatenate((np.zeros(3), np.cos(2.0 * nodes + 0.3)))
+    places = np.linspace(-7.0, 7.0, 101)
+    stations, weights = boundary.weights(places)
+    found = (values[stations] * weights).sum(axis=-1)
+    # Six points at a spacing of 15° on the second harmonic: (h k)^6 · 225/46080 ≈ 1e-4.
+    np.testing.assert_allclose(found, np.cos(2.0 * places + 0.3), atol=2e-4)
+    np.testing.assert_allclose(weights.sum(axis=-1), 1.0, atol=1e-13)

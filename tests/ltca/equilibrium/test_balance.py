@@ -1,0 +1,159 @@
+"""The balanced pose: unique, independent of the start, convergent at every load, an error where there is none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import lever_arms, solve_equilibrium
+from ltca.errors import ConvergenceError
+from ltca.geometry.first_contact import unloaded_transmission_error
+
+
+@pytest.fixture(scope="module")
+def models(paper_cases):
+    return {name: HalfSpaceCompliance.of_drive(drive) for name, drive in paper_cases.items()}
+
+
+def test_residual_is_that_of_the_response_and_small(models, paper_cases):
+    angles = np.linspace(-3.0, 30.0, 25)
+    for name, model in models.items():
+        moment = paper_cases[name].wheel_moment()
+        found = solve_equilibrium(model, angles, moment)
+        again = model.respond(angles, found.pose).force - [0.0, 0.0, 0.0, moment]
+        residual = np.max(np.abs(again) / np.array([1.0, 1.0, 4.0 * 13, 4.0 * 14]), axis=1)
+        # both are sums of cancelled forces of some 1000 N: round-off of stiffness 1e6 N/mm times 1e-14 mm and more
+        np.testing.assert_allclose(found.residual, residual, atol=1e-6)
+        assert np.max(found.residual) < 1e-6 * 377_300.0 / 56.0
+        assert np.all(found.iterations >= 1)
+
+
+def test_lever_arms(models):
+    np.testing.assert_allclose(lever_arms(models["CS-1"]), [1.0, 1.0, 52.0, 56.0])
+
+
+@pytest.mark.parametrize("case", ["CS-1", "CS-6"])
+def test_start_pose_does_not_matter(models, paper_cases, case):
+    """The potential has one minimum: far starts, open or pressed through, end in it."""
+    rng = np.random.default_rng(1)
+    angles = np.linspace(0.0, 6.0, 12)
+    moment = paper_cases[case].wheel_moment()
+    plain = solve_equilibrium(models[case], angles, moment)
+    for size in (0.02, 0.3):
+        start = rng.uniform(-1.0, 1.0, (12, 4)) * size / np.array([1.0, 1.0, 56.0, 56.0])
+        other = solve_equilibrium(models[case], angles, moment, start)
+        # tolerance 1e-9 of the load over a tangential stiffness above 1e5 N/mm: 1e-10 mm
+        np.testing.assert_allclose(other.pose[:, :2], plain.pose[:, :2], atol=1e-9)
+        np.testing.assert_allclose(other.pose[:, 2:], plain.pose[:, 2:], atol=1e-11)
+        np.testing.assert_allclose(other.response.pin_load, plain.response.pin_load, atol=1e-4)
+
+
+def test_given_start_is_not_changed(models, paper_cases):
+    start = np.full((2, 4), 1e-3)
+    solve_equilibrium(models["CS-3"], np.array([0.1, 0.2]), paper_cases["CS-3"].wheel_moment(), start)
+    np.testing.assert_array_equal(start, 1e-3)
+
+
+def test_positions_do_not_depend_on_each_other(models, paper_cases):
+    angles = np.linspace(0.0, 6.0, 9)
+    moment = paper_cases["CS-5"].wheel_moment()
+    batch = solve_equilibrium(models["CS-5"], angles, moment)
+    for row in (0, 4, 8):
+        alone = solve_equilibrium(models["CS-5"], angles[row : row + 1], moment)
+        np.testing.assert_allclose(alone.pose[0], batch.pose[row], atol=1e-9)
+
+
+def test_complementarity(models, paper_cases):
+    """Load exactly where pressed together; free rollers rest on the inner race."""
+    angles = np.linspace(0.0, 30.0, 60)
+    for name, model in models.items():
+        contacts = solve_equilibrium(model, angles, paper_cases[name].wheel_moment()).response
+        rollers = contacts.rollers
+        for load, approach in (
+            (contacts.pin_load, contacts.flank.approach),
+            (contacts.hole_load, contacts.holes.approach),
+            (rollers.outer_load, rollers.outer_approach),
+            (rollers.inner_load, rollers.inner_approach),
+        ):
+            assert np.all(load >= 0.0)
+            np.testing.assert_array_equal(load > 0.0, approach > 0.0)
+        free = rollers.outer_load == 0.0
+        assert free.any()
+        assert np.all(rollers.inner_approach[free] == 0.0)
+        assert np.all(rollers.outer_approach[free] <= 0.0)
+
+
+def test_light_torque_tends_to_the_geometry(models, paper_cases):
+    """CS-1 has no play but the flank's: as the torque falls the wheel angle tends to first contact."""
+    angles = np.linspace(0.0, 6.0, 20)
+    model = models["CS-1"]
+    geometric = unloaded_transmission_error(model.geometry, angles)
+    away = []
+    for torque in (1e4, 1e3, 1e2, 1e1):
+        found = solve_equilibrium(model, angles, -torque)
+        away.append(np.max(np.abs(found.pose[:, 3] - geometric)))
+        assert np.all(found.pose[:, 3] < geometric)  # the load always winds it up further
+    # line contacts yield a little less than in proportion to the load, ln(1/F) slower: 7 … 10 for a tenth
+    ratio = np.array(away[:-1]) / away[1:]
+    assert np.all((ratio > 6.0) & (ratio < 10.5))
+    assert away[-1] < 1e-7
+
+
+def test_moment_of_every_position_is_its_own(models):
+    angles = np.array([0.3, 0.3, 0.3])
+    found = solve_equilibrium(models["CS-3"], angles, np.array([-1e5, 2e5, -3e5]))
+    np.testing.assert_array_equal(np.sign(found.pose[:, 3]), [-1.0, 1.0, -1.0])
+    moments = found.response.force[:, 3]
+    np.testing.assert_allclose(moments, [-1e5, 2e5, -3e5], rtol=1e-8)
+
+
+def test_loads_that_are_no_numbers_do_not_pass_for_balanced(models):
+    broken = replace(models["CS-1"], hole_stiffness=float("nan"))
+    with pytest.raises(ConvergenceError):
+        solve_equilibrium(broken, np.array([0.1]), -1e5)
+
+
+def test_stagnation_is_an_error_with_its_history(models):
+    """A bearing whose push turns round at every look: nothing balances, and the error says where."""
+
+    class Stubborn:
+        geometry = models["CS-1"].geometry
+        looks = 0
+
+        def respond(self, crank_angle, pose, start=None):
+            response = models["CS-1"].respond(crank_angle, pose, start)
+            self.looks += 1
+            return replace(response, force=response.force + np.array([0.0, 1e5 * (-1.0) ** self.looks, 0.0, 0.0]))
+
+    with pytest.raises(ConvergenceError, match=r"crank angle 0.1 rad .*residual in N") as caught:
+        solve_equilibrium(Stubborn(), np.array([0.1]), -1e5)
+    assert len(caught.value.history) == 200
+
+
+@pytest.mark.slow
+def test_every_position_balances_at_every_load_both_ways(paper_cases, vary):
+    """360 positions × 6 cases × 1, 10, 100, 300 %, both directions; the reverse is the mirror image."""
+    angles = 2.0 * np.pi * np.arange(360) / 360
+    for drive in paper_cases.values():
+        clearance = {"bearing": drive.clearance.bearing, "pin_hole": drive.clearance.pin_hole}
+        reverse = vary(clearance=clearance, load={"direction": "cw"})
+        forward_model, reverse_model = (HalfSpaceCompliance.of_drive(d) for d in (drive, reverse))
+        for part in (0.01, 0.1, 1.0, 3.0):
+            torque = 377_300.0 * part
+            forward = solve_equilibrium(forward_model, -angles, drive.wheel_moment(torque))
+            back = solve_equilibrium(reverse_model, angles, reverse.wheel_moment(torque))
+            for found in (forward, back):
+                assert np.max(found.residual) < 1e-6 * torque / 56.0
+            np.testing.assert_allclose(back.pose, forward.pose * [1.0, -1.0, -1.0, -1.0], atol=1e-8)
+            pins, holes, rollers = (-np.arange(n) % n for n in (14, 8, 11))
+            # loads differ by what a residual of 1e-9 of the load lets pass
+            size = torque / 56.0
+            first, second = forward.response, back.response
+            np.testing.assert_allclose(second.pin_load, first.pin_load[:, pins], atol=1e-6 * size)
+            np.testing.assert_allclose(second.hole_load, first.hole_load[:, holes], atol=1e-6 * size)
+            np.testing.assert_allclose(
+                second.rollers.outer_load, first.rollers.outer_load[:, rollers], atol=1e-6 * size
+            )

@@ -1,0 +1,60 @@
+"""The clearance-free linear system against the equilibrium by minimum potential: two formulations of one drive."""
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.equilibrium.clearance_free import analyse_without_clearance
+from ltca.errors import DriveError
+from ltca.reading.drive_file import parse_drive, shipped_drive
+
+PAPER = parse_drive(shipped_drive()).cases
+WITHOUT_OFFSETS = parse_drive(
+    shipped_drive()
+    .replace("equidistant_offset = 0.15", "equidistant_offset = 0.0")
+    .replace("shifting_offset = 0.09", "shifting_offset = 0.0")
+).cases["CS-1"]
+
+
+def _differences(drive, angle, torque):
+    linear = analyse_without_clearance(drive, angle, torque, cells=10)
+    nonlinear = analyse(drive, np.array([angle]), torque).full.response
+    pairs = [
+        (linear.pin_load, nonlinear.pin_load[0]),
+        (linear.roller_load, nonlinear.rollers.outer_load[0]),
+        (linear.pin_shaft_load, nonlinear.hole_load[0]),
+    ]
+    return linear, np.array([np.max(np.abs(one - other)) / np.max(other) for one, other in pairs])
+
+
+@pytest.mark.parametrize("drive", [PAPER["CS-1"], WITHOUT_OFFSETS], ids=["paper", "no offsets"])
+def test_agreement_is_limited_by_linearisation_alone(drive):
+    # Displacements of 20 µm on levers of 4 mm (pin holes) turn normals by 5 mrad: differences of half a per cent at
+    # full load are of that order, and vanish with the load. Ten cells leave 1e-5 of the load.
+    linear, full = _differences(drive, 0.3, 377_300.0)
+    _, tenth = _differences(drive, 0.3, 37_730.0)
+    assert np.all(full < 6e-3)
+    assert np.all(tenth < 0.2 * full)
+    assert linear.residual < 1e-9 * 6737.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angle", [0.0, 1.0, 2.0, 4.5])
+def test_other_angles_of_the_paper_agree(angle):
+    _, differences = _differences(PAPER["CS-1"], angle, 3_773.0)
+    # A hundredth of the load: linearisation leaves 1e-4, the grids of lightly loaded rollers as much.
+    assert np.all(differences < 3e-4)
+
+
+def test_reverse_direction_is_the_mirror_image():
+    reverse = parse_drive(shipped_drive().replace('direction = "ccw"', 'direction = "cw"')).cases["CS-1"]
+    forward = analyse_without_clearance(PAPER["CS-1"], 0.4, cells=8)
+    mirrored = analyse_without_clearance(reverse, -0.4, cells=8)
+    # Pin i mirrors to pin −i; round-off of the factorisation is far below 1e-6 N.
+    np.testing.assert_allclose(mirrored.pin_load, np.roll(forward.pin_load[::-1], 1), atol=1e-6)
+    np.testing.assert_allclose(mirrored.pin_shaft_load, np.roll(forward.pin_shaft_load[::-1], 1), atol=1e-6)
+
+
+def test_drives_with_clearance_are_refused():
+    with pytest.raises(DriveError, match=r"clearance\.bearing = 0\.03 mm: must be 0 mm"):
+        analyse_without_clearance(PAPER["CS-3"], 0.0)

@@ -1,0 +1,136 @@
+"""Contact without load: first contact against root finding on plain geometry, signs, which pairs can carry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.errors import ConvergenceError
+from ltca.geometry.first_contact import (
+    DISC_ROTATION,
+    WHEEL_ANGLE,
+    backlash,
+    carrying_holes,
+    carrying_pins,
+    carrying_rollers,
+    first_contact,
+    unloaded_transmission_error,
+)
+from ltca.geometry.pairs import ContactGeometry
+
+
+def smallest_gap(drive, crank, disc_rotation, wheel_angle):
+    """Least distance of any pin from Eq. 1's flank: samples in two rounds, a parabola through the lowest three."""
+    wheel, e = drive.pin_wheel, drive.crank.eccentricity
+    z = wheel.number_of_pins
+    R = wheel.pin_circle_radius + drive.disc.shifting_offset
+    r = wheel.pin_radius + drive.disc.equidistant_offset
+    pins = wheel.pin_circle_radius * np.exp(1j * (crank / z + wheel_angle + 2.0 * np.pi * np.arange(z) / z))
+    step = 2.0 * np.pi / (200 * z)
+
+    def distance(theta):
+        psi = np.arctan2(np.sin((1 - z) * theta), R / (e * z) - np.cos((1 - z) * theta))
+        flank = R * np.exp(1j * theta) - r * np.exp(1j * (theta + psi)) - e * np.exp(1j * z * theta)
+        return np.abs(pins[:, None] - e * np.exp(1j * crank) - flank * np.exp(1j * disc_rotation))
+
+    everywhere = step * np.arange(200 * z)
+    lowest = everywhere[np.argmin(distance(everywhere[None, :]), axis=1)]
+    near = distance(lowest[:, None] + step * np.linspace(-1.0, 1.0, 81))
+    rows, at = np.arange(z), np.argmin(near, axis=1).clip(1, 79)
+    left, middle, right = (near[rows, at + k] for k in (-1, 0, 1))
+    vertex = middle - (right - left) ** 2 / (8.0 * (right - 2.0 * middle + left))
+    return float(np.min(vertex)) - wheel.pin_radius
+
+
+@pytest.mark.parametrize("crank", [0.0, 1.234, 5.1])
+def test_first_contact_against_root_finding(paper_cases, crank):
+    drive = paper_cases["CS-1"]
+    geometry = ContactGeometry.of_drive(drive)
+    for coordinate in (DISC_ROTATION, WHEEL_ANGLE):
+        for sense in (1, -1):
+            found, pin = first_contact(geometry, np.array([crank]), coordinate, sense)
+
+            def gap(turn, coordinate=coordinate):
+                return smallest_gap(drive, crank, *((turn, 0.0) if coordinate == DISC_ROTATION else (0.0, turn)))
+
+            # 0.004 rad is beyond the backlash of 10′ = 0.003 rad: that far the bodies overlap
+            expected = brentq(gap, 0.0, sense * 0.004, xtol=1e-12)
+            # the parabola over 1/8000 of a tooth leaves some 1e-12 mm of the gap, at lever arms of 30 mm and more
+            assert found[0] == pytest.approx(expected, abs=1e-11)
+            pose = np.zeros((1, 4))
+            pose[0, coordinate] = found[0]
+            approach = geometry.flank(np.array([crank]), pose).approach[0]
+            assert np.argmax(approach) == pin[0]
+            assert approach[pin[0]] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_backlash_is_the_sum_of_both_senses_and_positive(random_drives):
+    for drive in random_drives:
+        geometry = ContactGeometry.of_drive(drive)
+        angles = np.linspace(0.0, 6.0, 13)
+        for coordinate in (DISC_ROTATION, WHEEL_ANGLE):
+            play = backlash(geometry, angles, coordinate)
+            assert np.all(play > 0.0)
+            rotation, _ = first_contact(geometry, angles, coordinate, 1)
+            back, _ = first_contact(geometry, angles, coordinate, -1)
+            np.testing.assert_allclose(play, rotation - back)
+
+
+def test_unloaded_transmission_error_has_the_sign_of_the_convention(paper_cases):
+    geometry = ContactGeometry.of_drive(paper_cases["CS-1"])
+    angles = np.linspace(0.0, 6.0, 25)
+    forward = unloaded_transmission_error(geometry, angles)
+    # a crank driving ccw winds the drive up: the wheel stays behind
+    assert np.all(forward < 0.0)
+    np.testing.assert_allclose(unloaded_transmission_error(geometry, -angles, -1), -forward, atol=1e-13)
+    # without part errors its period is one tooth of the disc, 360°/13 of crank
+    later = unloaded_transmission_error(geometry, angles + 2.0 * np.pi / 13.0)
+    np.testing.assert_allclose(later, forward, atol=1e-13)
+
+
+def test_nothing_touches_when_no_pin_can(paper_cases):
+    from dataclasses import replace
+
+    geometry = ContactGeometry.of_drive(paper_cases["CS-1"])
+    # a wheel of a single pin on the eccentricity line: its normal passes through the wheel axis
+    lone = replace(
+        geometry,
+        placement=replace(
+            geometry.placement,
+            wheel_pin_centres=geometry.placement.wheel_pin_centres[:1],
+            wheel_pin_radii=geometry.placement.wheel_pin_radii[:1],
+        ),
+    )
+    with pytest.raises(ConvergenceError, match="no pin touches"):
+        first_contact(lone, np.array([0.0]), WHEEL_ANGLE, 1)
+
+
+@pytest.mark.parametrize("direction", ["ccw", "cw"])
+def test_every_loaded_pair_is_one_that_can_carry(vary, direction):
+    drive = vary(load={"direction": direction}, clearance={"bearing": 0.03, "pin_hole": 0.03})
+    angles = np.linspace(0.0, 6.2, 31)
+    analysis = analyse(drive, angles)
+    geometry, contacts = ContactGeometry.of_drive(drive), analysis.full.response
+    sign = drive.driving_sign
+    pins = carrying_pins(geometry, angles, sign)
+    assert not np.any((contacts.pin_load > 0.0) & ~pins)
+    holes = carrying_holes(geometry, angles, sign)
+    assert not np.any((contacts.hole_load > 0.0) & ~holes)
+    push = (contacts.rollers.outer_load * contacts.rollers.outer_direction).sum(axis=1)
+    rollers = carrying_rollers(geometry, angles, np.angle(push))
+    assert not np.any((contacts.rollers.outer_load > 0.0) & ~rollers)
+    # a turned predicate (ahead for behind) would name the other half
+    assert np.all(pins.sum(axis=1) >= 6)
+    assert np.all(pins.sum(axis=1) <= 7)
+    assert np.all((holes & (contacts.hole_load > 0.0)).any(axis=1))
+
+
+def test_loaded_holes_lie_ahead_of_the_crank(paper_cases):
+    geometry = ContactGeometry.of_drive(paper_cases["CS-1"])
+    # crank at 10°: holes at 45°, 90°, 135° and 180° are ahead, in the half turn counter-clockwise of it
+    found = carrying_holes(geometry, np.radians([10.0]), 1)[0]
+    np.testing.assert_array_equal(np.nonzero(found)[0], [1, 2, 3, 4])
+    found = carrying_holes(geometry, np.radians([10.0]), -1)[0]
+    np.testing.assert_array_equal(np.nonzero(found)[0], [0, 5, 6, 7])

@@ -1,0 +1,60 @@
+"""Where parts stand: conventions of the design, errors entering exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ltca.geometry.placement import Placement
+
+
+def test_numbering_starts_at_zero_and_runs_counter_clockwise(vary):
+    place = Placement.of_drive(vary())
+    np.testing.assert_allclose(place.wheel_pin_centres[:2], 88.0 * np.exp(2j * np.pi * np.array([0, 1]) / 14))
+    np.testing.assert_allclose(place.hole_centres[3], 56.0 * np.exp(2j * np.pi * 3 / 8))
+    np.testing.assert_allclose(place.shaft_pin_centres, place.hole_centres)
+    # θ_b,n = r_i φ/(r_i + r_o) + 2πn/n_BR
+    np.testing.assert_allclose(
+        place.roller_angles(np.array([1.5]))[0], 19.5 * 1.5 / 49.0 + 2.0 * np.pi * np.arange(11) / 11
+    )
+    assert complex(place.race_centre(np.array(0.7))) == pytest.approx(4.0 * np.exp(0.7j))
+    assert float(place.wheel_rotation(np.array(1.4))) == pytest.approx(0.1)
+
+
+def test_clearances_bearing_diametral_and_hole_whole(vary):
+    place = Placement.of_drive(vary(clearance={"bearing": 0.03, "pin_hole": 0.02}))
+    assert place.bore_radius == pytest.approx(29.515, rel=1e-15)
+    np.testing.assert_allclose(place.hole_radii - place.shaft_pin_radii, 4.02, rtol=1e-13)
+    # the cage turns with the nominal outer race, the clearance is not in it
+    assert place.cage_speed == pytest.approx(19.5 / 49.0, rel=1e-15)
+
+
+def test_errors_move_and_resize_one_part_only(vary):
+    def one(count, number, value):
+        return [value if n == number else 0.0 for n in range(count)]
+
+    pins = {"radial": one(14, 3, 0.02), "tangential": one(14, 5, -0.03), "diameter": one(14, 7, 0.04)}
+    holes = {"radial": one(8, 1, 0.02), "tangential": one(8, 2, -0.03), "diameter": one(8, 4, 0.04)}
+    rollers = {"tangential": one(11, 2, -0.05), "diameter": one(11, 9, 0.01)}
+    nominal = Placement.of_drive(vary())
+    place = Placement.of_drive(
+        vary(
+            pin_wheel={"pin_errors": pins},
+            disc={"hole_errors": holes},
+            pin_shaft={"pin_errors": holes},
+            crank_bearing={"roller_errors": rollers},
+        )
+    )
+    ray = np.exp(2j * np.pi * np.arange(14) / 14)
+    moved = (place.wheel_pin_centres - nominal.wheel_pin_centres) / ray
+    np.testing.assert_allclose(moved, np.array(pins["radial"]) + 1j * np.array(pins["tangential"]), atol=2e-14)
+    np.testing.assert_allclose(place.wheel_pin_radii, 6.5 + 0.5 * np.array(pins["diameter"]))
+    ray = np.exp(2j * np.pi * np.arange(8) / 8)
+    for centres in (place.hole_centres, place.shaft_pin_centres):
+        moved = (centres - nominal.hole_centres) / ray
+        np.testing.assert_allclose(moved, np.array(holes["radial"]) + 1j * np.array(holes["tangential"]), atol=2e-14)
+    np.testing.assert_allclose(place.hole_radii - 14.075, 0.5 * np.array(holes["diameter"]), atol=1e-14)
+    np.testing.assert_allclose(place.shaft_pin_radii - 10.075, 0.5 * np.array(holes["diameter"]), atol=1e-14)
+    np.testing.assert_allclose(place.roller_radii - 5.0, 0.5 * np.array(rollers["diameter"]), atol=1e-14)
+    turned = place.roller_cage_angles - nominal.roller_cage_angles
+    np.testing.assert_allclose(turned, np.array(rollers["tangential"]) / 24.5, atol=1e-15)

@@ -1,0 +1,66 @@
+"""Files are whole or not there."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from ltca.errors import CycloError
+from ltca.output.files import whole_file, write_json
+
+
+def test_file_appears_only_when_the_block_ends_well(tmp_path):
+    path = tmp_path / "deep" / "file.txt"
+    with whole_file(path) as part:
+        part.write_text("half")
+        assert not path.exists()
+    assert path.read_text() == "half"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_interrupted_write_leaves_the_old_file(tmp_path):
+    path = tmp_path / "file.txt"
+    path.write_text("old")
+
+    def interrupted():
+        with whole_file(path) as part:
+            part.write_text("new, half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_old_file_is_replaced_not_written_over(tmp_path):
+    """Whoever has the old file open or linked keeps it whole; a kill between two writes cannot halve the new one."""
+    path, link = tmp_path / "file.txt", tmp_path / "link.txt"
+    path.write_text("old")
+    link.hardlink_to(path)
+    with whole_file(path) as part:
+        part.write_text("new")
+    assert path.read_text() == "new"
+    assert link.read_text() == "old"
+
+
+def test_suffix_is_kept_for_writers_that_choose_by_it(tmp_path):
+    with whole_file(tmp_path / "a.svg") as part:
+        assert part.suffix == ".svg"
+        assert part.parent == tmp_path
+        part.touch()
+
+
+def test_folder_that_cannot_be_made(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(CycloError, match="cannot be written"), whole_file(tmp_path / "file" / "x.txt") as part:
+        part.touch()
+
+
+def test_json_refuses_what_is_no_number(tmp_path):
+    write_json(tmp_path / "a.json", {"größe": 1.5})
+    assert json.loads((tmp_path / "a.json").read_text(encoding="utf-8")) == {"größe": 1.5}
+    with pytest.raises(ValueError, match="JSON"):
+        write_json(tmp_path / "b.json", {"x": float("nan")})
+    assert [path.name for path in tmp_path.iterdir()] == ["a.json"]

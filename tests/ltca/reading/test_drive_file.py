@@ -1,0 +1,173 @@
+"""Drive files: reading, cases, defaults, and every mistake told at once."""
+
+from __future__ import annotations
+
+import pytest
+
+from ltca.errors import DriveError
+from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
+
+BASE = shipped_drive().split("[[case]]")[0]
+
+
+def refuse(text, source="my.toml"):
+    with pytest.raises(DriveError) as caught:
+        parse_drive(text, source)
+    return caught.value
+
+
+def test_paper_ships_with_its_six_cases():
+    file = load_drive("paper")
+    assert file.name == "paper"
+    assert list(file.cases) == ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]
+
+
+def test_units_in_texts():
+    text = BASE.replace("377300.0", '"377.3 N m"').replace("= 4.0 ", '= "0.4 cm" ').replace("1.0e6", '"1 kN/um"')
+    drive = parse_drive(text).cases["nominal"]
+    assert drive.load.torque == pytest.approx(377_300.0, rel=1e-14)
+    assert drive.crank.eccentricity == pytest.approx(4.0, rel=1e-14)
+    assert drive.pin_shaft.stiffness == pytest.approx(1e6, rel=1e-14)
+
+
+def test_without_cases_the_drive_itself_is_nominal_and_named_after_its_file():
+    file = parse_drive(BASE.replace('name = "paper"\n', ""), "folder/robot_joint.toml")
+    assert file.name == "robot_joint"
+    assert list(file.cases) == ["nominal"]
+
+
+def test_cases_override_single_fields_deeply():
+    file = parse_drive(
+        BASE + '[[case]]\nname = "thick"\ndisc = { thickness = 14.0 }\n[[case]]\nname = "soft"\n'
+        "[case.materials.roller]\nyoungs_modulus = 1e5\n[case.load]\ntorque = '100 N m'\n"
+    )
+    thick, soft = file.cases["thick"], file.cases["soft"]
+    assert thick.disc.thickness == 14.0
+    assert thick.disc.equidistant_offset == 0.15  # the rest of the table stays
+    assert soft.materials.roller.youngs_modulus == 1e5
+    assert soft.materials.roller.poisson_ratio == 0.3
+    assert soft.load.torque == 100_000.0
+    assert soft.load.direction == "ccw"
+    assert soft.disc.thickness == 11.8
+
+
+def test_torque_share_is_one_over_the_number_of_discs():
+    assert parse_drive(BASE).cases["nominal"].disc.torque_share == 1.0
+    two = BASE.replace("number_of_discs = 1", "number_of_discs = 2")
+    assert parse_drive(two).cases["nominal"].disc.torque_share == 0.5
+    given = BASE.replace("number_of_discs = 1", "number_of_discs = 2\ntorque_share = 0.6")
+    assert parse_drive(given).cases["nominal"].disc.torque_share == 0.6
+    # a case that changes the number changes the share with it
+    assert parse_drive(BASE + '[[case]]\nname = "a"\ndisc = { number_of_discs = 3 }').cases[
+        "a"
+    ].disc.torque_share == pytest.approx(1.0 / 3.0)
+
+
+def test_error_arrays_are_read():
+    text = BASE.replace(
+        "pin_radius = 6.5 ", 'pin_errors = { radial = ["5 um", ' + "0.0, " * 13 + "] }\npin_radius = 6.5 "
+    )
+    assert parse_drive(text).cases["nominal"].pin_wheel.pin_errors.radial[0] == pytest.approx(0.005)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("eccentricity = 4.0", "eccentricity = -4.0", "crank.eccentricity = -4.0: must be greater than 0 mm"),
+        ("eccentricity = 4.0", 'eccentricity = "4 kg"', "crank.eccentricity = '4 kg': must have the unit mm"),
+        ("eccentricity = 4.0", "excentricity = 4.0", "crank.excentricity: is not a field of the drive definition"),
+        ("eccentricity = 4.0", "", "crank.eccentricity: is missing"),
+        ("eccentricity = 4.0", "eccentricity = nan", "crank.eccentricity = nan: must be finite in mm"),
+        ("eccentricity = 4.0", "eccentricity = true", "crank.eccentricity = True: must be a number in mm"),
+        ("number_of_teeth = 13", "number_of_teeth = 13.5", "disc.number_of_teeth = 13.5: must be a whole number"),
+        ("number_of_teeth = 13", "number_of_teeth = 2", "disc.number_of_teeth = 2: must be greater than or equal to 3"),
+        ('direction = "ccw"', 'direction = "left"', "load.direction = 'left': must be 'ccw' or 'cw'"),
+        ("torque = 377300.0", "torque = 0.0", "load.torque = 0.0: must be greater than 0 N·mm"),
+        ("stiffness = 1.0e6", "stiffness = '1 N'", "pin_shaft.stiffness = '1 N': must have the unit N/mm"),
+        ("bearing = 0.0 ", "bearing = -0.01 ", "clearance.bearing = -0.01: must be at least 0 mm"),
+        ("poisson_ratio = 0.3 }", "poisson_ratio = 0.5 }", "must be at least 0 and less than 0.5"),
+        (
+            "# torque_share = 1.0",
+            "torque_share = 1.5 #",
+            "disc.torque_share = 1.5: must be greater than 0 and at most 1",
+        ),
+        ("[crank]\neccentricity = 4.0", "crank = 4.0", "crank = 4.0: must be a table"),
+    ],
+)
+def test_single_mistakes(old, new, message):
+    assert old in BASE
+    error = refuse(BASE.replace(old, new, 1))
+    assert any(message in problem for problem in error.problems), error.problems
+    assert str(error).startswith("my.toml: ")
+
+
+def test_several_mistakes_are_told_together():
+    text = BASE.replace("eccentricity = 4.0", "eccentricity = -4.0").replace("thickness = 11.8", "thicknes = 11.8")
+    error = refuse(text.replace("377300.0", '"1 mm"'))
+    assert len(error.problems) == 4  # negative, unknown, missing, wrong unit
+    assert "4 mistakes" in str(error)
+
+
+def test_mistakes_of_cases_carry_their_names():
+    error = refuse(
+        BASE
+        + '[[case]]\nname = "A"\nclearance = { bearing = -1.0 }\n[[case]]\nname = "B"\nclearance = { pin_hole = 3.0 }'
+    )
+    assert error.problems[0].startswith("case A: clearance.bearing")
+    assert error.problems[1].startswith("case B: clearance.pin_hole = 3 mm: must be at most 2 mm")
+
+
+def test_a_contradiction_of_the_common_part_is_told_once():
+    text = shipped_drive().replace("number_of_rollers = 11", "number_of_rollers = 16")
+    error = refuse(text)
+    assert len(error.problems) == 1
+    assert "number_of_rollers = 16" in error.problems[0]
+    assert "case" not in error.problems[0]
+
+
+@pytest.mark.parametrize(
+    ("cases", "message"),
+    [
+        ('[[case]]\nname = "A"\n[[case]]\nname = "A"', "case A: name is used twice"),
+        ("[[case]]\nclearance = { bearing = 0.0 }", "case 0: name is missing"),
+        ('[[case]]\nname = "a/b"', "case 0: name"),
+        ('[case]\nname = "A"', "written [[case]]"),
+    ],
+)
+def test_case_names(cases, message):
+    assert message in str(refuse(BASE + cases))
+
+
+def test_unknown_case_names_the_known_ones():
+    file = load_drive("paper")
+    with pytest.raises(DriveError, match="case 'CS-7' is not defined; the cases are CS-1, CS-2"):
+        file.select(["CS-1", "CS-7"])
+    assert list(file.select(["CS-3", "CS-1", "CS-3"])) == ["CS-3", "CS-1"]
+    assert list(file.select(None)) == list(file.cases)
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(DriveError, match="no such file; give a TOML file or 'paper'"):
+        load_drive(tmp_path / "none.toml")
+    with pytest.raises(DriveError, match="cannot be read"):
+        load_drive(tmp_path)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(DriveError, match="cannot be read"):
+        load_drive(tmp_path / "binary.toml")
+    (tmp_path / "broken.toml").write_text("[crank\n")
+    with pytest.raises(DriveError, match="is not valid TOML"):
+        load_drive(tmp_path / "broken.toml")
+
+
+@pytest.mark.parametrize("text", ["", "name = 3\n", 'case = "x"\n', "[crank]\n", "crank = []\ndisc = 1\n"])
+def test_nonsense_is_a_drive_error_not_a_traceback(text):
+    refuse(text)
+
+
+def test_name_that_would_leave_the_output_folder():
+    refuse(BASE.replace('name = "paper"', 'name = "../elsewhere"'))
+
+
+def test_build_drive_reports_problems_without_a_source(paper_table):
+    with pytest.raises(DriveError, match=r"^disc\.thickness = -1\.0: must be greater than 0 mm$"):
+        build_drive(paper_table(disc={"thickness": -1.0}))

@@ -1,0 +1,359 @@
+"""The same dataset bit for bit: any engine, a lost worker, a killed study resumed; failures told; memory flat."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from pyarrow import parquet
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.errors import CycloError
+from ltca.geometry.placement import position_angles
+from ltca.reading.drive_file import load_drive
+from ltca.studies.designs import SweepDesign, SweepFactor
+from ltca.studies.execution.engine import Engine, solve_batches
+from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.quantities import QUANTITIES
+from ltca.studies.run_study import run_study
+from ltca.studies.study import Study, run_batch
+from ltca.studies.tolerance_study import tolerance_study
+
+POSITIONS = 512  # four samples a batch: many batches in little time
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_drive("paper")
+
+
+def small_study(paper, samples=30, quantities=("ptp_transmission_error", "max_pin_load"), positions=POSITIONS):
+    return tolerance_study(paper, case="CS-6", samples=samples, positions=positions, seed=4, quantities=quantities)
+
+
+@pytest.fixture(scope="module")
+def reference(paper, tmp_path_factory):
+    """Files of the small study solved in this process."""
+    folder = StudyFolder(path=tmp_path_factory.mktemp("reference"))
+    run_study(small_study(paper, samples=12), folder, Engine())
+    return folder
+
+
+def same_files(one, other):
+    for name in ("results.nc", "results.parquet", "summary.json"):
+        assert (one.path / name).read_bytes() == (other.path / name).read_bytes(), name
+
+
+def test_every_quantity_against_the_run_of_its_sample(paper):
+    """The worst sample re-run by index gives what the study says of it."""
+    study = small_study(paper, samples=3, quantities=("all",), positions=24)
+    result = run_batch(study, 0)
+    assert result.messages == ("", "", "")
+    drive = study.sample_drive(2)
+    found = dict(zip(study.quantities, result.values[2], strict=True))
+    assert set(found) == set(QUANTITIES)
+    alone = analyse(drive, position_angles(24))
+    from ltca.analysis.results import ARCMIN, ARCSEC, summarise
+
+    told = summarise(alone)
+    pairs = {
+        "ptp_transmission_error": told["ptp_transmission_error_arcsec"] / ARCSEC,
+        "ptp_transmission_error_light": told["ptp_transmission_error_light_arcsec"] / ARCSEC,
+        "mean_backlash_wheel": told["backlash_wheel_arcmin"] / ARCMIN,
+        "max_pin_load": told["max_pin_load_N"],
+        "max_pin_pressure_mid": told["max_pin_pressure_mid_MPa"],
+        "max_roller_load": told["max_roller_load_N"],
+        "max_roller_pressure_mid": told["max_roller_pressure_mid_MPa"],
+        "max_pin_shaft_load": told["max_pin_shaft_load_N"],
+        "mean_bearing_load": told["mean_bearing_load_N"],
+        "mean_radial_bearing_load": told["mean_radial_bearing_load_N"],
+        "mean_tangential_bearing_load": told["mean_tangential_bearing_load_N"],
+        "ptp_tangential_bearing_load": told["ptp_tangential_bearing_load_N"],
+        "mean_loaded_pins": told["mean_loaded_pins"],
+        "mean_loaded_rollers": told["mean_loaded_rollers"],
+        "mean_loaded_pin_shaft_pins": told["mean_loaded_pin_shaft_pins"],
+        "mean_transmission_error": alone.full.pose[:, 3].mean(),
+        "max_bearing_load": np.hypot(alone.bearing_radial, alone.bearing_tangential).max(),
+    }
+    for name, expected in pairs.items():
+        # both starts balance to 1e-9 of the load; differences of two such loads lose two digits
+        assert found[name] == pytest.approx(expected, rel=1e-6), name
+    assert found["min_backlash_wheel"] <= found["mean_backlash_wheel"]
+
+
+def test_the_dataset_holds_what_was_drawn_and_found(paper, reference):
+    study = small_study(paper, samples=12)
+    with xr.open_dataset(reference.results, engine="h5netcdf") as data:
+        assert data.sizes["sample"] == 12
+        assert list(data["factor"].values) == list(study.design.names)
+        np.testing.assert_array_equal(data["factor_value"].values, study.design.rows(0, 12))
+        np.testing.assert_array_equal(data["max_pin_load"].values[4:8], run_batch(study, 1).values[:, 1])
+        assert data["max_pin_load"].attrs["units"] == "N"
+        assert not data["failed"].values.any()
+        table = parquet.read_table(reference.table).to_pydict()
+        np.testing.assert_array_equal(table["ptp_transmission_error"], data["ptp_transmission_error"].values)
+    assert not (reference.path / "batches").exists()
+
+
+@pytest.mark.slow
+def test_two_workers_write_the_same_files(paper, reference, tmp_path):
+    folder = StudyFolder(path=tmp_path)
+    run_study(small_study(paper, samples=12), folder, Engine(workers=2))
+    same_files(folder, reference)
+
+
+def test_resume_solves_what_is_left_and_no_more(paper, reference, tmp_path):
+    study, folder = small_study(paper, samples=12), StudyFolder(path=tmp_path)
+    assert folder.prepare(study, resume=False) == [0, 1, 2]
+    folder.store(run_batch(study, 1))
+    with pytest.raises(CycloError, match="continue it with --resume"):
+        folder.prepare(study, resume=False)
+    with pytest.raises(CycloError, match="holds another study"):
+        folder.prepare(replace(study, positions=8), resume=True)
+    assert folder.prepare(study, resume=True) == [0, 2]
+    found = run_study(study, folder, Engine(), resume=True)
+    assert found.solved_positions == 8 * POSITIONS
+    same_files(folder, reference)
+    # a finished study is not solved again
+    again = run_study(study, folder, Engine(), resume=True)
+    assert again.solved_positions == 0
+    same_files(folder, reference)
+    with pytest.raises(CycloError, match="no study to resume"):
+        StudyFolder(path=tmp_path / "empty").prepare(study, resume=True)
+
+
+def test_whatever_the_results_depend_on_is_in_the_fingerprint(paper):
+    """Else --resume would mix two studies."""
+    study = small_study(paper)
+    wider = {**paper.tolerances}
+    wider["crank.eccentricity_error"] = replace(wider["crank.eccentricity_error"], cpk=1.0)
+    others = [
+        small_study(paper, samples=31),
+        small_study(paper, positions=8),
+        small_study(paper, quantities=("max_pin_load",)),
+        small_study(replace(paper, tolerances=wider)),
+        replace(study, design=replace(study.design, seed=5)),
+        replace(study, design=replace(study.design, sequence="sobol")),
+        replace(study, cases=(("CS-5", paper.cases["CS-5"]),)),
+    ]
+    assert len({item.fingerprint() for item in [study, *others]}) == 8
+    assert small_study(paper).fingerprint() == study.fingerprint()
+
+
+def bad_sweep(paper):
+    """Thickness so small that the torque cannot be carried, and a flank that interferes, among sound samples."""
+    factors = (
+        SweepFactor(path="disc.equidistant_offset", levels=(0.15, 0.05, 0.15, 0.16)),
+        SweepFactor(path="load.torque", levels=(3e5, 3e5, 1e8, 3e5)),
+    )
+    return Study(
+        name="bad",
+        cases=(("CS-3", paper.cases["CS-3"]),),
+        design=SweepDesign(factors=factors, kind="list"),
+        positions=6,
+        quantities=("max_pin_load",),
+        near_nominal=False,
+    )
+
+
+def test_failed_samples_are_listed_with_their_drive_and_stop_nobody(paper, tmp_path):
+    folder = StudyFolder(path=tmp_path)
+    found = run_study(bad_sweep(paper), folder, Engine())
+    assert [sample for sample, _ in found.failures] == [1, 2]
+    assert "interfere" in found.failures[0][1]
+    assert "cannot be carried" in found.failures[1][1]
+    with xr.open_dataset(folder.results, engine="h5netcdf") as data:
+        np.testing.assert_array_equal(data["failed"].values, [0, 1, 1, 0])
+        np.testing.assert_array_equal(np.isfinite(data["max_pin_load"].values), [True, False, False, True])
+        assert list(data["failed_sample"].values) == [1, 2]
+    unsound = (tmp_path / "samples" / "sample_00000001.toml").read_text()
+    assert "disc.equidistant_offset = 0.05" in unsound
+    heavy = load_drive(tmp_path / "samples" / "sample_00000002.toml").cases["nominal"]
+    assert heavy.load.torque == 1e8
+    # told again by a resumed, finished study
+    assert run_study(bad_sweep(paper), folder, Engine(), resume=True).failures == found.failures
+
+
+def test_sample_drive_file_is_the_sample(paper, tmp_path):
+    from ltca.studies.run_study import write_sample
+
+    study = small_study(paper)
+    path = write_sample(study, StudyFolder(path=tmp_path), 7)
+    assert load_drive(path).cases["nominal"] == study.sample_drive(7)
+
+
+@pytest.mark.slow
+def test_local_pool_survives_a_killed_worker(paper, reference, tmp_path):
+    """SIGKILL for a worker after the first batch: the pool is built anew, the results are the same."""
+    study, folder = small_study(paper, samples=12), StudyFolder(path=tmp_path)
+    before = children()
+    killed = False
+    for result in solve_batches(study, folder.prepare(study, resume=False), Engine(workers=2)):
+        folder.store(result)
+        if not killed:
+            victims = [pid for pid in children() if pid not in before and "multiprocessing" in command(pid)]
+            os.kill(victims[-1], signal.SIGKILL)
+            killed = True
+    assert killed
+    run_study(study, folder, Engine(), resume=True)
+    same_files(folder, reference)
+
+
+def command(pid):
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ")
+    except OSError:
+        return ""
+
+
+def children():
+    """All descendants of this process."""
+    found, front = [], [os.getpid()]
+    while front:
+        parent = front.pop()
+        for task in Path(f"/proc/{parent}/task").glob("*"):
+            try:
+                below = [int(pid) for pid in (task / "children").read_text().split()]
+            except OSError:
+                continue
+            found += below
+            front += below
+    return found
+
+
+@pytest.mark.slow
+def test_killed_study_resumes_to_the_same_dataset(paper, tmp_path):
+    """kill −9 for the main process of the command in the middle, then --resume: byte for byte the undisturbed files."""
+    arguments = ["paper", "--case", "CS-6", "--samples", "28", "--positions", "512", "--seed", "4", "--no-figures"]
+    arguments += ["--quantities", "ptp_transmission_error", "max_pin_load"]
+    program = "import sys; from ltca.commands.program import _Parser; from ltca.commands import tolerance as t; p = _Parser();"
+    program += "t.configure(p); sys.exit(t.execute(p.parse_args(sys.argv[1:])))"
+    one, other = tmp_path / "disturbed", tmp_path / "straight"
+
+    def start(out, *more):
+        return subprocess.Popen(
+            [sys.executable, "-c", program, *arguments, "--out", str(out), *more], stdout=subprocess.PIPE, text=True
+        )
+
+    process = start(one)
+    deadline = time.monotonic() + 60.0
+    while len(list(one.glob("batches/*.npz"))) < 3 and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.kill()
+    process.communicate()
+    kept = len(list(one.glob("batches/[0-9]*.npz")))
+    assert 3 <= kept < 7
+    resumed = start(one, "--resume", "--workers", "2")
+    text, _ = resumed.communicate()
+    assert resumed.returncode == 0
+    assert "28 samples × 512 positions" in text
+    straight = start(other)
+    straight.communicate()
+    assert straight.returncode == 0
+    same_files(StudyFolder(path=one), StudyFolder(path=other))
+
+
+@pytest.mark.slow
+def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
+    """A scheduler and two workers as separate processes; one of them is killed in the middle."""
+    pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
+    study = small_study(paper, samples=32)
+    quiet = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    address_file = tmp_path / "scheduler.json"
+    base = [sys.executable, "-m"]
+    processes = [
+        subprocess.Popen(
+            [
+                *base,
+                "distributed.cli.dask_scheduler",
+                "--port",
+                "0",
+                "--no-dashboard",
+                "--scheduler-file",
+                str(address_file),
+            ],
+            stderr=subprocess.DEVNULL,
+            env=quiet,
+        )
+    ]
+    try:
+        deadline = time.monotonic() + 60.0
+        while not address_file.exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        worker = [*base, "distributed.cli.dask_worker", "--scheduler-file", str(address_file), "--nthreads", "1"]
+        worker += ["--no-nanny", "--no-dashboard", "--local-directory", str(tmp_path)]
+        workers = [subprocess.Popen(worker, stderr=subprocess.DEVNULL, env=quiet, cwd=os.getcwd()) for _ in range(2)]
+        processes += workers
+        import json
+
+        address = json.loads(address_file.read_text())["address"]
+        from distributed import Client
+
+        with Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        folder = StudyFolder(path=tmp_path / "cluster")
+        done = []
+
+        def advance(samples, rate):
+            done.append(samples)
+            if len(done) == 3:  # the first call tells what a resumed study had
+                workers[0].kill()
+
+        found = run_study(study, folder, Engine(scheduler=address), advance=advance)
+        assert workers[0].wait(timeout=10) == -signal.SIGKILL
+        assert sum(done) == 32
+        assert not found.failures
+    finally:
+        # Workers first: one whose scheduler is gone waits for it to come back.
+        for process in reversed(processes):
+            process.kill()
+            process.wait(timeout=20)
+    straight = StudyFolder(path=tmp_path / "straight")
+    run_study(study, straight, Engine())
+    same_files(folder, straight)
+
+
+@pytest.mark.slow
+def test_scheduler_that_does_not_answer_is_told(paper, tmp_path):
+    pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
+    study = small_study(paper, samples=4)
+    with pytest.raises(CycloError, match="no scheduler answers there"):
+        run_study(study, StudyFolder(path=tmp_path), Engine(scheduler="tcp://127.0.0.1:9"))
+
+
+MEMORY = """
+import resource, sys
+from pathlib import Path
+from ltca.reading.drive_file import load_drive
+from ltca.studies.execution.engine import Engine
+from ltca.studies.run_study import run_study
+from ltca.studies.execution import storage
+from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.tolerance_study import tolerance_study
+storage.CHUNK = 1024  # so that the smaller study fills several as well
+paper, samples = load_drive("paper"), int(sys.argv[1])
+study = tolerance_study(paper, case="CS-6", samples=samples, positions=1, quantities=("max_pin_load",))
+run_study(study, StudyFolder(path=Path(sys.argv[2])), Engine())
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+@pytest.mark.slow
+def test_memory_is_flat_against_the_number_of_samples(tmp_path):
+    """Four times the samples: the factors alone of the greater would be 6 MB more if they were kept."""
+
+    def peak(samples):
+        command_line = [sys.executable, "-c", MEMORY, str(samples), str(tmp_path / str(samples))]
+        text = subprocess.run(command_line, check=True, capture_output=True, text=True).stdout
+        return int(text.split()[-1]) / 1024.0  # MB
+
+    small, large = peak(2048), peak(8192)
+    assert large - small < 3.0

@@ -1,0 +1,274 @@
+"""Sweeps from their file, the optimiser against problems with known answers, and the commands."""
+
+from __future__ import annotations
+
+import argparse
+import tomllib
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.commands import curves, optimise, sweep, tolerance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.fields import read_field
+from ltca.errors import CycloError, DriveError
+from ltca.geometry.placement import position_angles
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+from ltca.studies.optimiser import (
+    Limit,
+    Problem,
+    Variable,
+    batch_analysis,
+    optimise as search,
+    parse_limit,
+    parse_variable,
+)
+from ltca.studies.study import run_batch
+from ltca.studies.sweep_file import load_sweep, parse_sweep
+
+STUDY = """
+drive = "paper"
+case = "CS-3"
+positions = 13
+quantities = ["ptp_transmission_error", "max_pin_load"]
+
+[design]
+kind = "grid"
+
+[factors]
+clearance.bearing = { low = 0.0, high = "30 um", levels = 3 }
+"load.direction" = ["ccw", "cw"]
+"""
+
+
+def run(module, *words):
+    parser = argparse.ArgumentParser()
+    module.configure(parser)
+    return module.execute(parser.parse_args([str(word) for word in words]))
+
+
+def test_sweep_file_and_its_samples(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    study = load_sweep(path)
+    assert study.design.samples == 6
+    drive = study.sample_drive(3)
+    assert (drive.clearance.bearing, drive.load.direction) == (0.015, "cw")
+    found = run_batch(study, 0)
+    assert not any(found.messages)
+    # a crank driving the other way is the mirror image: over whole turns the same, but for where the rollers stand
+    loads = found.values[:, 1].reshape(3, 2)
+    np.testing.assert_allclose(loads[:, 0], loads[:, 1], rtol=0.01)
+    # clearance concentrates the load (the paper's Fig. 24 has it 3 % less at the flank)
+    assert loads[2, 0] != loads[0, 0]
+
+
+def test_cases_are_a_factor():
+    table = tomllib.loads('positions = 3\nquantities = ["max_pin_load"]\nfactors.case = ["CS-1", "CS-6"]')
+    study = parse_sweep(table, "paper")
+    assert study.sample_drive(1) == load_drive("paper").cases["CS-6"]
+    loads = run_batch(study, 0).values[:, 0]
+    assert loads[0] != loads[1]
+
+
+def test_numbers_of_parts_are_factors_too():
+    """Drives of other shapes do not fit one batch: they are solved beside it."""
+    table = tomllib.loads(
+        'positions = 3\nquantities = ["max_pin_shaft_load"]\n[factors]\n"pin_shaft.number_of_pins" = [6, 8]'
+    )
+    found = run_batch(parse_sweep(table, "paper"), 0)
+    assert not any(found.messages)
+    for row, number in enumerate((6, 8)):
+        drive = with_fields(load_drive("paper").cases["CS-1"], {"pin_shaft.number_of_pins": number})
+        alone = analyse(drive, position_angles(3)).full.response.hole_load.max()
+        assert found.values[row, 0] == pytest.approx(alone, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ('"disc.thicknes" = [1.0]', "thicknes: is not a field"),
+        ('"pin_wheel.pin_errors.radial" = [0.0]', "vary one element of it"),
+        ('"disc.thickness" = { low = 2.0, high = 1.0, levels = 2 }', "must be a number less than"),
+        ('"disc.thickness" = { low = 1.0, high = 2.0 }', "must have levels in a grid"),
+        ('"disc.thickness" = ["1 s"]', "must have the unit mm"),
+        ('"case" = ["CS-9"]', "there are CS-1"),
+        ('"disc.thickness" = { low = -1.0, high = 2.0, levels = 2, scale = "logarithmic" }', "greater than 0 on a"),
+    ],
+)
+def test_wrong_sweeps_are_refused(change, message):
+    head = STUDY.split("[factors]")[0]
+    with pytest.raises(DriveError, match=message):
+        parse_sweep(tomllib.loads(f"{head}[factors]\n{change}\n"), "paper")
+
+
+def test_wrong_designs_are_refused():
+    for text, message in (
+        ('design = { kind = "star" }\nfactors.case = ["CS-1"]', "design.kind = star"),
+        ('design = { kind = "sobol" }\nfactors.case = ["CS-1"]', "design.samples = None"),
+        ('colour = 3\nfactors.case = ["CS-1"]', "colour: is not a key"),
+        ("positions = 3", "factors: is missing"),
+        ('quantities = ["beauty"]\nfactors.case = ["CS-1"]', "beauty: is no quantity"),
+    ):
+        with pytest.raises(DriveError, match=message):
+            parse_sweep(tomllib.loads(text), "paper")
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return load_drive("paper").cases["CS-3"]
+
+
+def quadratic(drives):
+    """Two parabolas of the offsets, in place of the drive: (x − 0.12)² + (y − 0.07)² and (x − 0.2)² + (y − 0.1)²."""
+    x = np.array([item.disc.equidistant_offset for item in drives])
+    y = np.array([item.disc.shifting_offset for item in drives])
+    first, second = (x - 0.12) ** 2 + (y - 0.07) ** 2, (x - 0.2) ** 2 + (y - 0.1) ** 2
+    return np.stack([first, second], axis=1) + 1e-3
+
+
+VARIABLES = (
+    Variable(path="disc.equidistant_offset", low=0.1, high=0.25),
+    Variable(path="disc.shifting_offset", low=0.05, high=0.13),
+)
+
+
+def test_optimum_of_a_parabola(drive):
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load",), limits=())
+    found = search(problem, lambda drives: quadratic(drives)[:, :1], seed=1)
+    # the simplex ends at 1e-4 of the ranges
+    np.testing.assert_allclose(found.variables[found.best], [0.12, 0.07], atol=1e-3)
+    assert found.drive(found.best).disc.equidistant_offset == found.variables[found.best, 0]
+
+
+def test_limit_is_kept_and_met(drive):
+    """Least of the first with the second at most 2e-3: on the line between both centres, where the circle cuts it."""
+    limits = (Limit(quantity="max_roller_load", sense=1, value=2e-3),)
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load",), limits=limits)
+    found = search(problem, quadratic, seed=1)
+    line = np.array([0.08, 0.03]) / np.hypot(0.08, 0.03)
+    np.testing.assert_allclose(found.variables[found.best], np.array([0.2, 0.1]) - np.sqrt(1e-3) * line, atol=2e-3)
+    assert found.values[found.best, 1] <= 2e-3
+    with pytest.raises(CycloError, match="none of"):
+        search(
+            Problem(
+                drive=drive, variables=VARIABLES, aims=("max_pin_load",),
+                limits=(Limit(quantity="max_roller_load", sense=1, value=1e-4),),
+            ), quadratic, generations=2,
+        )  # fmt: skip
+
+
+def test_pareto_front_is_the_line_between_the_optima(drive):
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
+    found = search(problem, quadratic, seed=1, generations=45)
+    points = found.variables[found.front] - np.array([0.12, 0.07])
+    line = np.array([0.08, 0.03]) / np.hypot(0.08, 0.03)
+    across = points @ np.array([-line[1], line[0]])
+    assert found.front.size >= 10
+    assert np.max(np.abs(across)) < 0.01
+    values = found.values[found.front]
+    assert np.all(np.diff(values[:, 0]) > 0.0)
+    assert np.all(np.diff(values[:, 1]) < 0.0)
+
+
+def test_names_ranges_and_limits(drive):
+    found = parse_variable("equidistant_offset", drive)
+    assert (found.path, found.low, found.high) == ("disc.equidistant_offset", 0.075, pytest.approx(0.225))
+    assert parse_variable("disc.thickness=10:14 ", drive).high == 14.0
+    assert parse_variable("load.torque=100 N m:200 N m", drive).low == 1e5
+    for text, message in (
+        ("beauty", "is not a field"),
+        ("number_of_pins", "give the whole path"),
+        ("direction", "not a single quantity"),
+        ("pin_hole", "needs a range"),
+        ("thickness=2:1", "low less than high"),
+        ("thickness=2", "write the range"),
+    ):
+        with pytest.raises(DriveError, match=message):
+            parse_variable(text, drive)
+    assert parse_limit("min_backlash_wheel >= 8 arcmin").value == pytest.approx(8.0 / 60.0 * np.pi / 180.0)
+    for text, message in (
+        ("max_pin_load < 3 N", "write it as"),
+        ("beauty <= 3", "is no quantity"),
+        ("max_pin_load <= 3 mm", "N"),
+    ):
+        with pytest.raises(DriveError, match=message):
+            parse_limit(text)
+
+
+def test_models_of_one_drive_serve_the_optimiser(drive):
+    """A model that is built for one drive at a time (finite-element coefficients are) gives what the batch gives."""
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
+    drives = [drive, with_fields(drive, {"disc.equidistant_offset": 0.16})]
+    alone = batch_analysis(problem, 5, lambda one, positions: HalfSpaceCompliance.of_drive(one[0]), together=False)
+    np.testing.assert_allclose(alone(drives), batch_analysis(problem, 5)(drives), rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_optimum_of_the_drive_beats_it_within_the_limit(drive):
+    """By the batch solver: less transmission error, the backlash kept, and the re-run drive says the same."""
+    limits = (parse_limit("max_pin_pressure_mid <= 1500 MPa"), parse_limit("min_backlash_wheel >= 8 arcmin"))
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("ptp_transmission_error",), limits=limits)
+    analysis = batch_analysis(problem, 13)
+    found = search(problem, analysis, generations=6)
+    best = found.values[found.best]
+    assert best[0] < 0.9 * found.start[0]
+    assert best[1] <= 1500.0
+    assert best[2] >= limits[1].value
+    np.testing.assert_allclose(analysis([found.drive(found.best)])[0], best, rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_commands_write_their_files(tmp_path, capsys):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    assert run(sweep, path, "--out", tmp_path / "sweep") == 0
+    assert (tmp_path / "sweep" / "figures" / "responses.png").stat().st_size > 10_000
+    words = ["paper", "--case", "CS-6", "--samples", 300, "--positions", 6, "--seed", 1]
+    assert run(tolerance, *words, "--out", tmp_path / "t") == 0
+    text = capsys.readouterr().out
+    assert "300 samples × 6 positions" in text
+    assert "cyclo run" in text
+    assert (tmp_path / "t" / "figures" / "distributions.png").exists()
+    assert (tmp_path / "t" / "figures" / "sensitivity.svg").exists()
+    assert run(tolerance, *words, "--out", tmp_path / "s", "--sample", 5) == 0
+    written = load_drive(tmp_path / "s" / "samples" / "sample_00000005.toml").cases["nominal"]
+    assert read_field(written, "pin_wheel.pin_errors.radial.0") != 0.0
+    assert run(curves, "paper", "--case", "CS-6", "--turns", 14, "--speed", 1500, "--out", tmp_path / "c") == 0
+    assert "million turns" in capsys.readouterr().out
+    assert len(list((tmp_path / "c" / "figures").glob("*.png"))) == 3
+    words = ["paper", "--case", "CS-3", "--vary", "equidistant_offset=0.12:0.2", "shifting_offset", "--positions", 6]
+    aims = ["--minimise", "ptp_transmission_error", "max_pin_pressure_mid", "--generations", 2]
+    assert run(optimise, *words, *aims, "--out", tmp_path / "o") == 0
+    assert (tmp_path / "o" / "figures" / "pareto.png").exists()
+    best = load_drive(tmp_path / "o" / "optimum.toml").cases["nominal"]
+    assert 0.12 <= best.disc.equidistant_offset <= 0.2
+
+
+def test_wrong_options_are_refused(tmp_path):
+    for module, words, message in (
+        (tolerance, ["paper", "--samples", 0], "--samples = 0: must be from 1"),
+        (tolerance, ["paper", "--positions", 0], "--positions = 0"),
+        (tolerance, ["paper", "--workers", 0, "--out", tmp_path], "--workers = 0: must be from 1"),
+        (tolerance, ["paper", "--workers", 2, "--scheduler", "tcp://x:1", "--out", tmp_path], "give one of them"),
+        (tolerance, ["paper", "--seed", -1], "--seed = -1"),
+        (tolerance, ["paper", "--case", "CS-9"], "CS-9"),
+        (tolerance, ["paper", "--quantities", "beauty"], "is no quantity"),
+        (
+            tolerance,
+            ["paper", "--sample", 10, "--samples", 10, "--out", tmp_path],
+            "--sample = 10: must be from 0 to 9",
+        ),
+        (optimise, ["paper", "--vary", "thickness", "--minimise", "beauty"], "give one or two of"),
+        (curves, ["paper", "--pressure-limit", 0], "--pressure-limit = 0"),
+    ):
+        with pytest.raises(DriveError, match=message):
+            run(module, *words)
+
+
+def test_replacing_fields_keeps_the_rest(drive):
+    changed = with_fields(drive, {"disc.number_of_discs": 2})
+    assert changed.disc.torque_share == 0.5
+    assert changed.pin_wheel is drive.pin_wheel or changed.pin_wheel == drive.pin_wheel

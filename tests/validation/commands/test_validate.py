@@ -1,0 +1,87 @@
+"""The command: exit status, messages, wrong input."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+
+import pytest
+
+import validation.study
+from ltca.errors import CycloError
+from validation.commands import validate
+from validation.compare.finite_element_positions import Settings
+from validation.rows import failed_rows
+from validation.study import plan_study
+
+
+def run(*words):
+    parser = argparse.ArgumentParser()
+    validate.configure(parser)
+    return validate.execute(parser.parse_args(words))
+
+
+def keep(rows, passed):
+    return tuple(row for row in rows if row.passed is passed)
+
+
+@pytest.mark.parametrize("status", [0, 1])
+def test_a_failed_row_makes_the_exit_status_one(status, small_study, tmp_path, monkeypatch, capsys):
+    rows = keep(small_study.rows, True)
+    if status:
+        rows += (replace(rows[0], quantity="broken figure", difference=1.0, limit=0.1),)
+    study = replace(small_study, rows=rows)
+    monkeypatch.setattr(validation.study, "run_study", lambda plan, folder, step, say: study)
+    assert run("paper", "--out", str(tmp_path)) == status
+    out = capsys.readouterr().out
+    assert ("FAILED" in out) == bool(status)
+    assert ("broken figure" in out) == bool(status)
+    assert {path.name for path in tmp_path.iterdir()} == {"report.html", "validation.json", "rows.csv"}
+    assert ("fail their limit" in (tmp_path / "report.html").read_text(encoding="utf-8")) == bool(status)
+
+
+def test_the_small_study_fails_where_it_should(small_study):
+    """Full loads 1 % larger than the half-space's: fe without coefficients is far from that, and rows say so."""
+    failed = failed_rows(small_study.rows)
+    assert failed
+    assert {row.model for row in failed} == {"fe"}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["paper", "--case", "CS-9"], "CS-9"),
+        (["paper", "--size", "0"], "--size"),
+        (["paper", "--size", "nan"], "--size"),
+        (["paper", "--angles", "ten"], "--angles"),
+        (["nowhere.toml"], "nowhere.toml"),
+    ],
+)
+def test_wrong_input_is_one_error(words, message, tmp_path):
+    with pytest.raises(CycloError, match=message):
+        run(*words, "--out", str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+
+
+def test_out_must_not_be_a_file(tmp_path):
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    with pytest.raises(CycloError, match="is a file"):
+        run("paper", "--out", str(tmp_path / "file"))
+
+
+def test_default_plan(paper_cases):
+    from ltca.reading.drive_file import load_drive
+
+    file = load_drive("paper")
+    quick = plan_study(file, None, None, "quick", Settings())
+    full = plan_study(file, None, None, "full", Settings())
+    assert list(quick.drives) == list(full.drives) == ["CS-1", "CS-3", "CS-6"]
+    assert len(quick.crank_angles) == 2
+    # twelve angles over one period of the flank, 2π/13, end not included
+    assert len(full.crank_angles) == 12
+    period = 2.0 * 3.141592653589793 / 13.0
+    assert full.crank_angles[1] == pytest.approx(period / 12.0)
+    assert max(full.crank_angles) < period
+    chosen = plan_study(file, ["CS-2"], [0.1, 0.1], "quick", Settings())
+    assert list(chosen.drives) == ["CS-2"]
+    assert chosen.crank_angles == (0.1,)

@@ -1,0 +1,95 @@
+"""Finished positions are kept and used again; whatever does not fit is solved again. No finite elements here."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import validation.compare.finite_element_positions as kept
+from ltca.errors import ConvergenceError
+from validation.compare.finite_element_positions import Settings, solve_position
+
+ANGLE = 0.5
+
+
+def summary_of(drive, angle):
+    rng = np.random.default_rng(5)
+    content = {
+        "crank_angle_rad": angle, "wheel_angle_rad": -2e-3, "bearing_radial_N": 5e3, "bearing_tangential_N": 6.7e3,
+        "disc_displacement": {"x_mm": -0.01, "y_mm": -0.02, "rotation_rad": 4e-4},
+        "equilibrium_residual_N": 1e-10, "dof": 1234, "seconds": 3.25,
+    }  # fmt: skip
+    counts = {"pin": 14, "pin_shaft": 8, "roller": 11}
+    for name in ("pin_load", "pin_shaft_load", "roller_load_outer", "roller_load_inner"):
+        count = counts[name.split("_load")[0]]
+        pressure = name.replace("load", "pressure_max")
+        for key in (f"{name}_N", f"{pressure}_MPa", f"{name.replace('load', 'half_width')}_mm"):
+            content[key] = rng.uniform(0.0, 3e3, count).tolist()
+    return content
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Replace the solver by one that counts its calls."""
+    calls = []
+
+    def solve(drive, crank_angle, **options):
+        calls.append((crank_angle, options["scale"], options["state"]))
+        return drive, crank_angle
+
+    monkeypatch.setattr(kept, "solve_drive", solve)
+    monkeypatch.setattr(kept, "summarise", lambda solution: summary_of(*solution))
+    return calls
+
+
+def test_a_finished_position_is_not_solved_again(solved, paper_cases, tmp_path):
+    drive = paper_cases["CS-1"]
+    first = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    again = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    assert len(solved) == 1
+    assert first.seconds == again.seconds == 3.25
+    for kind, own in first.answer.kinds.items():
+        np.testing.assert_array_equal(own.load, again.answer.kinds[kind].load)
+    # e-frame: (x + iy) e^(−iφ)
+    along = complex(-0.01, -0.02) * np.exp(-1j * ANGLE)
+    assert first.answer.disc_radial == pytest.approx(along.real)
+    assert first.answer.disc_tangential == pytest.approx(along.imag)
+
+
+def test_another_drive_angle_or_setting_is_another_file(solved, paper_cases, tmp_path, vary):
+    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+    solve_position(paper_cases["CS-1"], "CS-1", ANGLE + 1e-6, tmp_path, Settings())
+    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings(size=2.0))
+    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings(plane="stress"))
+    solve_position(paper_cases["CS-3"], "CS-3", ANGLE, tmp_path, Settings())
+    solve_position(vary(disc={"thickness": 12.0}), "CS-1", ANGLE, tmp_path, Settings())
+    assert len(solved) == 6
+    assert len(list(tmp_path.glob("*.json"))) == 6
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": 1}', "another version"])
+def test_damaged_or_foreign_files_are_solved_again(damage, solved, paper_cases, tmp_path):
+    drive = paper_cases["CS-1"]
+    solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    path = next(tmp_path.glob("*.json"))
+    text = path.read_text(encoding="utf-8")
+    if damage == "another version":
+        content = json.loads(text)
+        content["key"]["version"] = "0.0.0"
+        damage = json.dumps(content)
+    path.write_text(damage, encoding="utf-8")
+    solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    assert len(solved) == 2
+    assert path.read_text(encoding="utf-8") == text
+
+
+def test_a_failed_solution_leaves_nothing(monkeypatch, paper_cases, tmp_path):
+    def fail(drive, crank_angle, **options):
+        raise ConvergenceError("no", [1.0])
+
+    monkeypatch.setattr(kept, "solve_drive", fail)
+    with pytest.raises(ConvergenceError):
+        solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+    assert not list(tmp_path.iterdir())

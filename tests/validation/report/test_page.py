@@ -1,0 +1,76 @@
+"""The page: whole in itself, honest about failures, the same from the same study."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import pytest
+
+from validation.report.page import write_report
+
+
+def embedded(text):
+    found = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.S)
+    return json.loads(found.group(1).replace("<\\/", "</"))
+
+
+def test_nothing_is_loaded_from_elsewhere(small_report):
+    text = small_report.read_text(encoding="utf-8")
+    # the name space of SVG is an identifier, nothing that is fetched
+    addresses = set(re.findall(r"https?://[^\s\"'<>]+", text)) - {"http://www.w3.org/2000/svg"}
+    assert not addresses
+    for attribute in re.findall(r'\b(?:src|href)="([^"]*)"', text):
+        assert attribute.startswith(("data:", "#")), attribute
+    assert "@import" not in text
+    assert "url(" not in text
+
+
+def test_the_page_knows_every_position(small_report, small_study):
+    data = embedded(small_report.read_text(encoding="utf-8"))
+    assert [(p["case"], p["angle"]) for p in data["positions"]] == [
+        (case, angle) for case in small_study.plan.drives for angle in small_study.plan.crank_angles
+    ]
+    first = data["positions"][0]
+    loads = small_study.compared["CS-1"][0].full.answer.kinds["pin"].load
+    drawn = {c["name"]: c["models"]["full FE"][0] for c in first["contacts"]}
+    for number in loads.nonzero()[0]:
+        assert drawn[f"pin {number}"] == pytest.approx(loads[number], rel=1e-4)
+    assert len(data["drives"]["CS-1"]["outline"]) == 13 * 36
+
+
+def test_contacts_lie_on_the_parts_and_push_on_the_disc(small_report):
+    """Distance of contact and part centre is the radius; forces and bearing force balance as drawn."""
+    data = embedded(small_report.read_text(encoding="utf-8"))
+    for position in data["positions"]:
+        centres = {"pin": position["pins"], "roller_outer": position["rollers"], "shaft_pin": position["shafts"]}
+        total = 0j
+        for contact in position["contacts"]:
+            if contact["kind"] == "roller_inner":
+                continue
+            number = int(re.search(r"\d+", contact["name"]).group())
+            x, y, radius = centres[contact["kind"]][number]
+            at, to = complex(*contact["at"]), complex(*contact["to"])
+            assert abs(at - complex(x, y)) == pytest.approx(radius, abs=2e-4)  # places have four digits
+            assert abs(to) == pytest.approx(1.0, abs=2e-4)
+            total += to * contact["models"]["half-space"][0]
+        # The disc is in balance: directions have four digits, and loads of some 10 kN in sum
+        assert abs(total) < 5.0
+
+
+def test_failures_show(small_study, tmp_path):
+    good = tuple(row for row in small_study.rows if row.passed)
+    bad = replace(good[0], quantity="a <broken> figure", difference=9.0, limit=0.1)
+    text = write_report(replace(small_study, rows=(*good, bad)), tmp_path / "bad.html").read_text(encoding="utf-8")
+    assert "1 of" in text
+    assert "fail their limit" in text
+    assert "a &lt;broken&gt; figure" in text
+    assert '<tr class="failed">' in text
+    fine = write_report(replace(small_study, rows=good), tmp_path / "good.html").read_text(encoding="utf-8")
+    assert '<tr class="failed">' not in fine
+
+
+def test_same_study_same_page(small_study, small_report, tmp_path):
+    again = write_report(small_study, tmp_path / "again.html")
+    assert again.read_bytes() == small_report.read_bytes()

@@ -1,0 +1,95 @@
+"""Every chosen position answered by full finite elements and by each compliance model, and their differences."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.compliance.coefficients import Boundary, InfluenceCoefficients
+from ltca.drive.parts import Drive
+from validation.compare.comparison import Kind, PositionAnswer, PositionDifference, compare_positions
+from validation.compare.finite_element_positions import FullPosition
+from validation.compare.model_positions import MODELS, answers_of
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparedPosition:
+    """One position in all models.
+
+    Attributes
+    ----------
+    drive : Drive
+        In its case.
+    full : FullPosition
+        The reference.
+    answers : dict of str to PositionAnswer
+        By compliance model.
+    differences : dict of str to PositionDifference
+        Model less full solution.
+    station_distance : dict of str to array
+        By kind, how far each contact on the disc lies from the nearest station of the coefficients, in spacings
+        (0 on a station, 0.5 midway).
+    """
+
+    drive: Drive
+    full: FullPosition
+    answers: dict[str, PositionAnswer]
+    differences: dict[str, PositionDifference]
+    station_distance: dict[Kind, FloatArray]
+
+
+def compare_case(
+    drive: Drive, positions: list[FullPosition], coefficients: InfluenceCoefficients
+) -> list[ComparedPosition]:
+    """Answer the positions of one case with all models and compare.
+
+    Parameters
+    ----------
+    drive : Drive
+        In the case.
+    positions : list of FullPosition
+        Full solutions.
+    coefficients : InfluenceCoefficients
+        Of the drive's shape.
+
+    Returns
+    -------
+    list of ComparedPosition
+        In the order of `positions`.
+    """
+    angles = np.array([position.crank_angle for position in positions])
+    analyses = {model: analyse(drive, angles, compliance=model, coefficients=coefficients) for model in MODELS}
+    answers = {model: answers_of(analysis) for model, analysis in analyses.items()}
+    distances = _station_distances(analyses["fe"], coefficients)
+    return [
+        ComparedPosition(
+            drive=drive,
+            full=full,
+            answers={model: found[row] for model, found in answers.items()},
+            differences={model: compare_positions(found[row], full.answer) for model, found in answers.items()},
+            station_distance={kind: values[row] for kind, values in distances.items()},
+        )
+        for row, full in enumerate(positions)
+    ]
+
+
+def _station_distances(analysis: LoadedAnalysis, coefficients: InfluenceCoefficients) -> dict[Kind, FloatArray]:
+    response, rotation = analysis.full.response, analysis.full.pose[:, 2, None]
+    # The approach of a hole grows when the disc moves along the line of its contact: its gradient is that direction.
+    across = np.arctan2(response.holes.gradient[..., 1], response.holes.gradient[..., 0]) - rotation
+    bore = np.angle(response.rollers.outer_direction) - rotation
+
+    def distance(parameter: FloatArray, boundary: Boundary) -> FloatArray:
+        place = parameter * boundary.count / (2.0 * np.pi)
+        return np.asarray(np.abs(place - np.round(place)))
+
+    return {
+        "pin": distance(response.flank.parameter, coefficients.flank),
+        "roller_outer": distance(bore, coefficients.bore),
+        "shaft_pin": distance(across, coefficients.holes[0]),
+    }

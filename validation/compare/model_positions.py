@@ -1,0 +1,92 @@
+"""The LTCA's answer to the same positions, with each compliance model, in the form of `validation.compare.comparison`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import Compliance, LoadedAnalysis, analyse
+from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.drive.parts import Drive
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.plane_strain import PlaneContactLaw
+from ltca.laws.series import SeriesLaw, approach_at_load
+from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
+
+FloatArray = NDArray[np.float64]
+
+MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
+
+
+def answer_positions(
+    drive: Drive,
+    crank_angles: FloatArray,
+    compliance: Compliance,
+    coefficients: InfluenceCoefficients | None = None,
+) -> list[PositionAnswer]:
+    """Analyse positions with one compliance model.
+
+    Parameters
+    ----------
+    drive : Drive
+        In its case.
+    crank_angles : array, shape (positions,)
+        rad.
+    compliance : {"half-space", "fe", "hybrid"}
+        The model.
+    coefficients : InfluenceCoefficients, optional
+        What ``fe`` and ``hybrid`` need.
+
+    Returns
+    -------
+    list of PositionAnswer
+        One for each angle.
+
+    Raises
+    ------
+    CycloError
+        As `ltca.analysis.loaded_analysis.analyse`.
+    """
+    return answers_of(analyse(drive, crank_angles, compliance=compliance, coefficients=coefficients))
+
+
+def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
+    """Return an analysis position by position."""
+    full, response, pressures = analysis.full, analysis.full.response, analysis.pressures
+    displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * full.crank_angle)
+    hole_pressure, hole_width = _hole_contacts(analysis)
+    columns: dict[Kind, tuple[FloatArray, FloatArray, FloatArray]] = {
+        "pin": (response.pin_load, pressures.pins.mid, pressures.pins.half_width),
+        "roller_outer": (response.rollers.outer_load, pressures.outer.mid, pressures.outer.half_width),
+        "roller_inner": (response.rollers.inner_load, pressures.inner.mid, pressures.inner.half_width),
+        "shaft_pin": (response.hole_load, hole_pressure, hole_width),
+    }
+    return [
+        PositionAnswer(
+            kinds={
+                kind: KindAnswer(load=load[row], pressure=pressure[row], half_width=width[row])
+                for kind, (load, pressure, width) in columns.items()
+            },
+            bearing_radial=float(analysis.bearing_radial[row]),
+            bearing_tangential=float(analysis.bearing_tangential[row]),
+            wheel_angle=float(full.pose[row, 3]),
+            disc_radial=float(displacement[row].real),
+            disc_tangential=float(displacement[row].imag),
+            disc_rotation=float(full.pose[row, 2]),
+        )
+        for row in range(full.crank_angle.size)
+    ]
+
+
+def _hole_contacts(analysis: LoadedAnalysis) -> tuple[FloatArray, FloatArray]:
+    """Return pressures and half-widths of shaft pins: the near field of the model at the load found."""
+    load = analysis.full.response.hole_load
+    model = analysis.model
+    if not (isinstance(model, CoupledCompliance) and isinstance(model.hole_law, SeriesLaw)):
+        return np.full(load.shape, np.nan), np.full(load.shape, np.nan)
+    law, radius = model.hole_law.contact, np.broadcast_to(model.hole_radius, load.shape)
+    if not isinstance(law, PlaneContactLaw | LineContactLaw):
+        raise TypeError(f"the near field of a hole is a {type(law).__name__}, which knows no pressure")
+    approach, _ = approach_at_load(law, load, radius)
+    return law.mid_pressure(approach, radius), law.half_width(approach, radius)

@@ -1,0 +1,78 @@
+"""Level 4: the derived influence coefficients by laws, closed forms and the size of their mesh."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fem.coefficients.laws import Check, check_coefficients
+from validation.rows import Row
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+HALVED_LIMIT = 3e-3
+
+
+def check_file(dataset: xr.Dataset, case: str, plane: str) -> list[Row]:
+    """Return the checks of one set of coefficients as rows.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        From `fem.coefficients.dataset.derive_coefficients`.
+    case, plane : str
+        Case whose disc it is, and its plane state, for the rows.
+    """
+    return [_row(check, case, f"coefficients, plane {plane}") for check in check_coefficients(dataset)]
+
+
+def _row(check: Check, case: str, model: str) -> Row:
+    """Return a check as a row: bounds on both sides about their middle, else what the value is short or over."""
+    if math.isfinite(check.highest):
+        middle = 0.0 if check.lowest == 0.0 else 0.5 * (check.lowest + check.highest)
+        difference, limit = check.value - middle, check.highest - middle
+        reference: float | None = middle
+    else:
+        difference = check.value if math.isnan(check.value) else max(0.0, check.lowest - check.value)
+        limit, reference = 0.0, check.lowest
+    return Row(
+        level=4,
+        quantity=check.name,
+        value=check.value,
+        reference=reference,
+        unit="",
+        difference=difference,
+        limit=limit,
+        reason=check.reason,
+        case=case,
+        model=model,
+        against="law or closed form",
+    )
+
+
+def halved_mesh_row(finer: xr.Dataset, case: str) -> Row:
+    """Return what a mesh of half the size changes, from coefficients derived on it.
+
+    Parameters
+    ----------
+    finer : Dataset
+        Derived with half the element size; its own convergence estimate compares with the default one.
+    case : str
+        Whose disc.
+    """
+    change = float(finer.attrs["convergence_estimate"])
+    return Row(
+        level=4,
+        quantity="change by a mesh of half the size",
+        value=change,
+        reference=0.0,
+        unit="",
+        difference=change,
+        limit=HALVED_LIMIT,
+        reason="of the largest entry, rigid motions projected out; quadratic elements, four to five times less than "
+        "the step before",
+        case=case,
+        model="coefficients, plane strain",
+        against="half the element size",
+    )

@@ -1,0 +1,279 @@
+"""Level 6: how much the flexible disc changes what a designer reads off, and when half-spaces are good enough."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.drive.parts import Drive
+from validation.compare.compared_positions import ComparedPosition
+from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
+from validation.compare.model_positions import MODELS
+from validation.rows import Row, rounded
+
+FloatArray = NDArray[np.float64]
+
+TURN_POSITIONS = 72
+TORQUES = (0.25, 0.5, 1.0, 1.5)
+SAFE = 0.05
+"""A largest load is taken as good enough for a design within this part: what materials and tolerances scatter by."""
+
+NAMES: dict[str, str] = {
+    "pin": "largest pin load",
+    "roller_outer": "largest roller load",
+    "shaft_pin": "largest pin-shaft load",
+}
+CAUSE = "what the rigid disc and uncoupled contacts leave out: informs only"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TurnFigures:
+    """What a designer reads off one turn with one model.
+
+    Attributes
+    ----------
+    pin_load, roller_load, shaft_load : float
+        Largest loads, N.
+    pin_pressure, roller_pressure : float
+        Largest pressures at mid-width, MPa.
+    wind_up : float
+        Mean wheel angle with the backlash that is taken up, seconds of arc, positive in the sense of the load.
+    elastic : float
+        Mean part of it between the light torque and the torque, seconds of arc.
+    swing : float
+        Wheel angle peak to peak, seconds of arc.
+    """
+
+    pin_load: float
+    roller_load: float
+    shaft_load: float
+    pin_pressure: float
+    roller_pressure: float
+    wind_up: float
+    elastic: float
+    swing: float
+
+
+TITLES: dict[str, tuple[str, str]] = {
+    "pin_load": ("largest pin load over a turn", "N"),
+    "roller_load": ("largest roller load over a turn", "N"),
+    "shaft_load": ("largest pin-shaft load over a turn", "N"),
+    "pin_pressure": ("largest flank pressure at mid-width over a turn", "MPa"),
+    "roller_pressure": ("largest roller pressure at mid-width over a turn", "MPa"),
+    "wind_up": ("mean wind-up of the wheel, backlash included", '"'),
+    "elastic": ("mean wind-up of the wheel from the light torque on", '"'),
+    "swing": ("transmission error, peak to peak over a turn", '"'),
+}
+
+
+def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
+    """Return the figures of one turn."""
+    response, pressures = analysis.full.response, analysis.pressures
+    wheel, light = (state.pose[:, 3] * ARCSECONDS for state in (analysis.full, analysis.light))
+    return TurnFigures(
+        pin_load=float(np.max(response.pin_load)),
+        roller_load=float(np.max(response.rollers.outer_load)),
+        shaft_load=float(np.max(response.hole_load)),
+        pin_pressure=float(np.max(pressures.pins.mid)),
+        roller_pressure=float(max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))),
+        wind_up=float(np.mean(-wheel)) * analysis.drive.driving_sign,
+        elastic=float(np.mean(light - wheel)) * analysis.drive.driving_sign,
+        swing=float(np.ptp(wheel)),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaseMeaning:
+    """One case, all models.
+
+    Attributes
+    ----------
+    turn : dict of str to TurnFigures
+        By model, at the drive's torque.
+    by_torque : dict of float to dict of str to float
+        Change of the three largest loads from half-space to ``fe``, by multiple of the torque.
+    """
+
+    turn: dict[str, TurnFigures]
+    by_torque: dict[float, dict[str, float]]
+
+
+def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> CaseMeaning:
+    """Run one turn with every model and several torques with two.
+
+    Parameters
+    ----------
+    drive : Drive
+        In the case.
+    coefficients : InfluenceCoefficients
+        Of its disc.
+    """
+    angles = 2.0 * np.pi * np.arange(TURN_POSITIONS) / TURN_POSITIONS
+    turn: dict[str, TurnFigures] = {
+        model: turn_figures(analyse(drive, angles, compliance=model, coefficients=coefficients)) for model in MODELS
+    }
+    by_torque = {}
+    for multiple in TORQUES:
+        torque = multiple * drive.load.torque
+        half, fe = (
+            turn_figures(analyse(drive, angles, torque, compliance=model, coefficients=coefficients))
+            for model in (MODELS[0], MODELS[1])
+        )
+        by_torque[multiple] = {
+            name: getattr(fe, name) / getattr(half, name) - 1.0 for name in ("pin_load", "roller_load", "shaft_load")
+        }
+    return CaseMeaning(turn=turn, by_torque=by_torque)
+
+
+def meaning_rows(case: str, meaning: CaseMeaning) -> list[Row]:
+    """Return the informing rows of one case over a turn: half-space and hybrid against ``fe``."""
+    reference = meaning.turn["fe"]
+    rows = []
+    for model in ("half-space", "hybrid"):
+        for name, (title, unit) in TITLES.items():
+            value, other = float(getattr(meaning.turn[model], name)), float(getattr(reference, name))
+            rows.append(
+                Row(
+                    level=6,
+                    quantity=title,
+                    value=value,
+                    reference=other,
+                    unit=unit,
+                    difference=value / other - 1.0,
+                    limit=None,
+                    reason=CAUSE if model == "half-space" else "finite length at the contacts: informs only",
+                    case=case,
+                    model=model,
+                    against="fe",
+                )
+            )
+    for multiple, changes in meaning.by_torque.items():
+        for name, change in changes.items():
+            rows.append(
+                Row(
+                    level=6,
+                    quantity=f"{TITLES[name][0]}, change from half-space to fe at {multiple:g} of the torque",
+                    value=change,
+                    reference=None,
+                    unit="",
+                    difference=change,
+                    limit=None,
+                    reason=CAUSE,
+                    case=case,
+                    model="half-space",
+                    against="fe",
+                )
+            )
+    return rows
+
+
+def full_solution_changes(compared: list[ComparedPosition]) -> dict[str, float]:
+    """Return by how much the full solution changes the largest loads over the positions of a case, relative."""
+
+    def largest(answers: list[PositionAnswer], kind: Kind) -> float:
+        return max(float(np.max(answer.kinds[kind].load)) for answer in answers)
+
+    half = [position.answers["half-space"] for position in compared]
+    full = [position.full.answer for position in compared]
+    kinds: dict[str, Kind] = {"pin_load": "pin", "roller_load": "roller_outer", "pin_shaft_load": "shaft_pin"}
+    return {name: largest(full, kind) / largest(half, kind) - 1.0 for name, kind in kinds.items()}
+
+
+def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]:
+    """Return the informing rows of one case: full solution against half-space at the chosen angles."""
+    rows = []
+    for name, change in full_solution_changes(compared).items():
+        rows.append(
+            Row(
+                level=6,
+                quantity=f"largest {name.replace('_', ' ')} at the chosen angles, change from half-space to full FE",
+                value=change,
+                reference=None,
+                unit="",
+                difference=change,
+                limit=None,
+                reason=CAUSE,
+                case=case,
+                model="half-space",
+                against="full FE",
+            )
+        )
+    wheel = [
+        (position.answers["half-space"].wheel_angle, position.full.answer.wheel_angle, position.full.crank_angle)
+        for position in compared
+    ]
+    half, full, angle = max(wheel, key=lambda item: abs(item[0] / item[1] - 1.0))
+    rows.append(
+        Row(
+            level=6,
+            quantity="wind-up at the angle where it differs most",
+            value=abs(half) * ARCSECONDS,
+            reference=abs(full) * ARCSECONDS,
+            unit='"',
+            difference=half / full - 1.0,
+            limit=None,
+            reason=CAUSE,
+            case=case,
+            crank_angle=angle,
+            model="half-space",
+            against="full FE",
+        )
+    )
+    return rows
+
+
+def judge_half_space(meanings: Mapping[str, CaseMeaning]) -> list[str]:
+    """Return what the figures say about when half-spaces are good enough, one sentence each."""
+    names = {"pin_load": "pin", "roller_load": "roller", "shaft_load": "pin-shaft"}
+    sentences = []
+    for name, word in names.items():
+        changes = {
+            case: getattr(item.turn["fe"], name) / getattr(item.turn["half-space"], name) - 1.0
+            for case, item in meanings.items()
+        }
+        low, high = min(changes.values()), max(changes.values())
+        safe = [case for case, change in changes.items() if abs(change) <= SAFE]
+        under = [case for case, change in changes.items() if change > SAFE]
+        over = [case for case, change in changes.items() if change < -SAFE]
+        verdict = [
+            f"within {100.0 * SAFE:g} % in {', '.join(safe)}" if safe else "",
+            f"too low, so unsafe, in {', '.join(under)}" if under else "",
+            f"too high, so on the safe side, in {', '.join(over)}" if over else "",
+        ]
+        sentences.append(
+            f"Largest {word} load over a turn: the disc's flexibility changes it by {_percent(low)} to {_percent(high)}; "
+            f"half-spaces give it {'; '.join(part for part in verdict if part)}."
+        )
+    wind = [item.turn["half-space"].elastic / item.turn["fe"].elastic - 1.0 for item in meanings.values()]
+    sentences.append(
+        f"Mean wind-up from the light torque on: half-spaces differ from fe by {_percent(min(wind))} to "
+        f"{_percent(max(wind))}; what they miss is flexibility of the bodies, so stiffness should not be taken from them."
+    )
+    torques = sorted({multiple for item in meanings.values() for multiple in item.by_torque})
+    for multiple in torques:
+        worst = max(
+            (abs(change), case, name, change)
+            for case, item in meanings.items()
+            for name, change in item.by_torque.get(multiple, {}).items()
+        )
+        sentences.append(
+            f"At {multiple:g} times the torque the largest change of a largest load is {_percent(worst[3])} "
+            f"({names[worst[2]]}, {worst[1]})."
+        )
+    return sentences
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:+.1f} %".replace("-", "−")
+
+
+def meaning_content(meaning: CaseMeaning) -> dict[str, dict[str, float | None]]:
+    """Return the figures of one turn by model, for the report."""
+    return {
+        model: {name: rounded(getattr(figures, name)) for name in TITLES} for model, figures in meaning.turn.items()
+    }

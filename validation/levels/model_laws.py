@@ -1,0 +1,222 @@
+"""Level 5, without full solutions: what the compliance models owe each other, and what the plane-stress body changes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.drive.parts import Drive
+from ltca.laws.series import approach_at_load
+from validation.compare.comparison import ARCSECONDS, compare_positions
+from validation.compare.model_positions import answers_of
+from validation.rows import Row, positive_row
+
+FloatArray = NDArray[np.float64]
+
+WIDTHS = (1.0, 4.0, 16.0)
+
+
+def compare_models(
+    drive: Drive,
+    case: str,
+    crank_angles: FloatArray,
+    coefficients: InfluenceCoefficients,
+    plane_stress: InfluenceCoefficients,
+) -> list[Row]:
+    """Return rows on the models alone.
+
+    Parameters
+    ----------
+    drive : Drive
+        In the case.
+    case : str
+        Its name.
+    crank_angles : array
+        rad.
+    coefficients, plane_stress : InfluenceCoefficients
+        Of the drive's shape, body part in plane strain and in plane stress.
+    """
+    return [
+        *_uncoupled(drive, case, crank_angles),
+        *_wide(drive, case, crank_angles, coefficients),
+        *_plane_stress(drive, case, crank_angles, coefficients, plane_stress),
+    ]
+
+
+def _uncoupled(drive: Drive, case: str, crank_angles: FloatArray) -> list[Row]:
+    """Without a body part and without the holes' near field the hybrid is the paper's half-space model."""
+    half = analyse(drive, crank_angles)
+    hybrid = analyse(
+        drive, crank_angles, compliance="hybrid", coefficients=without_coupling(drive), hole_near_field=False
+    )
+    first, second = half.full.response, hybrid.full.response
+    pairs = (
+        (first.pin_load, second.pin_load),
+        (first.rollers.outer_load, second.rollers.outer_load),
+        (first.hole_load, second.hole_load),
+    )
+    worst = max(float(np.max(np.abs(a - b)) / np.max(a)) for a, b in pairs)
+    return [
+        Row(
+            level=5,
+            quantity="largest load difference of hybrid without body part from half-space",
+            value=worst,
+            reference=0.0,
+            unit="",
+            difference=worst,
+            limit=1e-8,
+            reason="the same laws by two routes; both balance to 1e-9 of the load or better",
+            case=case,
+            model="hybrid, C = 0",
+            against="half-space",
+        )
+    ]
+
+
+def widen(drive: Drive, coefficients: InfluenceCoefficients, width: float) -> tuple[Drive, InfluenceCoefficients]:
+    """Return a drive `width` times as thick under the same load by width, and its coefficients.
+
+    In plane strain every coefficient is inversely proportional to the thickness, so nothing has to be derived.
+    """
+    bearing, shaft, load = drive.crank_bearing, drive.pin_shaft, drive.load
+    wide = replace(
+        drive,
+        disc=replace(drive.disc, thickness=width * drive.disc.thickness),
+        crank_bearing=replace(bearing, roller_length=width * bearing.roller_length),
+        pin_shaft=replace(shaft, stiffness=width * shaft.stiffness),
+        load=replace(load, torque=width * load.torque, light_torque=width * load.light_torque),
+    )
+    scaled = replace(
+        coefficients,
+        thickness=width * coefficients.thickness,
+        disc=coefficients.disc / width,
+        pin=coefficients.pin / width,
+        roller=coefficients.roller / width,
+        race=coefficients.race / width,
+        disc_logarithm=coefficients.disc_logarithm / width,
+        pin_logarithm=coefficients.pin_logarithm / width,
+        roller_logarithm=coefficients.roller_logarithm / width,
+        race_logarithm=coefficients.race_logarithm / width,
+    )
+    return wide, scaled
+
+
+def pair_approaches(
+    drive: Drive,
+    coefficients: InfluenceCoefficients,
+    near_field: Literal["fe", "hybrid"],
+    crank_angle: float,
+    load: FloatArray,
+) -> FloatArray:
+    """Return how far wheel pins and flank approach each other under loads of their own alone, mm.
+
+    Near field and own body parts together: what no choice of datum between the two can change.
+    """
+    model = CoupledCompliance.of_drive(drive, coefficients, near_field)
+    angle = np.array([crank_angle])
+    flank = model.geometry.flank(angle, np.zeros((1, 4)))
+    rollers, holes = model.outer_radius.size, model.hole_radius.size
+    matrix = coefficients.disc_matrix(
+        flank.parameter,
+        np.linspace(0.0, 2.0 * np.pi, rollers, endpoint=False)[None, :],
+        np.zeros((1, holes)),
+        model.geometry.profile.flank(flank.parameter),
+        model.geometry.placement.bore_radius,
+    )
+    pins = flank.parameter.shape[1]
+    body = np.einsum("bii->bi", matrix)[0, :pins] + model.own.pin
+    near, _ = approach_at_load(model.pin_law, load, flank.effective_radius[0])
+    return np.asarray(near + body * load)
+
+
+def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: InfluenceCoefficients) -> list[Row]:
+    """The wider the drive the nearer half-spaces of finite length come to plane strain, like 1/ln width."""
+    angle = float(crank_angles[0])
+    fe = analyse(drive, crank_angles[:1], compliance="fe", coefficients=coefficients)
+    load = fe.full.response.pin_load[0]
+    loaded = np.flatnonzero(load > 0.05 * load.max())
+    gaps = []
+    for width in WIDTHS:
+        wide, scaled = widen(drive, coefficients, width)
+        plane = pair_approaches(wide, scaled, "fe", angle, width * load)[loaded]
+        finite = pair_approaches(wide, scaled, "hybrid", angle, width * load)[loaded]
+        gaps.append(finite / plane - 1.0)
+    worst = [float(gap[np.argmax(np.abs(gap))]) for gap in gaps]
+    rows = [
+        Row(
+            level=5,
+            quantity=f"approach of wheel pin and flank, width × {width:g}, worst pin",
+            value=gap,
+            reference=0.0,
+            unit="",
+            difference=gap,
+            limit=6e-3 if width == WIDTHS[-1] else None,
+            reason="relative; half-spaces of finite length tend to plane strain like 1/ln width: 0.6 % at sixteen times",
+            case=case,
+            crank_angle=angle,
+            model="hybrid",
+            against="fe",
+        )
+        for width, gap in zip(WIDTHS, worst, strict=True)
+    ]
+    falls = min(abs(first) - abs(second) for first, second in pairwise(worst))
+    rows.append(
+        positive_row(
+            5, "smallest fall of that difference from width to width", falls, "", "it tends to zero",
+            case=case, crank_angle=angle, model="hybrid", against="fe",
+        )
+    )  # fmt: skip
+    return rows
+
+
+def _plane_stress(
+    drive: Drive,
+    case: str,
+    crank_angles: FloatArray,
+    coefficients: InfluenceCoefficients,
+    plane_stress: InfluenceCoefficients,
+) -> list[Row]:
+    strain, stress = (
+        answers_of(analyse(drive, crank_angles, compliance="fe", coefficients=own))
+        for own in (coefficients, plane_stress)
+    )
+    rows = []
+    cause = "a thin disc with narrow walls lies between plane strain and plane stress (about 10 % softer): informs only"
+    for angle, first, second in zip(crank_angles.tolist(), strain, stress, strict=True):
+        apart = compare_positions(second, first)
+        kind, number, load = apart.worst_load
+        place = {"case": case, "crank_angle": angle, "model": "fe, body in plane stress", "against": "fe"}
+        rows += [
+            Row(
+                level=5,
+                quantity="load, worst contact",
+                value=float(second.kinds[kind].load[number]),
+                reference=float(first.kinds[kind].load[number]),
+                unit="N",
+                difference=load,
+                limit=None,
+                reason=cause,
+                contact=f"{kind.replace('_', ' ')} {number}",
+                **place,
+            ),
+            Row(
+                level=5,
+                quantity="wheel angle",
+                value=second.wheel_angle * ARCSECONDS,
+                reference=first.wheel_angle * ARCSECONDS,
+                unit='"',
+                difference=apart.wheel_angle,
+                difference_unit='"',
+                limit=None,
+                reason=cause,
+                **place,
+            ),
+        ]
+    return rows

@@ -1,0 +1,246 @@
+"""Level 5, position by position: each compliance model against the full finite-element solution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from validation.compare.compared_positions import ComparedPosition
+from validation.compare.comparison import (
+    ARCSECONDS,
+    KINDS,
+    LOADED_SHARE,
+    Kind,
+    PositionAnswer,
+    PositionDifference,
+    contact_name,
+)
+from validation.rows import Row
+
+LOAD_LIMIT, PRESSURE_LIMIT, WHEEL_LIMIT = 5e-3, 2e-2, 0.3
+INTERPOLATED_LIMIT = 1e-2
+BETWEEN_STATIONS = 0.25
+FULL = "full FE"
+
+REASONS = {
+    "load": "of the largest load of its kind; coefficients on meshes of their own, contacts as Hertz parabolas",
+    "pressure": "goes with the square root of the load, and a contact of 5 % may be off by 10 % of its own load",
+    "wheel": "seconds of arc; 0.06 % of the wind-up of the paper's drive",
+    "same": "contacts above 1 % of the largest are loaded in both or in neither",
+}
+CAUSES = {
+    "half-space": "contacts of half-spaces do not feel each other and the disc between them is rigid: informs only",
+    "hybrid": "half-spaces of finite length at the contacts, full FE is plane strain: informs only",
+}
+
+
+def compare_position_rows(compared: ComparedPosition) -> list[Row]:
+    """Return the rows of one position, all models.
+
+    Parameters
+    ----------
+    compared : ComparedPosition
+        The position.
+    """
+    rows: list[Row] = []
+    for model in compared.answers:
+        rows += _contact_rows(compared, model)
+        rows += _body_rows(compared, model)
+    return [*rows, _interpolation_row(compared)]
+
+
+class _Maker:
+    """Rows of one position and model."""
+
+    def __init__(self, compared: ComparedPosition, model: str) -> None:
+        self.case, self.angle, self.model = compared.full.case, compared.full.crank_angle, model
+
+    def row(
+        self,
+        quantity: str,
+        value: float,
+        reference: float | None,
+        unit: str,
+        difference: float,
+        limit: float,
+        reason: str,
+        *,
+        contact: str = "",
+        difference_unit: str = "",
+    ) -> Row:
+        bounded = self.model == "fe"
+        return Row(
+            level=5,
+            quantity=quantity,
+            value=value,
+            reference=reference,
+            unit=unit,
+            difference=difference,
+            difference_unit=difference_unit,
+            limit=limit if bounded else None,
+            reason=reason if bounded else CAUSES[self.model],
+            case=self.case,
+            crank_angle=self.angle,
+            contact=contact,
+            model=self.model,
+            against=FULL,
+        )
+
+
+def _contact_rows(compared: ComparedPosition, model: str) -> list[Row]:
+    make = _Maker(compared, model)
+    answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
+    rows = []
+    for kind in KINDS:
+        own, other, apart = answer.kinds[kind], reference.kinds[kind], difference.kinds[kind]
+        for number in np.flatnonzero((own.load > 0.0) | (other.load > 0.0)).tolist():
+            name = contact_name(kind, number)
+            rows.append(
+                make.row(
+                    "load", float(own.load[number]), float(other.load[number]), "N", float(apart.load[number]),
+                    LOAD_LIMIT, REASONS["load"], contact=name,
+                )
+            )  # fmt: skip
+            for quantity, ours, theirs, change, unit in (
+                ("peak pressure at mid-width", own.pressure, other.pressure, apart.pressure, "MPa"),
+                ("half-width", own.half_width, other.half_width, apart.half_width, "mm"),
+            ):
+                if np.isfinite(change[number]):
+                    rows.append(
+                        make.row(
+                            quantity, float(ours[number]), float(theirs[number]), unit, float(change[number]),
+                            PRESSURE_LIMIT, REASONS["pressure"], contact=name,
+                        )
+                    )  # fmt: skip
+    return rows
+
+
+def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
+    make = _Maker(compared, model)
+    answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
+    wheel, shaft = compared.drive.pin_wheel.pin_circle_radius, compared.drive.pin_shaft.pin_circle_radius
+    travel = WHEEL_LIMIT / ARCSECONDS * wheel
+    rms = max(kind.rms_load for kind in difference.kinds.values())
+    rows = [
+        make.row("load differences, root mean square, worst kind", rms, None, "", rms, LOAD_LIMIT, REASONS["load"]),
+        make.row(
+            "wheel angle", answer.wheel_angle * ARCSECONDS, reference.wheel_angle * ARCSECONDS, '"',
+            difference.wheel_angle, WHEEL_LIMIT, REASONS["wheel"], difference_unit='"',
+        ),
+        make.row(
+            "disc displacement", _length(answer), _length(reference), "µm", 1e3 * difference.disc_displacement,
+            1e3 * travel, "what 0.3″ of the wheel are at its pins; length of the difference, fitted to the bore",
+            difference_unit="µm",
+        ),
+        make.row(
+            "disc rotation", answer.disc_rotation * ARCSECONDS, reference.disc_rotation * ARCSECONDS, '"',
+            difference.disc_rotation, WHEEL_LIMIT * wheel / shaft,
+            "as the wheel's, at the shorter lever of the shaft pins", difference_unit='"',
+        ),
+        make.row(
+            "contacts loaded in one answer only", float(len(difference.missing)), 0.0, "",
+            float(len(difference.missing)), 0.0, REASONS["same"], contact=", ".join(difference.missing),
+            difference_unit="contacts",
+        ),
+        *_bearing_rows(make, answer, reference, difference),
+    ]  # fmt: skip
+    names: dict[Kind, str] = {"pin": "wheel pins", "roller_outer": "rollers", "shaft_pin": "shaft pins"}
+    for kind, name in names.items():
+        ours, theirs = answer.loaded(kind), reference.loaded(kind)
+        faint = _faint(answer, kind) + _faint(reference, kind)
+        rows.append(
+            make.row(
+                f"number of loaded {name}", float(ours), float(theirs), "", float(ours - theirs), float(faint),
+                "counted above 0.1 % of the largest load; those between that and 1 % may differ",
+                difference_unit="contacts",
+            )
+        )  # fmt: skip
+    return rows
+
+
+def _bearing_rows(
+    make: _Maker, answer: PositionAnswer, reference: PositionAnswer, difference: PositionDifference
+) -> list[Row]:
+    reason = "of the bearing force; a sum of roller loads"
+    return [
+        make.row("bearing force, radial", answer.bearing_radial, reference.bearing_radial, "N",
+                 difference.bearing_radial, LOAD_LIMIT, reason),
+        make.row("bearing force, tangential", answer.bearing_tangential, reference.bearing_tangential, "N",
+                 difference.bearing_tangential, LOAD_LIMIT, reason),
+    ]  # fmt: skip
+
+
+def _length(answer: PositionAnswer) -> float:
+    return 1e3 * float(np.hypot(answer.disc_radial, answer.disc_tangential))
+
+
+def _faint(answer: PositionAnswer, kind: Kind) -> int:
+    load = answer.kinds[kind].load
+    return int(np.count_nonzero((load > 0.0) & (load <= LOADED_SHARE * np.max(load))))
+
+
+def _interpolation_row(compared: ComparedPosition) -> Row:
+    """Return the worst load among contacts well between stations: nothing there was derived, all is interpolated."""
+    worst, name, ours, theirs = 0.0, "", 0.0, 0.0
+    for kind, distance in compared.station_distance.items():
+        apart = compared.differences["fe"].kinds[kind]
+        for number in np.flatnonzero((distance >= BETWEEN_STATIONS) & apart.compared).tolist():
+            if abs(apart.load[number]) >= abs(worst):
+                worst, name = float(apart.load[number]), contact_name(kind, number)
+                ours = float(compared.answers["fe"].kinds[kind].load[number])
+                theirs = float(compared.full.answer.kinds[kind].load[number])
+    return _Maker(compared, "fe").row(
+        "load, worst contact a quarter of a spacing or more from every station"
+        if name
+        else "load between stations (no contact there at this angle)",
+        ours,
+        theirs,
+        "N",
+        worst,
+        INTERPOLATED_LIMIT,
+        "of the largest load of its kind; interpolation of the smooth part by six stations",
+        contact=name,
+    )
+
+
+def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
+    """Return what one file for all clearance cases costs: worst load, pressure and wheel angle of ``fe`` on it.
+
+    Parameters
+    ----------
+    positions : list of ComparedPosition
+        Of one case with clearance, with the coefficients of the disc without any.
+    """
+    cause = "cyclo run derives one file for all clearance cases, whose disc has none: what that costs; informs only"
+    rows = []
+    for position in positions:
+        difference = position.differences["fe"]
+        kind, number, load = difference.worst_load
+        pressed, place, pressure = difference.worst_pressure
+        own, other = position.answers["fe"], position.full.answer
+        for quantity, contact, ours, theirs, unit, change, change_unit in (
+            ("load, worst contact", contact_name(kind, number), own.kinds[kind].load[number],
+             other.kinds[kind].load[number], "N", load, ""),
+            ("peak pressure at mid-width, worst contact", contact_name(pressed, place),
+             own.kinds[pressed].pressure[place], other.kinds[pressed].pressure[place], "MPa", pressure, ""),
+            ("wheel angle", "", own.wheel_angle * ARCSECONDS, other.wheel_angle * ARCSECONDS, '"',
+             difference.wheel_angle, '"'),
+        ):  # fmt: skip
+            rows.append(
+                Row(
+                    level=5,
+                    quantity=quantity,
+                    value=float(ours),
+                    reference=float(theirs),
+                    unit=unit,
+                    difference=change,
+                    difference_unit=change_unit,
+                    limit=None,
+                    reason=cause,
+                    case=position.full.case,
+                    crank_angle=position.full.crank_angle,
+                    contact=contact,
+                    model="fe, coefficients shared by all cases",
+                    against=FULL,
+                )
+            )
+    return rows

@@ -1,0 +1,227 @@
+"""``report.html``: one page with everything in it, which opens offline."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+from ltca.output.files import whole_file
+from validation.compare.model_positions import MODELS
+from validation.levels.flexible_disc import TITLES, judge_half_space, meaning_content
+from validation.report.headline import headline
+from validation.report.scene import drive_scene, position_scene
+from validation.rows import LEVELS, Row
+from validation.study import Study
+
+PICTURE_WIDTHS = {"von_mises": 1200, "deformed": 1200, "contacts": 2000}
+PICTURE_TITLES = {
+    "von_mises": "von Mises stress at the loaded pose",
+    "contacts": "The three most loaded contacts: mesh, stress, pressure",
+    "deformed": "Elastic displacement, magnified",
+}
+SHARED = (
+    (
+        "Profile",
+        "the modified flank of Eq. 1 (ltca.geometry.flank), with tests of its own: envelope condition, curvature",
+    ),
+    ("Placement", "nominal places and clearances of all parts (ltca.geometry.placement)"),
+    ("Material", "Young's modulus and Poisson's ratio of each part"),
+    ("Elasticity assembly", "stiffness of quadratic triangles: full solutions and coefficients use the same routine"),
+    (
+        "Not shared",
+        "meshes (coefficients: coarse, stations for any angle; full solution: graded for the contacts of one angle), the "
+        "contact algorithm (Hertz laws and stations against pressure unknowns with mortar integration), equilibrium and pose",
+    ),
+)
+
+
+def write_report(study: Study, path: Path) -> Path:
+    """Write the page of a validation.
+
+    Parameters
+    ----------
+    study : Study
+        A finished validation.
+    path : Path
+        The page.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    CycloError
+        When it cannot be written.
+    """
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("validation.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )  # fmt: skip
+    text = environment.get_template("report.html").render(**_context(study))
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
+    return path
+
+
+def _context(study: Study) -> dict[str, Any]:
+    plan, first = study.plan, next(iter(study.plan.drives.values()))
+    positions = [position_scene(item) for items in study.compared.values() for item in items]
+    data = {
+        "models": ["full FE", *MODELS],
+        "drives": {case: drive_scene(drive) for case, drive in plan.drives.items()},
+        "positions": positions,
+    }
+    head = headline(study)
+    return {
+        "title": f"Validation of {plan.name}",
+        "drive": plan.name,
+        "cases": list(plan.drives),
+        "angles": [f"{angle:.4g}" for angle in plan.crank_angles],
+        "depth": plan.level,
+        "size": plan.settings.size,
+        "torque": f"{first.load.torque / 1000.0:g}",
+        "headline": head,
+        "worst": [_worst_line(model, head["worst_difference_from_full_fe"][model]) for model in MODELS],
+        "changes": [
+            (case, *(_signed_percent(values[name]) for name in ("pin_load", "roller_load", "pin_shaft_load")))
+            for case, values in head["change_half_space_to_full_fe"].items()
+        ],
+        "sentences": judge_half_space(study.meanings),
+        "meanings": [_meaning_table(case, meaning_content(item)) for case, item in study.meanings.items()],
+        "levels": [_level(number, [row for row in study.rows if row.level == number]) for number in LEVELS],
+        "pictures": _pictures(study),
+        "shared": SHARED,
+        # "</" would end the script element early.
+        "data": json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
+    }
+
+
+def _worst_line(model: str, worst: dict[str, Any]) -> dict[str, str]:
+    load, pressure, wheel = worst["load"], worst["pressure"], worst["wheel_angle"]
+
+    def place(item: dict[str, Any]) -> str:
+        contact = f"{item['contact']}, " if "contact" in item else ""
+        return f"{contact}{item['case']}, {item['angle_rad']:.4g} rad"
+
+    return {
+        "model": model,
+        "load": _signed_percent(load["difference"]),
+        "load_place": place(load),
+        "pressure": _signed_percent(pressure["difference"]),
+        "pressure_place": place(pressure),
+        "wheel": f"{wheel['difference_arcsec']:+.3g}″",
+        "wheel_place": place(wheel),
+    }
+
+
+def _signed_percent(value: float | None) -> str:
+    if value is None:
+        return "–"
+    return f"{100.0 * value:+.3g} %".replace("-", "−")
+
+
+def _meaning_table(case: str, content: dict[str, dict[str, float | None]]) -> dict[str, Any]:
+    lines = []
+    for name, (title, unit) in TITLES.items():
+        values = [content[model][name] for model in MODELS]
+        half, fe = content["half-space"][name], content["fe"][name]
+        lines.append(
+            (
+                title,
+                unit.replace('"', "″"),
+                [f"{value:.4g}" if value is not None else "–" for value in values],
+                _signed_percent(fe / half - 1.0 if half and fe is not None else None),
+            )
+        )
+    return {"case": case, "lines": lines}
+
+
+def _level(number: int, rows: list[Row]) -> dict[str, Any]:
+    bounded = [row for row in rows if row.limit is not None]
+    groups: dict[str, list[dict[str, str]]] = {}
+    for row, count in _condense(rows) if number == 5 else [(row, 1) for row in rows]:
+        title = row.model if number in (5, 6) else ""
+        groups.setdefault(title, []).append(_line(row, count))
+    return {
+        "number": number,
+        "title": LEVELS[number],
+        "checked": len(bounded),
+        "informing": len(rows) - len(bounded),
+        "failed": sum(not row.passed for row in rows),
+        "groups": list(groups.items()),
+        "condensed": number == 5,
+    }
+
+
+def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
+    """Return the row with the largest difference of each quantity, case and model, and how many it stands for."""
+    groups: dict[tuple[str, ...], list[Row]] = {}
+    for row in rows:
+        groups.setdefault((row.model, row.against, row.quantity, row.case), []).append(row)
+    order = {model: place for place, model in enumerate(("fe", "hybrid", "half-space"))}
+    found = [
+        (max(items, key=lambda row: (not row.passed, abs(row.difference))), len(items)) for items in groups.values()
+    ]
+    return sorted(found, key=lambda item: order.get(item[0].model, len(order)))
+
+
+def _line(row: Row, count: int) -> dict[str, str]:
+    place = [row.case, f"{row.crank_angle:.4g} rad" if row.crank_angle is not None else "", row.contact]
+    return {
+        "quantity": row.quantity,
+        "place": ", ".join(part for part in place if part),
+        "count": f"worst of {count}" if count > 1 else "",
+        "model": row.model,
+        "against": row.against,
+        "value": _figure(row.value, row.unit),
+        "reference": _figure(row.reference, row.unit) if row.reference is not None else "–",
+        "difference": _difference(row.difference, row.difference_unit),
+        "limit": _difference(row.limit, row.difference_unit, sign="±") if row.limit is not None else "informs",
+        "state": "failed" if not row.passed else "informs" if row.limit is None else "passed",
+        "reason": row.reason,
+    }
+
+
+def _figure(value: float, unit: str) -> str:
+    return f"{value:.5g} {unit.replace(chr(34), '″')}".strip().replace("-", "−")
+
+
+def _difference(value: float, unit: str, sign: str = "") -> str:
+    ratio = unit == "" and abs(value) >= 1e-6
+    text = f"{100.0 * value:.3g} %" if ratio else f"{value:.3g} {unit.replace(chr(34), '″')}".strip()
+    return (f"±{text}" if sign and value else text).replace("-", "−")
+
+
+def _pictures(study: Study) -> list[dict[str, str]]:
+    return [
+        {
+            "case": case,
+            "angle": f"{item.full.crank_angle:.4g}",
+            "name": path.stem,
+            "title": PICTURE_TITLES[path.stem],
+            "source": _embedded(path),
+        }
+        for case, items in study.compared.items()
+        for item in items
+        for path in item.full.pictures
+    ]
+
+
+def _embedded(path: Path) -> str:
+    """Return a picture as a data address, made smaller for the page."""
+    from PIL import Image
+
+    with Image.open(path) as opened:
+        image = opened.convert("RGB")
+    width = min(PICTURE_WIDTHS[path.stem], image.width)
+    image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
+    stream = io.BytesIO()
+    image.save(stream, "WEBP", quality=82, method=4)
+    return "data:image/webp;base64," + base64.b64encode(stream.getvalue()).decode("ascii")

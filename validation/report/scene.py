@@ -1,0 +1,152 @@
+"""What the report's own script draws: the drive at each position, with every contact's place, direction and numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
+from ltca.geometry.pairs import ContactGeometry
+from validation.compare.compared_positions import ComparedPosition
+from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer, contact_name
+from validation.rows import rounded
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+POINTS_PER_LOBE = 36
+DIGITS = 4
+
+
+def drive_scene(drive: Drive) -> dict[str, Any]:
+    """Return what does not move: the disc's outline in its own frame and radii, mm."""
+    geometry = ContactGeometry.of_drive(drive)
+    place = geometry.placement
+    count = POINTS_PER_LOBE * drive.disc.number_of_teeth
+    outline = geometry.profile.flank(2.0 * np.pi * np.arange(count) / count)
+    return {
+        "outline": _points(outline),
+        "bore": rounded(place.bore_radius),
+        "race": rounded(place.inner_race_radius),
+        "holes": _circles(place.hole_centres, place.hole_radii),
+        "reach": rounded(1.1 * float(np.max(np.abs(place.wheel_pin_centres) + place.wheel_pin_radii))),
+    }  # fmt: skip
+
+
+def position_scene(compared: ComparedPosition) -> dict[str, Any]:
+    """Return one position: places of all parts and the contacts' numbers in all models.
+
+    Parameters
+    ----------
+    compared : ComparedPosition
+        The position.
+
+    Returns
+    -------
+    dict
+        Parts at the pose of the full solution; each contact with its place, the direction of the force on the disc (inner
+        race: on the roller) and, by model, load, pressure and half-width.
+    """
+    answers = {"full FE": compared.full.answer, **compared.answers}
+    parts = _places(compared)
+    contacts = [
+        {
+            "name": contact_name(kind, number),
+            "kind": kind,
+            "at": _point(centres[number] + radii[number] * towards[number]),
+            "to": _point(towards[number]),
+            "models": {model: _numbers(answer, kind, number) for model, answer in answers.items()},
+        }
+        for kind, (centres, radii, towards) in parts.items()
+        for number in _loaded(list(answers.values()), kind)
+    ]
+    full = compared.full.answer
+    race = ContactGeometry.of_drive(compared.drive).placement.race_centre(np.array([compared.full.crank_angle]))[0]
+    return {
+        "case": compared.full.case,
+        "angle": rounded(compared.full.crank_angle),
+        "disc": [*_point(_disc_centre(compared)), rounded(full.disc_rotation)],
+        "race": _point(race),
+        "pins": _circles(*parts["pin"][:2]),
+        "rollers": _circles(*parts["roller_outer"][:2]),
+        "shafts": _circles(*parts["shaft_pin"][:2]),
+        "contacts": contacts,
+        "totals": {model: _totals(answer) for model, answer in answers.items()},
+        "unknowns": compared.full.unknowns,
+    }
+
+
+def _loaded(answers: list[PositionAnswer], kind: Kind) -> list[int]:
+    """Return the contacts of a kind that carry load in any answer."""
+    loads = np.stack([answer.kinds[kind].load for answer in answers])
+    return [int(number) for number in np.flatnonzero(loads.max(axis=0) > 0.0)]
+
+
+def _disc_centre(compared: ComparedPosition) -> complex:
+    angle, answer = compared.full.crank_angle, compared.full.answer
+    place = ContactGeometry.of_drive(compared.drive).placement
+    shift = complex(answer.disc_radial, answer.disc_tangential) * np.exp(1j * angle)
+    return complex(place.race_centre(np.array([angle]))[0] + shift)
+
+
+def _places(compared: ComparedPosition) -> dict[Kind, tuple[ComplexArray, FloatArray, ComplexArray]]:
+    """Return centres, radii and directions from the centre to the contact of all parts, by kind."""
+    geometry, answer = ContactGeometry.of_drive(compared.drive), compared.full.answer
+    place, angle = geometry.placement, np.array([compared.full.crank_angle])
+    disc, turn = _disc_centre(compared), np.exp(1j * answer.disc_rotation)
+    shift = disc - complex(place.race_centre(angle)[0])
+    pose = np.array([[shift.real, shift.imag, answer.disc_rotation, answer.wheel_angle]])
+    flank = geometry.flank(angle, pose)
+    rays = geometry.rollers(angle).direction[0]
+    roller_centres = place.race_centre(angle)[0] + (place.inner_race_radius + place.roller_radii) * rays
+    pins = place.wheel_pin_centres * np.exp(1j * (place.wheel_rotation(angle)[0] + answer.wheel_angle))
+    play = place.shaft_pin_centres - (disc + turn * place.hole_centres)
+    outward = roller_centres - disc
+    return {
+        "pin": (pins, place.wheel_pin_radii, -geometry.profile.normal(flank.parameter[0]) * turn),
+        "roller_outer": (roller_centres, place.roller_radii, outward / np.abs(outward)),
+        "roller_inner": (roller_centres, place.roller_radii, -rays),
+        "shaft_pin": (place.shaft_pin_centres, place.shaft_pin_radii, play / np.abs(play)),
+    }
+
+
+def _numbers(answer: PositionAnswer, kind: Kind, number: int) -> list[float | None]:
+    own = answer.kinds[kind]
+    width = float(own.half_width[number])
+    return [
+        _short(float(own.load[number])),
+        _short(float(own.pressure[number])),
+        _short(1e3 * width),
+    ]
+
+
+def _totals(answer: PositionAnswer) -> list[float | None]:
+    return [
+        rounded(answer.wheel_angle * ARCSECONDS),
+        _short(answer.bearing_radial),
+        _short(answer.bearing_tangential),
+        _short(1e3 * answer.disc_radial),
+        _short(1e3 * answer.disc_tangential),
+        _short(answer.disc_rotation * ARCSECONDS),
+        float(answer.loaded("pin")),
+        float(answer.loaded("roller_outer")),
+        float(answer.loaded("shaft_pin")),
+    ]
+
+
+def _short(value: float) -> float | None:
+    return None if not np.isfinite(value) else float(f"{value:.5g}")
+
+
+def _point(value: complex) -> list[float]:
+    return [round(float(value.real), DIGITS), round(float(value.imag), DIGITS)]
+
+
+def _points(values: ComplexArray) -> list[list[float]]:
+    return [[round(float(value.real), 3), round(float(value.imag), 3)] for value in values]
+
+
+def _circles(centres: ComplexArray, radii: FloatArray) -> list[list[float | None]]:
+    return [[*_point(centre), rounded(float(radius))] for centre, radius in zip(centres, radii, strict=True)]
