@@ -18,10 +18,10 @@ import time
 
 import numpy as np
 
-from ltca.analysis.results import position_angles
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 
 

@@ -19,12 +19,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ltca.analysis.results import position_angles
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Clearance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.clearance_free import analyse_without_clearance
 from ltca.equilibrium.paper_method import iterate_held_wheel, lead_of_pose, pose_of_lead
+from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 
 

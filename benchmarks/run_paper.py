@@ -40,6 +40,7 @@ def main() -> None:
     start = time.perf_counter()
     import ltca.analysis.loaded_analysis
     import ltca.analysis.results
+    import ltca.geometry.placement
     from ltca.laws.line_contact import line_contact_table
     from ltca.reading.drive_file import load_drive
 
@@ -48,7 +49,7 @@ def main() -> None:
     line_contact_table()
     print(f"  {'line-contact table':<34}{time.perf_counter() - start:8.2f} s")
     cases = load_drive("paper").cases
-    angles = ltca.analysis.results.position_angles(360)
+    angles = ltca.geometry.placement.position_angles(360)
     start = time.perf_counter()
     analyses = {name: ltca.analysis.loaded_analysis.analyse(drive, angles) for name, drive in cases.items()}
     solved = time.perf_counter() - start
@@ -65,7 +66,7 @@ def main() -> None:
         for _ in range(3):
             start = time.perf_counter()
             analysis = ltca.analysis.loaded_analysis.analyse(
-                cases["CS-6"], ltca.analysis.results.position_angles(positions)
+                cases["CS-6"], ltca.geometry.placement.position_angles(positions)
             )
             best = min(best, time.perf_counter() - start)
         mean = analysis.full.iterations.mean()

@@ -1,5 +1,11 @@
 """Loaded tooth contact analysis of cycloidal gear drives.
 
+>>> import ltca
+>>> drive = ltca.load_drive("paper").cases["CS-1"]
+>>> result = ltca.analyse(drive, positions=4)
+>>> round(result.summary["mean_tangential_bearing_load_N"])
+6737
+
 Folders in the order data passes; each one's docstring lists its modules.
 
 ===========  ============================================================
@@ -17,7 +23,52 @@ analysis     An analysis of a drive and what is read from it
 studies      Studies at scale: tolerances, sweeps, optimiser
 figures      Pictures of results, by matplotlib and pyvista
 testing      What serves checking alone, importable by tests of your own
+facade       The front door: `load_drive`, `analyse`, engines; what ``import ltca`` gives
 commands     The program ``cyclo``
 drives       Drives that ship with the package
 ===========  ============================================================
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
+    from ltca.drive.parts import Drive
+    from ltca.facade import analyse
+    from ltca.reading.drive_file import load_drive
+
+    __version__: str
+
+# Where each name of the front door lives: loaded when it is first asked for, so that `import ltca` stays light.
+_HOMES = {
+    "Drive": "ltca.drive.parts",
+    "HalfSpace": "ltca.analysis.engines",
+    "Hybrid": "ltca.analysis.engines",
+    "PlaneStrain": "ltca.analysis.engines",
+    "analyse": "ltca.facade",
+    "load_drive": "ltca.reading.drive_file",
+}
+
+__all__ = ["Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "load_drive"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a name of the front door."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("cyclo-ltca")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'ltca' has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Name the front door."""
+    return sorted({*globals(), *__all__})

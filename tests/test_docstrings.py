@@ -45,6 +45,7 @@ def fields(node):
         if isinstance(entry, ast.AnnAssign)
         and isinstance(entry.target, ast.Name)
         and not entry.target.id.startswith("_")
+        and not ast.unparse(entry.annotation).startswith("ClassVar")
     ]
 
 

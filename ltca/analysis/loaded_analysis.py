@@ -3,33 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.grids import GridCompliance
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel, ContactPressures, Response
+from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.half_width_guard import check_half_widths
+from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.equilibrium.paper_method import solve_paper_equilibrium
+from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
 
 FloatArray = NDArray[np.float64]
-
-Method = Literal["tables", "direct", "paper"]
-Contacts = Literal["tables", "grids"]
-Compliance = Literal["half-space", "fe", "hybrid"]
-
-PAPER_START = 0.95
-"""Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
-
-HALF_WIDTH_BOUND = 0.3
-"""Largest contact half-width as a part of the smallest radius in contact: beyond it the bodies are no half-spaces
-and the separation is no parabola."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,12 +27,8 @@ class LoadedAnalysis:
         What was analysed.
     torque : float
         Output torque, N·mm.
-    method : Method
-        How equilibrium was found.
-    contacts : Contacts
-        What gave the loads.
-    compliance : Compliance
-        How the bodies yield.
+    engine : Engine
+        What it ran on.
     full, light : Equilibrium
         At that torque and at the light torque.
     model : ComplianceModel
@@ -60,9 +41,7 @@ class LoadedAnalysis:
 
     drive: Drive
     torque: float
-    method: Method
-    contacts: Contacts
-    compliance: Compliance
+    engine: Engine
     full: Equilibrium
     light: Equilibrium
     model: ComplianceModel
@@ -72,15 +51,7 @@ class LoadedAnalysis:
 
 
 def analyse(
-    drive: Drive,
-    crank_angle: FloatArray,
-    torque: float | None = None,
-    *,
-    method: Method = "tables",
-    contacts: Contacts | None = None,
-    compliance: Compliance = "half-space",
-    coefficients: InfluenceCoefficients | None = None,
-    hole_near_field: bool = True,
+    drive: Drive, crank_angle: FloatArray, torque: float | None = None, engine: Engine | None = None
 ) -> LoadedAnalysis:
     """Analyse a drive.
 
@@ -92,19 +63,8 @@ def analyse(
         φ_C, rad.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    method : {"tables", "direct", "paper"}
-        ``tables``: equilibrium on tabulated laws; ``direct``: contact grids solved inside every iteration;
-        ``paper``: the paper's iteration with held wheel (`ltca.equilibrium.paper_method`), started from our solution at 95 % of
-        the torque. ``direct`` starts from the solution on tables.
-    contacts : {"tables", "grids"}, optional
-        What the paper's iteration runs on, tables by default; the other methods have their own.
-    compliance : {"half-space", "fe", "hybrid"}
-        ``half-space``: contacts do not feel each other (the paper); ``fe``: plane strain, coefficients from finite
-        elements; ``hybrid``: half-space of finite length at the contact, finite elements for the bodies.
-    coefficients : InfluenceCoefficients, optional
-        Of this drive; what ``fe`` and ``hybrid`` need (`ltca.compliance.coefficients.load_coefficients`).
-    hole_near_field : bool
-        Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``).
+    engine : Engine, optional
+        What to run on (`ltca.analysis.engines`); the half-space on tables by default.
 
     Returns
     -------
@@ -116,8 +76,8 @@ def analyse(
     ConvergenceError
         When a position does not balance.
     DriveError
-        When the torque cannot be carried: a half-width beyond 0.3 of the smallest radius; when method and contacts
-        contradict each other; when coefficients are missing.
+        When angles or torque make no sense, or the torque cannot be carried: a half-width beyond 0.3 of the
+        smallest radius.
 
     Examples
     --------
@@ -127,79 +87,59 @@ def analyse(
     >>> print(f"{result.bearing_tangential[0]:.0f} N")
     6738 N
     """
-    torque = drive.load.torque if torque is None else torque
-    used = _contacts_of(method, contacts)
-    laws = HalfSpaceCompliance.of_drive(drive)
-    model: ComplianceModel = laws if used == "tables" else GridCompliance.of_drive(drive)
-    if compliance != "half-space":
-        if method != "tables":
-            raise DriveError([f"method = {method}: runs on half-space compliance only, not on {compliance}"])
-        if coefficients is None:
-            raise DriveError([f"compliance = {compliance}: needs the influence coefficients of the drive"])
-        model = CoupledCompliance.of_drive(drive, coefficients, compliance, hole_near_field=hole_near_field)
-
-    def solve(moment: float, start: FloatArray | None) -> Equilibrium:
-        if method == "tables" and compliance == "half-space":
-            return solve_equilibrium(laws, crank_angle, moment, start)
-        if method in ("tables", "direct"):
-            near = solve_equilibrium(laws, crank_angle, moment, start)
-            # Grids wider than the bodies are curved have no separation: refused before they are laid.
-            _check_half_widths(drive, torque, near.response, laws.pressures(near.response))
-            return solve_equilibrium(model, crank_angle, moment, near.pose)
-        near = solve_equilibrium(laws, crank_angle, PAPER_START * moment, start)
-        return solve_paper_equilibrium(model, crank_angle, moment, near.pose)
-
-    full = solve(drive.wheel_moment(torque), None)
-    light = solve(drive.wheel_moment(drive.load.light_torque), full.pose)
+    angle, torque = check_positions(crank_angle), check_torque(drive, torque)
+    used: Engine = HalfSpace() if engine is None else engine
+    prepared = used.prepare(drive)
+    full = prepared.balance(angle, torque)
+    light = prepared.balance(angle, drive.load.light_torque, full.pose)
     rollers = full.response.rollers
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1) * np.exp(-1j * full.crank_angle)
-    pressures = model.pressures(full.response)
-    _check_half_widths(drive, torque, full.response, pressures)
+    pressures = prepared.model.pressures(full.response)
+    check_half_widths(drive, full.response, pressures, torque)
     return LoadedAnalysis(
         drive=drive,
         torque=torque,
-        method=method,
-        contacts=used,
-        compliance=compliance,
+        engine=used,
         full=full,
         light=light,
-        model=model,
+        model=prepared.model,
         pressures=pressures,
         bearing_radial=push.real,
         bearing_tangential=push.imag,
     )
 
 
-def _contacts_of(method: Method, contacts: Contacts | None) -> Contacts:
-    if method == "paper":
-        return contacts or "tables"
-    own: Contacts = "grids" if method == "direct" else "tables"
-    if contacts not in (None, own):
-        raise DriveError([f"contacts = {contacts}: method {method} runs on {own}; only method paper runs on either"])
-    return own
+def check_positions(crank_angle: FloatArray) -> FloatArray:
+    """Return crank angles as a new array of one axis, rad.
+
+    Raises
+    ------
+    DriveError
+        When there is none, or one is no finite number.
+    """
+    try:
+        angle = np.array(crank_angle, dtype=float, ndmin=1)
+    except (TypeError, ValueError) as error:
+        raise DriveError([f"crank_angle = {crank_angle!r}: must be numbers in rad"]) from error
+    if angle.ndim != 1 or angle.size == 0:
+        raise DriveError([f"crank_angle has the shape {angle.shape}: must be one row of at least one angle in rad"])
+    if not np.all(np.isfinite(angle)):
+        raise DriveError([f"crank_angle holds {angle[~np.isfinite(angle)][0]:g}: must be finite, in rad"])
+    return angle
 
 
-def _check_half_widths(drive: Drive, torque: float, contacts: Response, pressures: ContactPressures) -> None:
-    flank = contacts.flank
-    # 1/ρ = 1/r_pin + κ: the flank's own radius is a bound as well as the pin's.
-    curvature = 1.0 / flank.effective_radius - 1.0 / drive.pin_wheel.pin_radius
-    flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
-    roller = drive.crank_bearing.roller_radius
-    found: list[tuple[str, FloatArray, FloatArray | float]] = [
-        ("wheel pin", pressures.pins.half_width, np.minimum(flank_radius, drive.pin_wheel.pin_radius)),
-        ("roller on the bore", pressures.outer.half_width, roller),
-        ("roller on the inner race", pressures.inner.half_width, roller),
-    ]
-    problems = []
-    for name, half_width, radius in found:
-        ratio = half_width / (HALF_WIDTH_BOUND * radius)
-        if np.max(ratio) > 1.0:
-            worst = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
-            bound = float(half_width[worst] / ratio[worst])
-            problems.append(
-                f"load.torque = {torque:g} N·mm cannot be carried: contact half-width "
-                f"{half_width[worst]:.4g} mm of {name} {worst[1]}, must be at most {bound:.4g} mm "
-                f"({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
-            )
-    if problems:
-        raise DriveError(problems)
+def check_torque(drive: Drive, torque: float | None) -> float:
+    """Return the output torque asked for, the drive's own for None, N·mm.
+
+    Raises
+    ------
+    DriveError
+        When it is not a finite number greater than zero.
+    """
+    if torque is None:
+        return drive.load.torque
+    if isinstance(torque, bool) or not isinstance(torque, int | float | np.number):
+        raise DriveError([f"torque = {torque!r}: must be a number in N·mm"])
+    if not (np.isfinite(torque) and torque > 0.0):
+        raise DriveError([f"torque = {torque:g}: must be finite and greater than 0 N·mm (load.direction turns it)"])
+    return float(torque)

@@ -1,10 +1,11 @@
 """Pressure over every loaded contact at chosen crank angles: solved on grids at the pose found, as one dataset.
 
-Layout of ``pressure.nc``: dimensions ``case``, ``angle``, ``pin``, ``side`` (outer, inner), ``roller`` and the cells
-``pin_x``, ``pin_y``, ``roller_x``, ``roller_y`` of each patch. Patches differ in size, so each has edges of its own:
-``pin_x_edge (case, angle, pin, pin_x_bound)`` along the common tangent in the sense of the growing flank parameter,
-``pin_y_edge`` along the width from mid-width, mm; for rollers alike. ``pin_pressure`` and ``roller_pressure`` are the
-mean pressures of the cells, MPa. A pair that carries less than 0.1 % of the largest load of its kind has pressure
+Layout of ``pressure.nc``: dimensions, coordinates and names of ``results.nc``, and the cells ``pin_cell_x``,
+``pin_cell_y``, ``roller_cell_x``, ``roller_cell_y`` of each patch. Patches differ in size, so each has edges of its
+own: ``pin_x_edge (case, disc, position, pin, pin_bound_x)`` along the common tangent in the sense of the growing flank
+parameter, ``pin_y_edge`` along the width from mid-width, mm; for rollers alike, with ``_outer`` (bore) and ``_inner``
+(race) behind the name. ``pin_pressure``, ``roller_pressure_outer`` and ``roller_pressure_inner`` are the mean
+pressures of the cells, MPa. A pair that carries less than 0.1 % of the largest load of its kind has pressure
 zero on cells of no size, so sums of pressure times area are loads without exception.
 """
 
@@ -19,7 +20,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import LOADED_FRACTION
+from ltca.analysis.results import DIMENSIONS, coordinates, provenance
+from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
@@ -185,7 +187,7 @@ SCALARS = {
 
 
 def build_pressure_dataset(
-    drive_name: str, analyses: Mapping[str, LoadedAnalysis], cells: int = FIELD_CELLS
+    drive_name: str, analyses: Mapping[str, LoadedAnalysis], cells: int = FIELD_CELLS, drive_file: str | None = None
 ) -> xr.Dataset:
     """Return the pressure fields of all cases; the layout is told in `ltca.analysis.pressure_fields`.
 
@@ -197,73 +199,68 @@ def build_pressure_dataset(
         One for each case, all at the chosen crank angles.
     cells : int
         Cells over each half-width and half of each length.
+    drive_file : str, optional
+        Text of the drive file; by default the drive of the first case written as one.
     """
     first = next(iter(analyses.values()))
-    angles, placement = first.full.crank_angle, first.model.geometry.placement
+    placement = first.model.geometry.placement
+    positions = range(first.full.crank_angle.size)
     variables: dict[str, Any] = {}
-    pins = [
-        [[pin_fields(analysis, position, cells)] for position in range(angles.size)] for analysis in analyses.values()
-    ]
-    rollers = [
-        [
-            [roller_fields(analysis, position, side, cells) for side in ("outer", "inner")]
-            for position in range(angles.size)
+    pins = [[pin_fields(analysis, position, cells) for position in positions] for analysis in analyses.values()]
+    _store(variables, "pin", "", pins, placement.wheel_pin_radii.size)
+    for side in ("outer", "inner"):
+        rollers = [
+            [roller_fields(analysis, position, side, cells) for position in positions] for analysis in analyses.values()
         ]
-        for analysis in analyses.values()
-    ]
-    _store(variables, "pin", pins, placement.wheel_pin_radii.size, with_side=False)
-    _store(variables, "roller", rollers, placement.roller_radii.size, with_side=True)
+        _store(variables, "roller", f"_{side}", rollers, placement.roller_radii.size)
     dataset = xr.Dataset(
         variables,
-        coords={
-            "case": list(analyses),
-            "crank_angle": ("angle", angles, {"units": "rad", "long_name": "crank angle φ_C, held"}),
-            "side": ["outer", "inner"],
-        },
+        coords=coordinates(analyses),
         attrs={
-            "drive": drive_name,
-            "method": first.method,
-            "contacts": first.contacts,
+            **provenance(drive_name, first.drive, drive_file),
+            **first.engine.options,
             "cells_per_half_width": cells,
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
         },
     )
     kinds = ContactKinds.of_drive(first.drive, cells)
-    for name, kind in (("pin_pressure_max", kinds.pins), ("roller_pressure_max", kinds.outer)):
+    for name, kind in (
+        ("pin_pressure_max", kinds.pins),
+        ("roller_pressure_max_outer", kinds.outer),
+        ("roller_pressure_max_inner", kinds.inner),
+    ):
         dataset[name].attrs["end_cell_mm"] = kind.end_cell
     return dataset
 
 
 def _store(
-    variables: dict[str, Any],
-    name: str,
-    fields: list[list[list[dict[int, PressureField]]]],
-    count: int,
-    *,
-    with_side: bool,
+    variables: dict[str, Any], name: str, side: str, fields: list[list[dict[int, PressureField]]], count: int
 ) -> None:
-    """Put the fields of one kind, by case, angle, side and pair, into arrays of full size."""
-    flat = [field for case in fields for angle in case for side in angle for field in side.values()]
+    """Put the fields of one kind on one side, by case, position and pair, into arrays of full size."""
+    flat = [field for case in fields for position in case for field in position.values()]
     nx, ny = flat[0].pressure.shape if flat else (1, 1)
-    shape = (len(fields), len(fields[0]), len(fields[0][0]), count)
+    shape = (len(fields), len(fields[0]), count)
     pressure, x, y = np.zeros((*shape, nx, ny)), np.zeros((*shape, nx + 1)), np.zeros((*shape, ny + 1))
     scalars = {key: np.zeros(shape) for key in SCALARS}
     for c, case in enumerate(fields):
-        for a, angle in enumerate(case):
-            for s, side in enumerate(angle):
-                for pair, field in side.items():
-                    place = (c, a, s, pair)
-                    pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
-                    for key, (attribute, _, _) in SCALARS.items():
-                        scalars[key][place] = getattr(field, attribute)
-    dimensions = ("case", "angle", "side", name) if with_side else ("case", "angle", name)
+        for p, position in enumerate(case):
+            for pair, field in position.items():
+                place = (c, p, pair)
+                pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
+                for key, (attribute, _, _) in SCALARS.items():
+                    scalars[key][place] = getattr(field, attribute)
 
     def put(key: str, values: FloatArray, extra: tuple[str, ...], unit: str, text: str) -> None:
-        stored = values if with_side else values[:, :, 0]
-        variables[f"{name}_{key}"] = ((*dimensions, *extra), stored, {"units": unit, "long_name": text})
+        missing = len(DIMENSIONS[name]) - 2
+        stored = values.reshape(shape[0], *(1,) * missing, *values.shape[1:])
+        variables[f"{name}_{key}{side}"] = (
+            ("case", *DIMENSIONS[name], *extra),
+            stored,
+            {"units": unit, "long_name": text},
+        )
 
-    put("pressure", pressure, (f"{name}_x", f"{name}_y"), "MPa", "mean pressure of the cells")
-    put("x_edge", x, (f"{name}_x_bound",), "mm", "cell edges along the profile, from the contact point")
-    put("y_edge", y, (f"{name}_y_bound",), "mm", "cell edges along the width, from mid-width")
+    put("pressure", pressure, (f"{name}_cell_x", f"{name}_cell_y"), "MPa", "mean pressure of the cells")
+    put("x_edge", x, (f"{name}_bound_x",), "mm", "cell edges along the profile, from the contact point")
+    put("y_edge", y, (f"{name}_bound_y",), "mm", "cell edges along the width, from mid-width")
     for key, (_, unit, text) in SCALARS.items():
         put(key, scalars[key], (), unit, text)

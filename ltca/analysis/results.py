@@ -1,4 +1,9 @@
-"""The labelled dataset of a run and the scalars of its summary."""
+"""The labelled dataset of a run: what ``results.nc`` holds.
+
+Dimensions stand in the order case, disc, crank, position, then pin, roller or hole, always all of them that a
+quantity has, of size 1 where a drive has one disc and one crank. Places of the parts are coordinates: wheel pins in
+the frame of the wheel, holes in that of the disc, shaft pins in the fixed frame, rollers by their angle in the cage.
+"""
 
 from __future__ import annotations
 
@@ -12,19 +17,22 @@ from numpy.typing import NDArray
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
-from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.placement import position_angles as position_angles
+from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE
+from ltca.output.provenance import code_hash, code_version
+from ltca.reading.writing import drive_text
 
 FloatArray = NDArray[np.float64]
 
-LOADED_FRACTION = 1e-3
-"""A contact counts as loaded above this part of the largest load of its kind in the case."""
-
-ARCMIN = 180.0 / np.pi * 60.0
-ARCSEC = 60.0 * ARCMIN
-
-# name: (dimension of the pair or "", unit, description)
+# What a quantity belongs to, and the dimensions behind `case` that follow from it.
+DIMENSIONS = {
+    "drive": ("position",),
+    "disc": ("disc", "position"),
+    "crank": ("disc", "crank", "position"),
+    "pin": ("disc", "position", "pin"),
+    "roller": ("disc", "crank", "position", "roller"),
+    "hole": ("disc", "position", "hole"),
+}
+# name: (what it belongs to, unit, description)
 VARIABLES: dict[str, tuple[str, str, str]] = {
     "pin_load": ("pin", "N", "load of wheel pin and flank"),
     "roller_load": ("roller", "N", "load of roller and bore (outer side)"),
@@ -48,20 +56,23 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "roller_half_width_outer": ("roller", "mm", "contact half-width of roller and bore at mid-width"),
     "roller_half_width_inner": ("roller", "mm", "contact half-width of roller and inner race at mid-width"),
     "pin_contact_parameter": ("pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"),
-    "bearing_radial": ("", "N", "bearing force on the disc along the eccentricity"),
-    "bearing_tangential": ("", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
-    "transmission_error": ("", "rad", "deviation of the wheel from φ_C/u at the torque of the run, ccw positive"),
-    "transmission_error_light": ("", "rad", "the same at the light torque"),
-    "disc_radial": ("", "mm", "disc centre from inner-race centre along the eccentricity"),
-    "disc_tangential": ("", "mm", "disc centre from inner-race centre, 90° ahead of the eccentricity"),
-    "disc_rotation": ("", "rad", "rotation of the disc, ccw positive"),
-    "equilibrium_residual": ("", "N", "largest unbalanced force, moments by their lever arms"),
-    "iterations": ("", "1", "Newton iterations at the torque of the run"),
+    "bearing_radial": ("crank", "N", "bearing force on the disc along the eccentricity"),
+    "bearing_tangential": ("crank", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
+    "wheel_angle": ("drive", "rad", "deviation of the wheel from φ_C/u at the torque of the run, ccw positive"),
+    "wheel_angle_light": ("drive", "rad", "the same at the light torque"),
+    "transmission_error": ("drive", "rad", "deviation of the output at the torque of the run, ccw positive"),
+    "transmission_error_light": ("drive", "rad", "the same at the light torque"),
+    "disc_radial": ("disc", "mm", "disc centre from inner-race centre along the eccentricity"),
+    "disc_tangential": ("disc", "mm", "disc centre from inner-race centre, 90° ahead of the eccentricity"),
+    "disc_rotation": ("disc", "rad", "rotation of the disc, ccw positive"),
+    "equilibrium_residual": ("drive", "N", "largest unbalanced force, moments by their lever arms"),
+    "iterations": ("drive", "1", "Newton iterations at the torque of the run"),
 }
 
 
 def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
-    full = analysis.full
+    """Quantities of one case, of one disc on one crank: (position,) or (position, pair)."""
+    full, light = analysis.full, analysis.light
     contacts, pressures = full.response, analysis.pressures
     displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * full.crank_angle)
     return {
@@ -85,13 +96,75 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "pin_contact_parameter": np.mod(contacts.flank.parameter, 2.0 * np.pi),
         "bearing_radial": analysis.bearing_radial,
         "bearing_tangential": analysis.bearing_tangential,
+        "wheel_angle": full.pose[:, WHEEL_ANGLE],
+        "wheel_angle_light": light.pose[:, WHEEL_ANGLE],
+        # The pin shaft is held: the wheel is the output.
         "transmission_error": full.pose[:, WHEEL_ANGLE],
-        "transmission_error_light": analysis.light.pose[:, WHEEL_ANGLE],
+        "transmission_error_light": light.pose[:, WHEEL_ANGLE],
         "disc_radial": displacement.real,
         "disc_tangential": displacement.imag,
         "disc_rotation": full.pose[:, DISC_ROTATION],
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
+    }
+
+
+def _spread(values: Any, kind: str) -> Any:
+    """Put the axes of the one disc and the one crank in front of the positions."""
+    missing = len(DIMENSIONS[kind]) - np.ndim(values)
+    return np.reshape(values, (1,) * missing + np.shape(values))
+
+
+def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
+    """Return the coordinates of a dataset of analyses: cases, positions, places of the parts, torques."""
+    places = [analysis.model.geometry.placement for analysis in analyses.values()]
+    first = next(iter(analyses.values()))
+    counts = {"pin": places[0].wheel_pin_radii.size, "roller": places[0].roller_radii.size}
+    counts["hole"] = places[0].hole_radii.size
+    wheel_pins, holes, shaft_pins = (
+        np.stack([getattr(place, name) for place in places])
+        for name in ("wheel_pin_centres", "hole_centres", "shaft_pin_centres")
+    )
+    cages = np.stack([place.roller_cage_angles for place in places])
+    mm, rad = {"units": "mm"}, {"units": "rad"}
+
+    def per_case(values: list[Any], unit: str, text: str) -> tuple[str, list[Any], dict[str, str]]:
+        return "case", values, {"units": unit, "long_name": text}
+
+    return {
+        "case": list(analyses),
+        "disc": [0],
+        "crank": [0],
+        "position": np.arange(first.full.crank_angle.size),
+        **{name: np.arange(count) for name, count in counts.items()},
+        "crank_angle": ("position", first.full.crank_angle, {**rad, "long_name": "crank angle φ_C, held"}),
+        "pin_x": (("case", "pin"), wheel_pins.real, {**mm, "long_name": "wheel pin, in the frame of the wheel"}),
+        "pin_y": (("case", "pin"), wheel_pins.imag, {**mm, "long_name": "wheel pin, in the frame of the wheel"}),
+        "hole_x": (
+            ("case", "disc", "hole"),
+            holes.real[:, None],
+            {**mm, "long_name": "hole, in the frame of the disc"},
+        ),
+        "hole_y": (
+            ("case", "disc", "hole"),
+            holes.imag[:, None],
+            {**mm, "long_name": "hole, in the frame of the disc"},
+        ),
+        "shaft_pin_x": (("case", "hole"), shaft_pins.real, {**mm, "long_name": "shaft pin, in the fixed frame"}),
+        "shaft_pin_y": (("case", "hole"), shaft_pins.imag, {**mm, "long_name": "shaft pin, in the fixed frame"}),
+        "roller_angle": (
+            ("case", "disc", "crank", "roller"),
+            cages[:, None, None],
+            {**rad, "long_name": "angle of the roller in the cage, which stands at cage_speed · φ_C"},
+        ),
+        "cage_speed": per_case([float(place.cage_speed) for place in places], "1", "cage angle by crank angle"),
+        "torque": per_case([analysis.torque for analysis in analyses.values()], "N mm", "output torque of the run"),
+        "light_torque": per_case(
+            [analysis.drive.load.light_torque for analysis in analyses.values()], "N mm", "light output torque"
+        ),
+        "driving_sign": per_case(
+            [analysis.drive.driving_sign for analysis in analyses.values()], "1", "+1: the crank drives ccw, −1: cw"
+        ),
     }
 
 
@@ -119,7 +192,7 @@ def check_common_shape(cases: Mapping[str, Drive]) -> None:
         raise DriveError(problems)
 
 
-def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis]) -> xr.Dataset:
+def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None) -> xr.Dataset:
     """Return the labelled dataset of a run.
 
     Parameters
@@ -127,95 +200,48 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis]) -> xr
     drive_name : str
         Name of the drive.
     analyses : mapping of str to LoadedAnalysis
-        One analysis for each case, all at the same crank angles.
+        One analysis for each case, all at the same crank angles and on one engine.
+    drive_file : str, optional
+        Text of the drive file; by default the drive of the first case written as one.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions case, position, pin, roller, hole; units and descriptions in the attributes.
+        Dimensions case, disc, crank, position, pin, roller, hole; units and descriptions in the attributes.
     """
     per_case = [_values(analysis) for analysis in analyses.values()]
     first = next(iter(analyses.values()))
-    crank_angle = first.full.crank_angle
     variables = {}
-    for name, (pair, unit, description) in VARIABLES.items():
-        dimensions = ("case", "position", pair) if pair else ("case", "position")
-        stacked = np.stack([values[name] for values in per_case])
-        variables[name] = (dimensions, stacked, {"units": unit, "long_name": description})
+    for name, (kind, unit, description) in VARIABLES.items():
+        stacked = np.stack([_spread(values[name], kind) for values in per_case])
+        variables[name] = (("case", *DIMENSIONS[kind]), stacked, {"units": unit, "long_name": description})
     dataset = xr.Dataset(
         variables,
-        coords={
-            "case": list(analyses),
-            "position": np.arange(crank_angle.size),
-            "crank_angle": ("position", crank_angle, {"units": "rad", "long_name": "crank angle φ_C, held"}),
-        },
+        coords=coordinates(analyses),
         attrs={
-            "drive": drive_name,
-            "compliance": first.compliance,
-            "method": first.method,
-            "contacts": first.contacts,
-            "cage_speed": ContactGeometry.of_drive(first.drive).placement.cage_speed,
-            "torque_N_mm": [analysis.torque for analysis in analyses.values()],
-            "driving_sign": [analysis.drive.driving_sign for analysis in analyses.values()],
+            **provenance(drive_name, first.drive, drive_file),
+            **first.engine.options,
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
         },
     )
     # At unrelieved ends the largest pressure is singular: it is that of an end cell of this length.
-    for name, kind in (
+    for name, pressures in (
         ("pin_pressure_max", first.pressures.pins),
         ("roller_pressure_max_outer", first.pressures.outer),
         ("roller_pressure_max_inner", first.pressures.inner),
     ):
-        dataset[name].attrs["end_cell_mm"] = kind.end_cell
+        dataset[name].attrs["end_cell_mm"] = pressures.end_cell
     return dataset
 
 
-def summarise(analysis: LoadedAnalysis) -> dict[str, float]:
-    """Return the scalars of one case; means and peaks run over its positions.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-
-    Returns
-    -------
-    dict of str to float
-        The keys of ``summary.json``, their units in their names.
-    """
-    geometry = ContactGeometry.of_drive(analysis.drive)
-    full, contacts = analysis.full, analysis.full.response
-    angle = full.crank_angle
-    radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
-    pins, rollers, holes = (
-        load > LOADED_FRACTION * np.max(load)
-        for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
-    )
-    pressures = analysis.pressures
-    roller_mid = max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))
-    roller_largest = max(np.max(pressures.outer.largest), np.max(pressures.inner.largest))
-    values = {
-        "backlash_disc_arcmin": np.mean(backlash(geometry, angle, DISC_ROTATION)) * ARCMIN,
-        "backlash_wheel_arcmin": np.mean(backlash(geometry, angle, WHEEL_ANGLE)) * ARCMIN,
-        "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
-        "mean_radial_bearing_load_N": np.mean(radial),
-        "mean_tangential_bearing_load_N": np.mean(tangential),
-        "ptp_tangential_bearing_load_N": np.ptp(tangential),
-        "max_pin_load_N": np.max(contacts.pin_load),
-        "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
-        "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
-        "max_roller_load_N": np.max(contacts.rollers.outer_load),
-        "max_roller_pressure_mid_MPa": roller_mid,
-        "max_roller_pressure_max_MPa": roller_largest,
-        "pin_end_cell_mm": pressures.pins.end_cell,
-        "roller_end_cell_mm": pressures.outer.end_cell,
-        "max_pin_shaft_load_N": np.max(contacts.hole_load),
-        "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes),
-        "mean_loaded_pins": np.mean(pins.sum(axis=1)),
-        "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
-        "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)),
-        "ptp_transmission_error_arcsec": np.ptp(full.pose[:, WHEEL_ANGLE]) * ARCSEC,
-        "ptp_transmission_error_light_arcsec": np.ptp(analysis.light.pose[:, WHEEL_ANGLE]) * ARCSEC,
-        "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
+def provenance(drive_name: str, drive: Drive, drive_file: str | None = None) -> dict[str, str]:
+    """Return the attributes that say what a file is and what made it; no clock and no folder among them."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": f"loaded tooth contact analysis of {drive_name}",
+        "source": f"cyclo {code_version()}",
+        "version": code_version(),
+        "code_hash": code_hash("ltca"),
+        "drive": drive_name,
+        "drive_file": drive_text(drive) if drive_file is None else drive_file,
     }
-    return {name: float(value) for name, value in values.items()}

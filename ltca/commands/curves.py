@@ -71,9 +71,9 @@ def _solve(
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.pressure_safety import pressure_safety
     from ltca.analysis.rating_life import RollerBearing, rating_life
-    from ltca.analysis.results import ARCMIN, ARCSEC
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders, known_orders
+    from ltca.drive.units import ARCMIN, ARCSEC
     from ltca.figures import curve_figures as figures
 
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth

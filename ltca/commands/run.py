@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from ltca.analysis.engines import Engine
+    from ltca.analysis.loaded_analysis import LoadedAnalysis
+    from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "loaded tooth contact analysis: loads, pressures, bearing forces, transmission error"
@@ -26,7 +31,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--method",
         choices=("tables", "direct", "paper"),
-        default="tables",
         help="equilibrium on tabulated contact laws (default), with contact grids solved inside every iteration, or by "
         "the paper's iteration with held wheel",
     )
@@ -63,85 +67,96 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
-    from ltca.analysis.loaded_analysis import analyse
-    from ltca.analysis.results import build_dataset, check_common_shape, summarise
+    from ltca.analysis.results import build_dataset, check_common_shape
+    from ltca.analysis.summary import summarise
     from ltca.output.files import whole_file, write_json
-    from ltca.output.progress import progress
     from ltca.reading.drive_file import load_drive
 
-    angles = _crank_angles(arguments)
-    torque = _torque(arguments.torque)
-    pressure_angles = _pressure_angles(arguments.pressure)
-    if pressure_angles is not None and arguments.compliance != "half-space":
-        from ltca.errors import DriveError
-
-        raise DriveError(
-            [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
-        )
+    angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
+    torque, engine = _torque(arguments.torque), _engine(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
     out = arguments.out or Path("out") / file.name
-    options: dict[str, Any] = {
-        "method": arguments.method,
-        "contacts": arguments.contacts,
-        "compliance": arguments.compliance,
-        "hole_near_field": not arguments.no_hole_near_field,
-    }
-    if arguments.compliance != "half-space":
-        from ltca.compliance.coefficient_files import find_coefficients
-
-        options["coefficients"] = find_coefficients(next(iter(cases.values())), arguments.coefficients)
-    analyses = {}
-    with progress("cases", len(cases)) as advance:
-        for name, drive in cases.items():
-            analyses[name] = analyse(drive, angles, torque, **options)
-            advance(name)
+    analyses = _analyse(cases, angles, torque, engine, "cases")
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
-    dataset = build_dataset(file.name, analyses)
+    dataset = build_dataset(file.name, analyses, file.text)
     with whole_file(out / "results.nc") as part:
         dataset.to_netcdf(part, engine="h5netcdf")
     write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
-    fields = None
+    files, fields = ["results.nc", "summary.json"], None
     if pressure_angles is not None:
         from ltca.analysis.pressure_fields import build_pressure_dataset
 
-        shown = {}
-        with progress("pressure fields", len(cases)) as advance:
-            for name, drive in cases.items():
-                shown[name] = analyse(drive, pressure_angles, torque, **options)
-                advance(name)
-            fields = build_pressure_dataset(file.name, shown)
-        packed = {name: {"zlib": True} for name in ("pin_pressure", "roller_pressure")}
+        shown = _analyse(cases, pressure_angles, torque, engine, "pressure fields")
+        fields = build_pressure_dataset(file.name, shown, drive_file=file.text)
+        packed = {name: {"zlib": True} for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))}
         with whole_file(out / "pressure.nc") as part:
             fields.to_netcdf(part, engine="h5netcdf", encoding=packed)
+        files.append("pressure.nc")
     print(_table(summaries))
-    files = ["results.nc", "summary.json"] + (["pressure.nc"] if fields is not None else [])
     print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
-        from ltca.figures.run_figures import FIGURES, write_figures
-
-        with progress("figures", len(FIGURES)) as advance:
-            for path in write_figures(dataset, out / "figures"):
-                advance(path.name)
-        print(f"figures: {out / 'figures'} ({len(FIGURES)} as SVG and PNG)")
-        if fields is not None:
-            from ltca.figures.pressure_figures import can_render, write_pressure_figures
-
-            if not can_render():
-                print("pyvista cannot render here (no GL): 3-D pressures are drawn with matplotlib")
-            with progress("pressure figures", 3 + len(cases)) as advance:
-                for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), out / "figures"):
-                    advance(path.name)
+        _draw(dataset, fields, cases, out / "figures")
     return 0
+
+
+def _engine(arguments: argparse.Namespace) -> Engine:
+    from ltca.analysis.engines import engine_named
+    from ltca.errors import DriveError
+
+    if arguments.pressure is not None and arguments.compliance != "half-space":
+        raise DriveError(
+            [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
+        )
+    return engine_named(
+        arguments.compliance,
+        method=arguments.method,
+        contacts=arguments.contacts,
+        coefficients=arguments.coefficients,
+        hole_near_field=False if arguments.no_hole_near_field else None,
+    )
+
+
+def _analyse(
+    cases: dict[str, Drive], angles: FloatArray, torque: float | None, engine: Engine, title: str
+) -> dict[str, LoadedAnalysis]:
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.output.progress import progress
+
+    analyses = {}
+    with progress(title, len(cases)) as advance:
+        for name, drive in cases.items():
+            analyses[name] = analyse(drive, angles, torque, engine)
+            advance(name)
+    return analyses
+
+
+def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path) -> None:
+    from ltca.figures.run_figures import FIGURES, write_figures
+    from ltca.output.progress import progress
+
+    with progress("figures", len(FIGURES)) as advance:
+        for path in write_figures(dataset, folder):
+            advance(path.name)
+    print(f"figures: {folder} ({len(FIGURES)} as SVG and PNG)")
+    if fields is None:
+        return
+    from ltca.figures.pressure_figures import can_render, write_pressure_figures
+
+    if not can_render():
+        print("pyvista cannot render here (no GL): 3-D pressures are drawn with matplotlib")
+    with progress("pressure figures", 3 + len(cases)) as advance:
+        for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), folder):
+            advance(path.name)
 
 
 def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
     import numpy as np
 
-    from ltca.analysis.results import position_angles
     from ltca.drive.units import parse_quantity
     from ltca.errors import DriveError
+    from ltca.geometry.placement import position_angles
 
     if arguments.angles is not None:
         return np.array([parse_quantity(text, "rad", "--angles") for text in arguments.angles])
@@ -151,14 +166,14 @@ def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
     return position_angles(positions)
 
 
-def _pressure_angles(texts: list[str] | None) -> FloatArray | None:
+def _pressure_angles(arguments: argparse.Namespace) -> FloatArray | None:
     import numpy as np
 
     from ltca.drive.units import parse_quantity
 
-    if texts is None:
+    if arguments.pressure is None:
         return None
-    return np.array([parse_quantity(text, "rad", "--pressure") for text in texts or ["0"]])
+    return np.array([parse_quantity(text, "rad", "--pressure") for text in arguments.pressure or ["0"]])
 
 
 def _torque(text: str | None) -> float | None:
@@ -197,10 +212,11 @@ ROWS = (
 )
 
 
-def _table(summaries: dict[str, dict[str, float]]) -> str:
+def _table(summaries: dict[str, dict[str, float | None]]) -> str:
     width = max(10, *(len(name) + 2 for name in summaries))
     lines = [" " * 40 + "".join(f"{name:>{width}}" for name in summaries)]
     for title, key, unit, form in ROWS:
         head = f"{title}{f' [{unit}]' if unit else ''}"
-        lines.append(f"{head:<40}" + "".join(f"{form.format(case[key]):>{width}}" for case in summaries.values()))
+        values = [case[key] for case in summaries.values()]
+        lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
     return "\n".join(lines)

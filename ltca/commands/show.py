@@ -53,9 +53,10 @@ def execute(arguments: argparse.Namespace) -> int:
 def _properties(drive: Drive) -> list[tuple[str, str]]:
     import numpy as np
 
-    from ltca.analysis.results import ARCMIN, position_angles
+    from ltca.drive.units import ARCMIN
     from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
     from ltca.geometry.pairs import ContactGeometry
+    from ltca.geometry.placement import position_angles
 
     geometry = ContactGeometry.of_drive(drive)
     profile, place = geometry.profile, geometry.placement
@@ -94,7 +95,7 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
 def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     import numpy as np
 
-    from ltca.analysis.results import ARCMIN
+    from ltca.drive.units import ARCMIN
 
     contacts = analysis.full.response
     pose = analysis.full.pose[0]

@@ -11,6 +11,11 @@ from pydantic_core import PydanticCustomError
 
 from ltca.errors import DriveError
 
+ARCMIN = 180.0 / math.pi * 60.0
+"""Arcminutes of one radian."""
+ARCSEC = 60.0 * ARCMIN
+"""Arcseconds of one radian."""
+
 UNIT_LABELS = {"N*mm": "N·mm", "N/mm": "N/mm", "dimensionless": ""}
 
 

@@ -15,7 +15,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ltca.analysis.results import LOADED_FRACTION
+from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.figures.run_figures import COLOURS, STYLE, draw_curves
@@ -23,6 +23,8 @@ from ltca.geometry.flank import FlankProfile
 from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
+
+SIDES = ("outer", "inner")
 
 _PROBE = (
     "import pyvista as pv; p = pv.Plotter(off_screen=True, window_size=(64, 64)); p.add_mesh(pv.Sphere()); "
@@ -61,16 +63,18 @@ def even_cells(edges: FloatArray, pressure: FloatArray, cells: int) -> tuple[Flo
     return np.asarray(0.5 * (even[1:] + even[:-1])), means
 
 
-def hardest_roller(fields: xr.Dataset, case: str) -> dict[str, Any]:
-    """Return where the roller pressure at mid-width is largest in a case: angle, side and roller as an indexer."""
-    mid = fields["roller_pressure_mid"].sel(case=case)
-    at = np.unravel_index(int(np.argmax(mid.values)), mid.shape)
-    return {str(name): int(i) for name, i in zip(mid.dims, at, strict=True)}
+def hardest_roller(fields: xr.Dataset, case: str) -> tuple[str, dict[str, int]]:
+    """Return where the roller pressure at mid-width is largest in a case: the side, and an indexer of the rest."""
+    sides = [fields[f"roller_pressure_mid_{side}"].sel(case=case) for side in SIDES]
+    side = int(np.argmax([float(mid.max()) for mid in sides]))
+    at = np.unravel_index(int(np.argmax(sides[side].values)), sides[side].shape)
+    place = {str(name): int(i) for name, i in zip(sides[side].dims, at, strict=True)}
+    return SIDES[side], place
 
 
-def _named(fields: xr.Dataset, place: dict[str, Any]) -> str:
-    angle = float(np.degrees(fields["crank_angle"].values[place["angle"]]))
-    race = "bore" if str(fields["side"].values[place["side"]]) == "outer" else "inner race"
+def _named(fields: xr.Dataset, side: str, place: dict[str, int]) -> str:
+    angle = float(np.degrees(fields["crank_angle"].values[place["position"]]))
+    race = "bore" if side == "outer" else "inner race"
     return f"roller {place['roller']} on the {race}, crank angle {angle:.4g}°"
 
 
@@ -110,7 +114,7 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     tooth = theta[-1]
     for number, name in enumerate(names):
         colour = COLOURS[number % len(COLOURS)]
-        data = results.isel(case=number)
+        data = results.isel(case=number, disc=0, crank=0)
         load = data["pin_load"].values
         loaded = load > LOADED_FRACTION * load.max()
         place = np.interp(np.mod(data["pin_contact_parameter"].values[loaded], tooth), theta, arc)
@@ -156,10 +160,10 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
     names = [str(name) for name in fields["case"].values]
     curves, places, titles = [], [], []
     for name in names:
-        place = hardest_roller(fields, name)
+        side, place = hardest_roller(fields, name)
         field = fields.sel(case=name).isel(place)
-        pressure = field["roller_pressure"].values
-        x, y = field["roller_x_edge"].values, field["roller_y_edge"].values
+        pressure = field[f"roller_pressure_{side}"].values
+        x, y = field[f"roller_x_edge_{side}"].values, field[f"roller_y_edge_{side}"].values
         if major:
             centres, means = even_cells(y, pressure, round(1.0 / END_STRETCH))
             middle = pressure.shape[0] // 2
@@ -169,7 +173,7 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
             centres = 0.5 * (x[1:] + x[:-1])
             curves.append(pressure[:, middle - 1 : middle + 1].mean(axis=1))
         places.append(centres)
-        titles.append(_named(fields, place))
+        titles.append(_named(fields, side, place))
     # One axis for all: patches differ a little in size.
     reach = max(float(np.max(np.abs(c[curve > 0.0]))) for c, curve in zip(places, curves, strict=True)) * 1.1
     common = np.linspace(-reach, 0.0, 401) if not major else places[int(np.argmax([c[-1] for c in places]))]
@@ -186,13 +190,14 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
 
 
 def _surface(fields: xr.Dataset, case: str) -> tuple[FloatArray, FloatArray, FloatArray, str]:
-    place = hardest_roller(fields, case)
+    side, place = hardest_roller(fields, case)
     field = fields.sel(case=case).isel(place)
-    x = field["roller_x_edge"].values
-    y, pressure = even_cells(field["roller_y_edge"].values, field["roller_pressure"].values, round(1.0 / END_STRETCH))
+    x = field[f"roller_x_edge_{side}"].values
+    cells = round(1.0 / END_STRETCH)
+    y, pressure = even_cells(field[f"roller_y_edge_{side}"].values, field[f"roller_pressure_{side}"].values, cells)
     touched = np.nonzero(pressure.max(axis=1) > 0.0)[0]
     rows = slice(max(touched[0] - 1, 0), touched[-1] + 2)
-    return 0.5 * (x[1:] + x[:-1])[rows], y, pressure[rows], _named(fields, place)
+    return 0.5 * (x[1:] + x[:-1])[rows], y, pressure[rows], _named(fields, side, place)
 
 
 def render_roller_pressure(fields: xr.Dataset, case: str, path: Path) -> None:

@@ -12,7 +12,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ltca.analysis.results import ARCSEC, LOADED_FRACTION
+from ltca.analysis.summary import LOADED_FRACTION
+from ltca.drive.units import ARCSEC
 from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
@@ -183,7 +184,7 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
     """Load of all rollers at all positions over their place against the eccentricity."""
     rollers = data.sizes["roller"]
     angle = data["crank_angle"].values
-    speed = float(data.attrs["cage_speed"])
+    speed = float(data["cage_speed"].values[0])
     place = speed * angle[:, None] + 2.0 * np.pi * np.arange(rollers) / rollers - angle[:, None]
     place = np.degrees(np.mod(place, 2.0 * np.pi))
     edges = np.linspace(0.0, 360.0, 121)
@@ -225,6 +226,22 @@ FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
 }
 
 
+def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
+    """Return one figure.
+
+    Parameters
+    ----------
+    name : str
+        Key of `FIGURES`.
+    dataset : xarray.Dataset
+        Of `ltca.analysis.results.build_dataset`; its first disc and crank are drawn.
+    """
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(7.2, 4.4))
+        FIGURES[name](figure, dataset.isel(disc=0, crank=0))
+    return figure
+
+
 def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
     """Write every figure as SVG and PNG.
 
@@ -241,9 +258,8 @@ def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
         The PNG of each figure when both files are written.
     """
     with mpl.rc_context(STYLE):
-        for name, draw in FIGURES.items():
-            figure = Figure(figsize=(7.2, 4.4))
-            draw(figure, dataset)
+        for name in FIGURES:
+            figure = draw_figure(name, dataset)
             for suffix in (".svg", ".png"):
                 path = folder / f"{name}{suffix}"
                 metadata = {"Date": None} if suffix == ".svg" else None

@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from ltca.analysis.results import ARCMIN, ARCSEC
+from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.figures.run_figures import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.designs import SweepDesign

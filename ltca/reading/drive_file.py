@@ -33,12 +33,15 @@ class DriveFile:
         One complete drive for each case, in the order of the file.
     tolerances : dict of str to Distribution
         How fields scatter, by dotted path; for studies alone.
+    text : str
+        What was read.
     """
 
     name: str
     source: str
     cases: dict[str, Drive]
     tolerances: Tolerances
+    text: str
 
     def select(self, names: list[str] | None) -> dict[str, Drive]:
         """Return some of the cases, all for None.
@@ -141,7 +144,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
         problems += [f"case {name}: {problem}" for problem in found if problem not in common]
     if problems:
         raise DriveError(problems, source)
-    return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances)
+    return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, text=text)
 
 
 def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:

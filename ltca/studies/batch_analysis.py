@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.loaded_analysis import HALF_WIDTH_BOUND
+from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import HalfSpaceCompliance, batch_signature
-from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.errors import CycloError, DriveError
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.errors import CycloError
 from ltca.geometry.first_contact import WHEEL_ANGLE, backlash
 from ltca.studies.quantities import QUANTITIES, SampleBatch
 
@@ -159,7 +159,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     ConvergenceError
         When a position of any of them does not balance.
     DriveError
-        When a torque cannot be carried (`ltca.analysis.loaded_analysis.HALF_WIDTH_BOUND`).
+        When a torque cannot be carried (`ltca.analysis.half_width_guard`).
     """
     samples, positions = len(drives), settings.crank_angle.size
     stages = {QUANTITIES[name].stage for name in settings.quantities}
@@ -172,7 +172,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     start = None if nominal is None else np.tile(nominal.full, (samples, 1))
     full = solve_equilibrium(model, angle, moments([drive.wheel_moment() for drive in drives]), start)
     pressures = model.pressures(full.response)
-    _check_half_widths(drives[0], full, pressures)
+    check_half_widths(drives[0], full.response, pressures)
     light, play = None, None
     if "light" in stages:
         moment = moments([drive.wheel_moment(drive.load.light_torque) for drive in drives])
@@ -181,26 +181,3 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     if "backlash" in stages:
         play = backlash(model.geometry, angle, WHEEL_ANGLE)
     return SampleBatch(samples=samples, full=full, pressures=pressures, light=light, backlash=play)
-
-
-def _check_half_widths(drive: Drive, full: Equilibrium, pressures: ContactPressures) -> None:
-    """Refuse batches with a contact wider than half-spaces stand for; the halving of the batch finds the sample."""
-    flank = full.response.flank
-    pin_radius = drive.pin_wheel.pin_radius
-    curvature = 1.0 / flank.effective_radius - 1.0 / pin_radius
-    smallest = np.minimum(1.0 / np.maximum(np.abs(curvature), 1e-9), pin_radius)
-    roller = drive.crank_bearing.roller_radius
-    kinds = (
-        ("wheel pin", pressures.pins.half_width, smallest),
-        ("roller on the bore", pressures.outer.half_width, roller),
-        ("roller on the inner race", pressures.inner.half_width, roller),
-    )
-    for name, half_width, radius in kinds:
-        worst = float(np.max(half_width / radius))
-        if worst > HALF_WIDTH_BOUND:
-            raise DriveError(
-                [
-                    f"load.torque cannot be carried: contact half-width of a {name} is {worst:.3g} of the smallest "
-                    f"radius in contact, must be at most {HALF_WIDTH_BOUND:g}"
-                ]
-            )

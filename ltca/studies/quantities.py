@@ -9,15 +9,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ContactPressures
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
 from ltca.geometry.first_contact import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
-
-LOADED_FRACTION = 1e-3
-"""As in `ltca.analysis.results`: loaded = more than this part of the largest load of its kind in the sample."""
 
 Stage = Literal["full", "light", "backlash"]
 

@@ -28,7 +28,8 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.results import position_angles, summarise
+from ltca.analysis.summary import summarise
+from ltca.geometry.placement import position_angles
 
 CASES = ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]
 

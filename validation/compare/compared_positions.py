@@ -12,7 +12,7 @@ from ltca.compliance.coefficients import Boundary, InfluenceCoefficients
 from ltca.drive.parts import Drive
 from validation.compare.comparison import Kind, PositionAnswer, PositionDifference, compare_positions
 from validation.compare.finite_element_positions import FullPosition
-from validation.compare.model_positions import MODELS, answers_of
+from validation.compare.model_positions import MODELS, answers_of, engine_of
 
 FloatArray = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def compare_case(
         In the order of `positions`.
     """
     angles = np.array([position.crank_angle for position in positions])
-    analyses = {model: analyse(drive, angles, compliance=model, coefficients=coefficients) for model in MODELS}
+    analyses = {model: analyse(drive, angles, engine=engine_of(model, coefficients)) for model in MODELS}
     answers = {model: answers_of(analysis) for model, analysis in analyses.items()}
     distances = _station_distances(analyses["fe"], coefficients)
     return [

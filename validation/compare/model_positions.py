@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.loaded_analysis import Compliance, LoadedAnalysis, analyse
+from ltca.analysis.engines import Compliance, Engine, HalfSpace, engine_named
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import Drive
@@ -17,6 +18,11 @@ from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 FloatArray = NDArray[np.float64]
 
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
+
+
+def engine_of(compliance: Compliance, coefficients: InfluenceCoefficients | None) -> Engine:
+    """Return the engine of a compliance model, with the coefficients where it takes them."""
+    return HalfSpace() if compliance == "half-space" else engine_named(compliance, coefficients=coefficients)
 
 
 def answer_positions(
@@ -48,7 +54,7 @@ def answer_positions(
     CycloError
         As `ltca.analysis.loaded_analysis.analyse`.
     """
-    return answers_of(analyse(drive, crank_angles, compliance=compliance, coefficients=coefficients))
+    return answers_of(analyse(drive, crank_angles, engine=engine_of(compliance, coefficients)))
 
 
 def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:

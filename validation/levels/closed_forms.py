@@ -16,7 +16,6 @@ from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleShape, RingShape
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.results import position_angles
 from ltca.contact.hertz import (
     line_contact_stress,
     line_half_width,
@@ -27,6 +26,7 @@ from ltca.contact.hertz import (
 from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.drive.parts import Drive, Material, contact_modulus
+from ltca.geometry.placement import position_angles
 from ltca.laws.line_contact import LineContactLaw
 from validation.rows import Row, relative_row
 

@@ -13,7 +13,7 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
-from validation.compare.model_positions import MODELS
+from validation.compare.model_positions import MODELS, engine_of
 from validation.rows import Row, rounded
 
 FloatArray = NDArray[np.float64]
@@ -115,13 +115,13 @@ def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> CaseMeaning
     """
     angles = 2.0 * np.pi * np.arange(TURN_POSITIONS) / TURN_POSITIONS
     turn: dict[str, TurnFigures] = {
-        model: turn_figures(analyse(drive, angles, compliance=model, coefficients=coefficients)) for model in MODELS
+        model: turn_figures(analyse(drive, angles, engine=engine_of(model, coefficients))) for model in MODELS
     }
     by_torque = {}
     for multiple in TORQUES:
         torque = multiple * drive.load.torque
         half, fe = (
-            turn_figures(analyse(drive, angles, torque, compliance=model, coefficients=coefficients))
+            turn_figures(analyse(drive, angles, torque, engine=engine_of(model, coefficients)))
             for model in (MODELS[0], MODELS[1])
         )
         by_torque[multiple] = {

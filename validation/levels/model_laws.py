@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
@@ -53,9 +54,7 @@ def compare_models(
 def _uncoupled(drive: Drive, case: str, crank_angles: FloatArray) -> list[Row]:
     """Without a body part and without the holes' near field the hybrid is the paper's half-space model."""
     half = analyse(drive, crank_angles)
-    hybrid = analyse(
-        drive, crank_angles, compliance="hybrid", coefficients=without_coupling(drive), hole_near_field=False
-    )
+    hybrid = analyse(drive, crank_angles, engine=Hybrid(coefficients=without_coupling(drive), hole_near_field=False))
     first, second = half.full.response, hybrid.full.response
     pairs = (
         (first.pin_load, second.pin_load),
@@ -139,7 +138,7 @@ def pair_approaches(
 def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: InfluenceCoefficients) -> list[Row]:
     """The wider the drive the nearer half-spaces of finite length come to plane strain, like 1/ln width."""
     angle = float(crank_angles[0])
-    fe = analyse(drive, crank_angles[:1], compliance="fe", coefficients=coefficients)
+    fe = analyse(drive, crank_angles[:1], engine=PlaneStrain(coefficients=coefficients))
     load = fe.full.response.pin_load[0]
     loaded = np.flatnonzero(load > 0.05 * load.max())
     gaps = []
@@ -184,7 +183,7 @@ def _plane_stress(
     plane_stress: InfluenceCoefficients,
 ) -> list[Row]:
     strain, stress = (
-        answers_of(analyse(drive, crank_angles, compliance="fe", coefficients=own))
+        answers_of(analyse(drive, crank_angles, engine=PlaneStrain(coefficients=own)))
         for own in (coefficients, plane_stress)
     )
     rows = []

@@ -11,9 +11,11 @@ import itertools
 import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.analysis.results import ARCSEC, position_angles, summarise
+from ltca.analysis.summary import summarise
+from ltca.drive.units import ARCSEC
 from ltca.geometry.first_contact import unloaded_transmission_error
 from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 from validation.rows import Row, positive_row, range_row
 
@@ -29,7 +31,10 @@ def compare_printed_results() -> list[Row]:
     """Return the rows of level 3."""
     cases = load_drive("paper").cases
     analyses = {name: analyse(drive, position_angles(POSITIONS)) for name, drive in cases.items()}
-    summary = {name: summarise(analysis) for name, analysis in analyses.items()}
+    summary = {
+        name: {key: value for key, value in summarise(analysis).items() if value is not None}
+        for name, analysis in analyses.items()
+    }
     geometry = ContactGeometry.of_drive(cases["CS-1"])
     unloaded = unloaded_transmission_error(geometry, position_angles(POSITIONS))
     return [

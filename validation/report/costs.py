@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ltca.analysis.loaded_analysis import analyse
-from validation.compare.model_positions import MODELS
+from validation.compare.model_positions import MODELS, engine_of
 from validation.study import Study
 
 POSITIONS, REPEATS = 36, 3
@@ -40,7 +40,7 @@ def measure_costs(study: Study) -> Costs:
         seconds = []
         for _ in range(REPEATS):  # the least disturbed by whatever else runs
             start = time.perf_counter()
-            analyse(drive, angles, compliance=model, coefficients=coefficients)
+            analyse(drive, angles, engine=engine_of(model, coefficients))
             seconds.append(time.perf_counter() - start)
         models[model] = min(seconds) / POSITIONS
     full = [item.full.seconds for items in study.compared.values() for item in items]

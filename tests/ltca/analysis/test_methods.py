@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import ltca.analysis.loaded_analysis
+import ltca.analysis.engines
+from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.results import position_angles
 from ltca.commands.program import main
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
@@ -15,6 +15,7 @@ from ltca.drive.parts import LengthProfile
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
 from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 
 CASES = load_drive("paper").cases
@@ -35,7 +36,7 @@ def pressures_apart(first, second):
 
 
 def compare_direct(case, angles):
-    tables, direct = analyse(CASES[case], angles), analyse(CASES[case], angles, method="direct")
+    tables, direct = analyse(CASES[case], angles), analyse(CASES[case], angles, engine=HalfSpace(method="direct"))
     # The issue asks for 0.1 % and 0.5 %; 12 cells per half-width leave 0.013 % and 0.12 %.
     assert apart(tables.full.response, direct.full.response) < 1e-3
     assert pressures_apart(tables.pressures, direct.pressures) < 5e-3
@@ -78,7 +79,7 @@ def test_grid_halved():
 def test_paper_agrees_on_the_same_law(case):
     """The issue asks for 0.01 %; both end at the same residual, so they agree to 1e-8."""
     angles = position_angles(12) + 0.05
-    ours, theirs = analyse(CASES[case], angles), analyse(CASES[case], angles, method="paper")
+    ours, theirs = analyse(CASES[case], angles), analyse(CASES[case], angles, engine=HalfSpace(method="paper"))
     assert apart(ours.full.response, theirs.full.response) < 1e-7
     assert apart(ours.light.response, theirs.light.response) < 1e-6
     np.testing.assert_array_equal(theirs.full.crank_angle, angles)
@@ -88,9 +89,9 @@ def test_paper_agrees_on_the_same_law(case):
 
 def test_paper_on_grids_agrees_with_direct():
     drive, angle = CASES["CS-1"], np.array([0.9])
-    direct = analyse(drive, angle, method="direct")
-    theirs = analyse(drive, angle, method="paper", contacts="grids")
-    assert theirs.contacts == "grids"
+    direct = analyse(drive, angle, engine=HalfSpace(method="direct"))
+    theirs = analyse(drive, angle, engine=HalfSpace(method="paper", contacts="grids"))
+    assert theirs.engine.contacts == "grids"
     # Rungs of the ladder may differ, as from different starts.
     assert apart(direct.full.response, theirs.full.response) < 2e-4
 
@@ -116,9 +117,7 @@ def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys)
     with pytest.raises(ConvergenceError, match="iteration of the paper fails") as caught:
         solve_paper_equilibrium(model, np.array([0.3]), drive.wheel_moment(), np.zeros((1, 4)))
     assert "singular tangent" in str(caught.value)
-    monkeypatch.setattr(
-        ltca.analysis.loaded_analysis, "solve_equilibrium", lambda model, angle, moment, start: _Floating
-    )
+    monkeypatch.setattr(ltca.analysis.engines, "solve_equilibrium", lambda model, angle, moment, start: _Floating)
     command = ["run", "paper", "--case", "CS-6", "--positions", "1", "--method", "paper", "--out", str(tmp_path)]
     assert main(command) == 2
     assert "the iteration of the paper fails at crank angle 0 rad" in capsys.readouterr().err
@@ -130,7 +129,7 @@ class _Floating:
 
 def test_methods_and_contacts_that_contradict_each_other():
     with pytest.raises(DriveError, match="method tables runs on tables"):
-        analyse(CASES["CS-1"], np.array([0.0]), contacts="grids")
+        HalfSpace(contacts="grids")
 
 
 def test_flank_pressure_of_cs3_against_cs1():
@@ -163,7 +162,7 @@ def test_relieved_rollers_direct_agrees_with_tables():
     bearing = replace(drive.crank_bearing, roller_profile=LengthProfile(logarithmic_factor=1.0))
     drive = replace(drive, crank_bearing=bearing)
     angle = np.array([0.4])
-    tables, direct = analyse(drive, angle), analyse(drive, angle, method="direct")
+    tables, direct = analyse(drive, angle), analyse(drive, angle, engine=HalfSpace(method="direct"))
     assert apart(tables.full.response, direct.full.response) < 1e-3
     assert pressures_apart(tables.pressures, direct.pressures) < 5e-3
     straight = analyse(CASES["CS-1"], angle)

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.results import build_dataset, check_common_shape, position_angles, summarise
+from ltca.analysis.results import build_dataset, check_common_shape
+from ltca.analysis.summary import summarise
 from ltca.errors import DriveError
+from ltca.geometry.placement import position_angles
 
 # issue 2, to the letter
 PAIR_VARIABLES = {
@@ -21,8 +23,11 @@ PAIR_VARIABLES = {
     "roller_pressure_mid_inner": ("roller", "MPa"), "pin_contact_parameter": ("pin", "rad"),
 }  # fmt: skip
 POSITION_VARIABLES = {
-    "bearing_radial": "N", "bearing_tangential": "N", "transmission_error": "rad", "transmission_error_light": "rad",
-    "disc_radial": "mm", "disc_tangential": "mm", "disc_rotation": "rad", "equilibrium_residual": "N",
+    "bearing_radial": (("disc", "crank"), "N"), "bearing_tangential": (("disc", "crank"), "N"),
+    "wheel_angle": ((), "rad"), "wheel_angle_light": ((), "rad"),
+    "transmission_error": ((), "rad"), "transmission_error_light": ((), "rad"),
+    "disc_radial": (("disc",), "mm"), "disc_tangential": (("disc",), "mm"), "disc_rotation": (("disc",), "rad"),
+    "equilibrium_residual": ((), "N"),
 }  # fmt: skip
 SUMMARY_KEYS = set(
     """
@@ -47,13 +52,21 @@ def dataset(analyses):
     return build_dataset("paper", analyses)
 
 
+@pytest.fixture(scope="module")
+def flat(dataset):
+    """The one disc on the one crank, without their dimensions."""
+    return dataset.isel(disc=0, crank=0)
+
+
 def test_variables_dimensions_and_units(dataset):
-    assert dict(dataset.sizes) == {"case": 6, "position": 5, "pin": 14, "roller": 11, "hole": 8}
+    sizes = {"case": 6, "disc": 1, "crank": 1, "position": 5, "pin": 14, "roller": 11, "hole": 8}
+    assert dict(dataset.sizes) == sizes
     for name, (pair, unit) in PAIR_VARIABLES.items():
-        assert dataset[name].dims == ("case", "position", pair), name
+        parts = ("disc", "crank") if pair == "roller" else ("disc",)
+        assert dataset[name].dims == ("case", *parts, "position", pair), name
         assert dataset[name].attrs["units"] == unit, name
-    for name, unit in POSITION_VARIABLES.items():
-        assert dataset[name].dims == ("case", "position"), name
+    for name, (parts, unit) in POSITION_VARIABLES.items():
+        assert dataset[name].dims == ("case", *parts, "position"), name
         assert dataset[name].attrs["units"] == unit, name
     assert dataset["iterations"].dims == ("case", "position")
     for kind in ("pin_half_width", "roller_half_width_outer", "roller_half_width_inner"):
@@ -62,11 +75,11 @@ def test_variables_dimensions_and_units(dataset):
 
 def test_position_is_an_integer_index_and_crank_angle_the_request(dataset):
     assert dataset.indexes["position"].dtype.kind == "i"
-    assert list(dataset.indexes) == ["case", "position"]
+    assert set(dataset.indexes) == {"case", "disc", "crank", "position", "pin", "roller", "hole"}
     np.testing.assert_array_equal(dataset["crank_angle"].values, ANGLES)
     assert "crank_angle" in dataset.coords
     assert list(dataset["case"].values) == ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]
-    assert np.all(np.isfinite(dataset.to_array()))
+    assert all(np.all(np.isfinite(dataset[name])) for name in dataset)
 
 
 def test_netcdf_gives_back_what_was_written(dataset, tmp_path):
@@ -161,27 +174,27 @@ def check_position(drive, at, torque):
     assert float(at["equilibrium_residual"]) == pytest.approx(max(map(abs, residual)), abs=2e-6)
 
 
-def test_equilibrium_from_the_dataset_alone(dataset, paper_cases):
+def test_equilibrium_from_the_dataset_alone(flat, paper_cases):
     for case, drive in paper_cases.items():
         for position in range(ANGLES.size):
-            check_position(drive, dataset.sel(case=case).isel(position=position), 377_300.0)
+            check_position(drive, flat.sel(case=case).isel(position=position), 377_300.0)
 
 
 def test_equilibrium_of_the_reverse_drive_and_another_torque(vary):
     drive = vary(load={"direction": "cw"}, clearance={"bearing": 0.01, "pin_hole": 0.01})
-    data = build_dataset("reverse", {"only": analyse(drive, ANGLES, 100_000.0)})
+    data = build_dataset("reverse", {"only": analyse(drive, ANGLES, 100_000.0)}).isel(disc=0, crank=0)
     for position in range(ANGLES.size):
         check_position(drive, data.sel(case="only").isel(position=position), 100_000.0)
     assert np.all(data["bearing_tangential"] < 0.0)
     assert np.all(data["transmission_error"] > 0.0)
 
 
-def test_summary_keys_and_scalars_from_the_dataset(analyses, dataset):
+def test_summary_keys_and_scalars_from_the_dataset(analyses, flat):
     for case, analysis in analyses.items():
         summary = summarise(analysis)
         assert set(summary) >= SUMMARY_KEYS  # others may be added, none renamed
         assert all(math.isfinite(value) for value in summary.values())
-        at = dataset.sel(case=case)
+        at = flat.sel(case=case)
         radial, tangential = at["bearing_radial"].values, at["bearing_tangential"].values
         total = [math.hypot(a, b) for a, b in zip(radial, tangential, strict=True)]
         expected = {

@@ -61,7 +61,8 @@ def test_every_quantity_against_the_run_of_its_sample(paper):
     found = dict(zip(study.quantities, result.values[2], strict=True))
     assert set(found) == set(QUANTITIES)
     alone = analyse(drive, position_angles(24))
-    from ltca.analysis.results import ARCMIN, ARCSEC, summarise
+    from ltca.analysis.summary import summarise
+    from ltca.drive.units import ARCMIN, ARCSEC
 
     told = summarise(alone)
     pairs = {

@@ -1,0 +1,302 @@
+"""Engines: how the bodies of a drive yield and how its equilibrium is found, as frozen values with their options.
+
+An engine knows no drive; `prepare` builds what it needs for one, once, and the prepared engine is asked for balanced
+positions as often as wanted. Names given as text become engines in `engine_named` and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Protocol, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.half_width_guard import check_half_widths
+from ltca.compliance.coefficient_files import find_coefficients
+from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.grids import GridCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.response import ComplianceModel
+from ltca.drive.parts import Drive
+from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.paper_method import solve_paper_equilibrium
+from ltca.errors import DriveError
+
+FloatArray = NDArray[np.float64]
+
+Method = Literal["tables", "direct", "paper"]
+Contacts = Literal["tables", "grids"]
+Compliance = Literal["half-space", "fe", "hybrid"]
+
+PAPER_START = 0.95
+"""Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
+
+
+class PreparedEngine(Protocol):
+    """An engine built for one drive."""
+
+    @property
+    def model(self) -> ComplianceModel:
+        """The compliance whose loads balance."""
+        ...
+
+    def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
+        """Return balanced positions at an output torque, N·mm, from poses near by if given."""
+        ...
+
+
+class Engine(Protocol):
+    """What an analysis runs on."""
+
+    @property
+    def compliance(self) -> Compliance:
+        """How the bodies yield, by name."""
+        ...
+
+    @property
+    def options(self) -> dict[str, str]:
+        """What distinguishes results of this engine, for attributes of files."""
+        ...
+
+    def prepare(self, drive: Drive) -> PreparedEngine:
+        """Return the engine built for a drive."""
+        ...
+
+    def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
+        """Return the compliance of drives at a number of positions each; of one drive where `batches` is False."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _OnTables:
+    """Equilibrium on a model whose loads come cheaply from anywhere."""
+
+    drive: Drive
+    model: HalfSpaceCompliance
+
+    def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
+        return solve_equilibrium(self.model, crank_angle, self.drive.wheel_moment(torque), start)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _FromTables:
+    """Equilibrium on a dearer model, started from the solution on tables."""
+
+    drive: Drive
+    tables: HalfSpaceCompliance
+    model: ComplianceModel
+
+    def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
+        moment = self.drive.wheel_moment(torque)
+        near = solve_equilibrium(self.tables, crank_angle, moment, start)
+        # Grids wider than the bodies are curved have no separation: refused before they are laid.
+        check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
+        return solve_equilibrium(self.model, crank_angle, moment, near.pose)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _HeldWheel:
+    """The paper's iteration, started from the solution on tables at a little less torque."""
+
+    drive: Drive
+    tables: HalfSpaceCompliance
+    model: ComplianceModel
+
+    def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
+        moment = self.drive.wheel_moment(torque)
+        near = solve_equilibrium(self.tables, crank_angle, PAPER_START * moment, start)
+        return solve_paper_equilibrium(self.model, crank_angle, moment, near.pose)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HalfSpace:
+    """Contacts between half-spaces that do not feel each other (the paper's model).
+
+    Parameters
+    ----------
+    method : {"tables", "direct", "paper"}
+        ``tables``: equilibrium on tabulated laws; ``direct``: contact grids solved inside every iteration, started
+        from the solution on tables; ``paper``: the paper's iteration with held wheel
+        (`ltca.equilibrium.paper_method`), started from our solution at 95 % of the torque.
+    contacts : {"tables", "grids"}, optional
+        What the paper's iteration runs on, tables by default; the other methods have their own.
+
+    Raises
+    ------
+    DriveError
+        When a name is unknown or method and contacts contradict each other.
+    """
+
+    compliance: ClassVar[Compliance] = "half-space"
+    batches: ClassVar[bool] = True
+
+    method: Method = "tables"
+    contacts: Contacts | None = None
+
+    def __post_init__(self) -> None:
+        """Check the names; fill in the contacts of the method."""
+        _check_name("method", self.method, get_args(Method))
+        own: Contacts = "grids" if self.method == "direct" else "tables"
+        if self.contacts is not None:
+            _check_name("contacts", self.contacts, get_args(Contacts))
+            if self.method != "paper" and self.contacts != own:
+                raise DriveError(
+                    [
+                        f"contacts = {self.contacts}: method {self.method} runs on {own}; only method paper runs on "
+                        "either"
+                    ]
+                )
+        object.__setattr__(self, "contacts", self.contacts or own)
+
+    @property
+    def options(self) -> dict[str, str]:
+        """Compliance, method and contacts."""
+        return {"compliance": self.compliance, "method": self.method, "contacts": str(self.contacts)}
+
+    def prepare(self, drive: Drive) -> PreparedEngine:
+        """Return the engine built for a drive."""
+        tables = HalfSpaceCompliance.of_drive(drive)
+        model = tables if self.contacts == "tables" else GridCompliance.of_drive(drive)
+        if self.method == "paper":
+            return _HeldWheel(drive=drive, tables=tables, model=model)
+        if self.method == "direct":
+            return _FromTables(drive=drive, tables=tables, model=model)
+        return _OnTables(drive=drive, model=tables)
+
+    def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
+        """Return the tables of several drives, each at the same number of positions."""
+        return HalfSpaceCompliance.of_drives(drives, positions)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Coupled:
+    """What the engines on derived coefficients share.
+
+    Parameters
+    ----------
+    coefficients : InfluenceCoefficients, Path or None
+        Of the drive: read, a file of ``cyclo derive``, or (None) found in the cache or derived and kept there.
+    hole_near_field : bool
+        Whether hole walls yield like a Hertz contact.
+    """
+
+    batches: ClassVar[bool] = False
+
+    coefficients: InfluenceCoefficients | Path | None = field(default=None, repr=False)
+    hole_near_field: bool = True
+
+    @property
+    def options(self) -> dict[str, str]:
+        """Compliance, and whether hole walls yield."""
+        compliance: Compliance = self.compliance  # type: ignore[attr-defined]  # of the engines below
+        near = "yes" if self.hole_near_field else "no"
+        return {"compliance": compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
+
+    def model(self, drive: Drive) -> CoupledCompliance:
+        """Return the coupled compliance of a drive."""
+        found = self.coefficients
+        if not isinstance(found, InfluenceCoefficients):
+            found = find_coefficients(drive, None if found is None else Path(found))
+        near_field: Any = self.compliance  # type: ignore[attr-defined]
+        return CoupledCompliance.of_drive(drive, found, near_field, hole_near_field=self.hole_near_field)
+
+    def prepare(self, drive: Drive) -> PreparedEngine:
+        """Return the engine built for a drive; finds or derives its coefficients."""
+        return _FromTables(drive=drive, tables=HalfSpaceCompliance.of_drive(drive), model=self.model(drive))
+
+    def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
+        """Return the compliance of one drive.
+
+        Raises
+        ------
+        ValueError
+            For several drives: their coefficients do not mix.
+        """
+        if len(drives) != 1:
+            raise ValueError("coefficients of several drives do not mix in one batch")
+        return self.model(drives[0])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlaneStrain(_Coupled):
+    """Plane-strain bodies by finite elements: every contact of a body feels the others (``fe``)."""
+
+    compliance: ClassVar[Compliance] = "fe"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hybrid(_Coupled):
+    """Half-spaces of finite length at the contacts, finite elements for what the bodies have beyond (``hybrid``)."""
+
+    compliance: ClassVar[Compliance] = "hybrid"
+
+
+def engine_named(
+    compliance: str | Engine = "half-space",
+    *,
+    method: str | None = None,
+    contacts: str | None = None,
+    coefficients: InfluenceCoefficients | Path | None = None,
+    hole_near_field: bool | None = None,
+) -> Engine:
+    """Return the engine that names and options ask for; what an engine cannot use is refused.
+
+    Parameters
+    ----------
+    compliance : {"half-space", "fe", "hybrid"} or Engine
+        How the bodies yield; an engine brings its own options, so none may stand beside it.
+    method, contacts : str, optional
+        Of `HalfSpace`.
+    coefficients, hole_near_field : optional
+        Of `PlaneStrain` and `Hybrid`.
+
+    Raises
+    ------
+    DriveError
+        When a name is unknown or an option does not belong to the compliance.
+    """
+    given: dict[str, Any] = {
+        name: value
+        for name, value in (
+            ("method", method),
+            ("contacts", contacts),
+            ("coefficients", coefficients),
+            ("hole_near_field", hole_near_field),
+        )
+        if value is not None
+    }
+    if not isinstance(compliance, str):
+        if not hasattr(compliance, "prepare"):
+            raise DriveError([f"compliance = {compliance!r}: must be an engine or one of {_listed(Compliance)}"])
+        if given:
+            raise DriveError([f"{name}: is an option of the engine given as compliance" for name in given])
+        return compliance
+    _check_name("compliance", compliance, get_args(Compliance))
+    if compliance == "half-space":
+        _refuse(given, ("coefficients", "hole_near_field"), compliance)
+        return HalfSpace(method=given.get("method", "tables"), contacts=given.get("contacts"))
+    if given.get("method") == "tables":
+        del given["method"]
+    for name in ("method", "contacts"):
+        if name in given:
+            raise DriveError([f"{name} = {given[name]}: runs on half-space compliance only, not on {compliance}"])
+    return PlaneStrain(**given) if compliance == "fe" else Hybrid(**given)
+
+
+def _refuse(given: dict[str, Any], names: tuple[str, ...], compliance: str) -> None:
+    problems = [f"{name}: has no effect with compliance {compliance}; leave it out" for name in names if name in given]
+    if problems:
+        raise DriveError(problems)
+
+
+def _listed(names: Any) -> str:
+    return ", ".join(repr(name) for name in get_args(names))
+
+
+def _check_name(option: str, name: Any, known: tuple[str, ...]) -> None:
+    if name not in known:
+        raise DriveError([f"{option} = {name!r}: is unknown; must be one of {', '.join(map(repr, known))}"])

@@ -1,0 +1,77 @@
+"""The scalars of one case: what ``summary.json`` holds."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.drive.units import ARCMIN, ARCSEC
+from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
+from ltca.geometry.pairs import ContactGeometry
+
+FloatArray = NDArray[np.float64]
+
+LOADED_FRACTION = 1e-3
+"""A contact counts as loaded above this part of the largest load of its kind in the case."""
+
+OF_RANGES = (
+    "ptp_tangential_bearing_load_N",
+    "ptp_transmission_error_arcsec",
+    "ptp_transmission_error_light_arcsec",
+    "pin_shaft_loaded_range_deg",
+)
+"""What needs more than one position."""
+
+
+def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
+    """Return the scalars of one case; means and peaks run over its positions.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        The case.
+
+    Returns
+    -------
+    dict of str to (float or None)
+        The keys of ``summary.json``, their units in their names; None where the engine cannot say a value.
+    """
+    geometry = ContactGeometry.of_drive(analysis.drive)
+    full, contacts = analysis.full, analysis.full.response
+    angle = full.crank_angle
+    radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
+    pins, rollers, holes = (
+        load > LOADED_FRACTION * np.max(load)
+        for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
+    )
+    pressures = analysis.pressures
+    roller_mid = max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))
+    roller_largest = max(np.max(pressures.outer.largest), np.max(pressures.inner.largest))
+    values = {
+        "backlash_disc_arcmin": np.mean(backlash(geometry, angle, DISC_ROTATION)) * ARCMIN,
+        "backlash_wheel_arcmin": np.mean(backlash(geometry, angle, WHEEL_ANGLE)) * ARCMIN,
+        "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
+        "mean_radial_bearing_load_N": np.mean(radial),
+        "mean_tangential_bearing_load_N": np.mean(tangential),
+        "ptp_tangential_bearing_load_N": np.ptp(tangential),
+        "max_pin_load_N": np.max(contacts.pin_load),
+        "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
+        "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
+        "max_roller_load_N": np.max(contacts.rollers.outer_load),
+        "max_roller_pressure_mid_MPa": roller_mid,
+        "max_roller_pressure_max_MPa": roller_largest,
+        "pin_end_cell_mm": pressures.pins.end_cell,
+        "roller_end_cell_mm": pressures.outer.end_cell,
+        "max_pin_shaft_load_N": np.max(contacts.hole_load),
+        "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes),
+        "mean_loaded_pins": np.mean(pins.sum(axis=1)),
+        "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
+        "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)),
+        "ptp_transmission_error_arcsec": np.ptp(full.pose[:, WHEEL_ANGLE]) * ARCSEC,
+        "ptp_transmission_error_light_arcsec": np.ptp(analysis.light.pose[:, WHEEL_ANGLE]) * ARCSEC,
+        "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
+    }
+    if angle.size == 1:  # one angle says nothing of ranges
+        values |= dict.fromkeys(OF_RANGES, np.nan)
+    return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}

@@ -1,0 +1,237 @@
+"""The front door: analyse a drive from a notebook, with names that are checked and a result that shows itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from ltca.analysis.engines import Engine, engine_named
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse as analyse_positions
+from ltca.analysis.results import build_dataset
+from ltca.analysis.summary import summarise
+from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.drive.parts import Drive
+from ltca.errors import DriveError
+from ltca.geometry.placement import position_angles
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_POSITIONS = 1_000_000
+_SHOWN = (
+    ("mean bearing load", "mean_bearing_load_N", "N", "{:.1f}"),
+    ("largest pin load", "max_pin_load_N", "N", "{:.1f}"),
+    ("largest pin pressure, mid-width", "max_pin_pressure_mid_MPa", "MPa", "{:.1f}"),
+    ("largest roller load", "max_roller_load_N", "N", "{:.1f}"),
+    ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
+    ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
+    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:.2f}"),
+)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class AnalysisResult:
+    """One analysed case. It never changes: every dataset and summary handed out is a new one.
+
+    Attributes
+    ----------
+    case : str
+        Name of the case in the dataset.
+    loaded : LoadedAnalysis
+        The solution itself: poses, loads, pressures as arrays of (positions, pairs).
+    """
+
+    case: str
+    loaded: LoadedAnalysis = field(repr=False)
+
+    @property
+    def drive(self) -> Drive:
+        """The drive that was analysed."""
+        return self.loaded.drive
+
+    @property
+    def engine(self) -> Engine:
+        """What it ran on."""
+        return self.loaded.engine
+
+    @property
+    def torque(self) -> float:
+        """Output torque, N·mm."""
+        return self.loaded.torque
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """Labelled dataset as in ``results.nc``, of this one case."""
+        return build_dataset(self.drive.name, {self.case: self.loaded})
+
+    @cached_property
+    def _summary(self) -> dict[str, float | None]:
+        return summarise(self.loaded)
+
+    @property
+    def summary(self) -> dict[str, float | None]:
+        """Scalars as in ``summary.json``, units in the keys."""
+        return dict(self._summary)
+
+    @property
+    def plot(self) -> Plots:
+        """Figures by name: ``result.plot.pin_load()``."""
+        return Plots(dataset=self.dataset)
+
+    def __repr__(self) -> str:
+        """Say what was analysed and what came out, on a few lines."""
+        positions = self.loaded.full.crank_angle.size
+        head = (
+            f"{self.drive.name}: {self.engine.compliance}, {positions} positions, "
+            f"{self.torque / 1000.0:g} N·m {self.drive.load.direction}"
+        )
+        rows = [head]
+        for title, key, unit, form in _SHOWN:
+            value = self._summary[key]
+            if value is not None and not (positions == 1 and key.startswith("ptp")):
+                rows.append(f"  {title:<34}{form.format(value)} {unit}")
+        return "\n".join(rows)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class Plots:
+    """Figures of a result, each a method that returns a matplotlib figure.
+
+    Attributes
+    ----------
+    dataset : xarray.Dataset
+        What is drawn.
+    """
+
+    dataset: xr.Dataset
+
+    def _drawn(self, name: str) -> Figure:
+        from ltca.figures.run_figures import draw_figure
+
+        return draw_figure(name, self.dataset)
+
+    def transmission_error(self) -> Figure:
+        """Draw the transmission error at light and full torque over the crank angle."""
+        return self._drawn("fig23_transmission_error")
+
+    def pin_load(self) -> Figure:
+        """Draw the load of wheel pin 0 over its mesh."""
+        return self._drawn("fig24_pin_load")
+
+    def loaded_pins(self) -> Figure:
+        """Draw the number of loaded wheel pins."""
+        return self._drawn("fig25_loaded_pins")
+
+    def pin_pressure(self) -> Figure:
+        """Draw the largest flank pressure at wheel pin 0."""
+        return self._drawn("fig26_pin_pressure")
+
+    def bearing_load(self) -> Figure:
+        """Draw the total bearing load."""
+        return self._drawn("fig28_bearing_load")
+
+    def tangential_bearing_load(self) -> Figure:
+        """Draw the bearing load 90° ahead of the eccentricity."""
+        return self._drawn("fig29_tangential_bearing_load")
+
+    def radial_bearing_load(self) -> Figure:
+        """Draw the bearing load along the eccentricity."""
+        return self._drawn("fig30_radial_bearing_load")
+
+    def roller_load(self) -> Figure:
+        """Draw the load distribution over the rollers."""
+        return self._drawn("fig34_roller_load")
+
+    def pin_shaft_load(self) -> Figure:
+        """Draw the load of shaft pin 0."""
+        return self._drawn("fig35_pin_shaft_load")
+
+    def loaded_shaft_pins(self) -> Figure:
+        """Draw the number of loaded shaft pins."""
+        return self._drawn("fig36_loaded_shaft_pins")
+
+    def __repr__(self) -> str:
+        """Name the figures there are."""
+        names = [name for name, value in vars(type(self)).items() if isinstance(value, Callable) and name[0] != "_"]  # type: ignore[arg-type]
+        return f"figures: {', '.join(names)}"
+
+
+def analyse(
+    drive: Drive,
+    positions: int | None = None,
+    *,
+    crank_angle: ArrayLike | None = None,
+    torque: float | None = None,
+    compliance: str | Engine = "half-space",
+    method: str | None = None,
+    contacts: str | None = None,
+    coefficients: InfluenceCoefficients | Path | str | None = None,
+    hole_near_field: bool | None = None,
+    case: str = "nominal",
+) -> AnalysisResult:
+    """Analyse a drive over a turn of the crank, or at chosen crank angles.
+
+    Parameters
+    ----------
+    drive : Drive
+        One case of a drive file: ``ltca.load_drive("paper").cases["CS-1"]``.
+    positions : int, optional
+        Crank angles 2πk/N, k = 0 … N−1; 360 by default.
+    crank_angle : array, shape (positions,), optional
+        Crank angles φ_C, rad, instead.
+    torque : float, optional
+        Output torque, N·mm; the drive's own by default.
+    compliance : {"half-space", "fe", "hybrid"} or engine
+        How the bodies yield; an engine (`ltca.HalfSpace`, `ltca.PlaneStrain`, `ltca.Hybrid`) brings its options.
+    method : {"tables", "direct", "paper"}, optional
+        How the half-space is solved.
+    contacts : {"tables", "grids"}, optional
+        What the paper's iteration runs on.
+    coefficients : InfluenceCoefficients or path, optional
+        Of the bodies, for ``fe`` and ``hybrid``; found in the cache or derived when left out.
+    hole_near_field : bool, optional
+        Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``); they do by default.
+    case : str
+        Name of the case in the dataset.
+
+    Returns
+    -------
+    AnalysisResult
+        With ``dataset``, ``summary`` and ``plot``.
+
+    Raises
+    ------
+    DriveError
+        When a name, a number or their combination makes no sense, or the torque cannot be carried.
+    ConvergenceError
+        When a position does not balance.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("paper").cases["CS-1"]
+    >>> result = ltca.analyse(drive, crank_angle=[0.5])
+    >>> print(f"{float(result.dataset['bearing_tangential'].sum()):.0f} N")
+    6738 N
+    """
+    if not isinstance(drive, Drive):
+        raise DriveError([f"drive: must be one Drive, not a {type(drive).__name__}; a drive file has them in .cases"])
+    if positions is not None and crank_angle is not None:
+        raise DriveError(["positions and crank_angle: give one of them"])
+    if crank_angle is None:
+        count = 360 if positions is None else positions
+        if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 1 <= count <= MOST_POSITIONS:
+            raise DriveError([f"positions = {count!r}: must be a whole number from 1 to {MOST_POSITIONS}"])
+        crank_angle = position_angles(int(count))
+    given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
+    engine = engine_named(
+        compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
+    )
+    return AnalysisResult(case=case, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
