@@ -1,0 +1,145 @@
+"""The front door: what `import ltca` gives, names checked at once, results that do not change."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ltca
+from ltca.analysis.engines import engine_named
+from ltca.analysis.results import build_dataset
+from ltca.compliance.coefficients import without_coupling
+from ltca.errors import DriveError
+from ltca.reading.drive_file import load_drive, parse_drive
+from ltca.reading.writing import drive_text
+
+DRIVE = load_drive("paper").cases["CS-3"]
+ANGLES = [0.1, 2.3]
+
+
+@pytest.fixture(scope="module")
+def result():
+    return ltca.analyse(DRIVE, crank_angle=ANGLES, case="CS-3")
+
+
+def test_import_is_light():
+    """Nothing but the standard library is loaded until a name is asked for."""
+    code = "import sys, ltca; print(sorted({'numpy', 'scipy', 'pydantic', 'xarray', 'matplotlib'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_front_door_names():
+    assert {"load_drive", "analyse", "Drive", "HalfSpace", "PlaneStrain", "Hybrid", "__version__"} <= set(dir(ltca))
+    assert all(getattr(ltca, name) is not None for name in ltca.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'analyze'"):
+        _ = ltca.analyze
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "table"}, "method = 'table': is unknown; must be one of 'tables', 'direct', 'paper'"),
+        ({"compliance": "FE"}, "compliance = 'FE': is unknown"),
+        ({"contacts": "cells"}, "contacts = 'cells': is unknown"),
+        ({"method": "direct", "contacts": "tables"}, "method direct runs on grids"),
+        ({"compliance": "fe", "method": "direct"}, "runs on half-space compliance only"),
+        ({"coefficients": "file.nc"}, "coefficients: has no effect with compliance half-space"),
+        ({"hole_near_field": False}, "hole_near_field: has no effect with compliance half-space"),
+        ({"compliance": ltca.HalfSpace(), "method": "tables"}, "method: is an option of the engine"),
+        ({"compliance": 3}, "must be an engine or one of"),
+        ({"torque": -1.0}, r"torque = -1: must be finite and greater than 0 N·mm"),
+        ({"torque": float("nan")}, "must be finite"),
+        ({"torque": "377 N m"}, "must be a number in N·mm"),
+        ({"torque": True}, "must be a number in N·mm"),
+        ({"crank_angle": []}, "must be one row of at least one angle"),
+        ({"crank_angle": [[0.0]]}, "must be one row of at least one angle"),
+        ({"crank_angle": [np.inf]}, "must be finite, in rad"),
+        ({"crank_angle": ["a"]}, "must be numbers in rad"),
+        ({"positions": 0}, "must be a whole number from 1"),
+        ({"positions": 2.5}, "must be a whole number from 1"),
+        ({"positions": 4, "crank_angle": [0.0]}, "give one of them"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_at_once(options, message):
+    with pytest.raises(DriveError, match=message):
+        ltca.analyse(DRIVE, **options)
+
+
+def test_a_drive_file_is_no_drive():
+    with pytest.raises(DriveError, match=r"not a DriveFile; a drive file has them in \.cases"):
+        ltca.analyse(load_drive("paper"))
+
+
+def test_names_become_engines():
+    coefficients = without_coupling(DRIVE)
+    assert engine_named() == ltca.HalfSpace()
+    assert engine_named(method="direct") == ltca.HalfSpace(method="direct", contacts="grids")
+    assert engine_named("fe", coefficients=coefficients) == ltca.PlaneStrain(coefficients=coefficients)
+    assert not engine_named("hybrid", hole_near_field=False).hole_near_field
+
+
+def test_dataset_is_one_case_of_the_runs_results(result):
+    loaded = {"CS-3": result.loaded}
+    xr.testing.assert_identical(result.dataset, build_dataset("paper", loaded))
+    both = build_dataset("paper", {"A": result.loaded, "CS-3": result.loaded})
+    xr.testing.assert_equal(both.isel(case=[1]), result.dataset)
+
+
+def test_summary_and_figures_and_repr(result):
+    assert result.summary["max_pin_load_N"] == float(result.dataset["pin_load"].max())
+    axes = result.plot.pin_load().axes[0]
+    drawn = np.asarray(axes.lines[0].get_ydata())
+    np.testing.assert_array_equal(drawn, result.dataset["pin_load"].values[0, 0, :, 0])
+    assert "pin_load" in repr(result.plot)
+    lines = repr(result).splitlines()
+    assert len(lines) < 25
+    assert max(map(len, lines)) < 80
+    assert "half-space, 2 positions, 377.3 N·m" in lines[0]
+
+
+def test_what_is_handed_out_changes_nothing(result):
+    before = result.dataset
+    changed = result.dataset
+    changed["pin_load"].values[:] = 0.0
+    result.summary.clear()
+    xr.testing.assert_identical(result.dataset, before)
+    assert result.summary
+
+
+def test_one_angle_says_nothing_of_ranges():
+    """Once it printed a transmission error of 0.00″ and a loaded range of 90°."""
+    one = ltca.analyse(DRIVE, crank_angle=[0.5])
+    assert one.summary["ptp_transmission_error_arcsec"] is None
+    assert one.summary["pin_shaft_loaded_range_deg"] is None
+    assert "peak to peak" not in repr(one)
+
+
+def test_attributes_say_what_made_it(result):
+    attributes = result.dataset.attrs
+    assert attributes["version"] == ltca.__version__
+    assert len(attributes["code_hash"]) == 16
+    assert attributes["Conventions"].startswith("CF-")
+    assert (attributes["compliance"], attributes["method"], attributes["contacts"]) == (
+        "half-space",
+        "tables",
+        "tables",
+    )
+    assert parse_drive(attributes["drive_file"]).cases["nominal"] == DRIVE
+    assert attributes["drive_file"] == drive_text(DRIVE)
+
+
+def test_places_of_the_parts_are_coordinates(result):
+    data = result.dataset.isel(case=0, disc=0, crank=0)
+    wheel, shaft = DRIVE.pin_wheel, DRIVE.pin_shaft
+    np.testing.assert_allclose(np.hypot(data["pin_x"], data["pin_y"]), wheel.pin_circle_radius)
+    np.testing.assert_allclose(np.arctan2(data["pin_y"], data["pin_x"])[1], 2.0 * np.pi / wheel.number_of_pins)
+    for part in ("hole", "shaft_pin"):
+        np.testing.assert_allclose(np.hypot(data[f"{part}_x"], data[f"{part}_y"]), shaft.pin_circle_radius)
+    np.testing.assert_allclose(np.diff(data["roller_angle"]), 2.0 * np.pi / DRIVE.crank_bearing.number_of_rollers)
+    assert float(data["torque"]) == DRIVE.load.torque
+    assert float(data["light_torque"]) == DRIVE.load.light_torque
