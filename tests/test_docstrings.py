@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ from numpydoc.docscrape import NumpyDocString
 
 ROOT = Path(__file__).parents[1]
 MODULES = sorted(path for package in ("ltca", "fem", "validation") for path in (ROOT / package).rglob("*.py"))
+# Units stand as ", mm" everywhere; "[mm]", "[N/mm, contact cells held]", "[mm, MPa]" are the dialect that is gone.
+BRACKETED_UNIT = re.compile(r"\[(?:1/)?(?:mm|N|MPa|rad|arcsec|arcmin|s)[²³]?(?:[·/,][^\]]*)?\]")
 
 
 def public_definitions(tree):
@@ -75,6 +78,29 @@ def test_documented_parameters_equal_the_signature(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
     assert ast.get_docstring(tree), "no module docstring"
     assert problems_of(tree) == []
+
+
+def docstrings(tree):
+    """Every docstring of a module, private ones too."""
+    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    return [text for node in ast.walk(tree) if isinstance(node, kinds) and (text := ast.get_docstring(node))]
+
+
+def bracketed_units(tree):
+    return [found for text in docstrings(tree) for found in BRACKETED_UNIT.findall(text)]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_units_follow_a_comma(path):
+    assert bracketed_units(ast.parse(path.read_text(encoding="utf-8"))) == []
+
+
+def test_the_check_of_units_itself_can_fail():
+    told = ("[mm]", "[N]", "[MPa]", "[N/mm, held]", "[mm³/MPa]", "[1/mm]", "[mm, MPa]", "[rad]")
+    lines = "".join(f'def f{number}():\n    """Length {unit}."""\n' for number, unit in enumerate(told))
+    assert bracketed_units(ast.parse(lines)) == list(told)
+    kept = '"""In [0, 2π), the section [tolerances], items[k], see [1] and `Norm[T]`."""'
+    assert bracketed_units(ast.parse(kept)) == []
 
 
 def test_the_check_itself_can_fail():

@@ -25,7 +25,7 @@ _LIGHTEST = 1e-2  # of the largest approach: lighter contacts take the ratio fou
 
 
 def largest_pressure(solved: PatchSolution, stretch: float) -> float:
-    """Return the largest pressure [MPa] as a mean over a stretch along the width, at least the one at mid-width.
+    """Return the largest pressure as a mean over a stretch along the width, at least the one at mid-width, MPa.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 Sources: K. L. Johnson, *Contact Mechanics* (1985), sections 4.2 (lines and ellipses), 5.6 (bodies with a datum);
 E. McEwen, Phil. Mag. 40 (1949) 454 (stresses); G. Lundberg, Forsch. Ing.-Wes. 10 (1939) 201 (finite strip).
-Loads of line contacts are per unit length [N/mm]; E* is the contact modulus, ρ the effective radius.
+Loads of line contacts are per unit length, N/mm; E* is the contact modulus, ρ the effective radius.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 def contact_modulus(
     young_modulus_1: float, poisson_ratio_1: float, young_modulus_2: float, poisson_ratio_2: float
 ) -> float:
-    """E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2) [MPa].
+    """E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2), MPa.
 
     Examples
     --------
@@ -33,24 +33,24 @@ def contact_modulus(
 
 
 def effective_radius(radius_1: float, radius_2: float) -> float:
-    """1/(1/r1 + 1/r2) [mm]; a concave surface has a negative radius, a flat one an infinite one."""
+    """1/(1/r1 + 1/r2), mm; a concave surface has a negative radius, a flat one an infinite one."""
     return 1.0 / (1.0 / radius_1 + 1.0 / radius_2)
 
 
 def line_half_width(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
-    """Half-width b = √(4 q ρ/(π E*)) [mm] (Johnson Eq. 4.43)."""
+    """Half-width b = √(4 q ρ/(π E*)), mm (Johnson Eq. 4.43)."""
     q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.sqrt(4.0 * q * radius / (np.pi * contact_modulus)))
 
 
 def line_peak_pressure(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
-    """Peak pressure p0 = √(q E*/(π ρ)) [MPa] (Johnson Eq. 4.45)."""
+    """Peak pressure p0 = √(q E*/(π ρ)), MPa (Johnson Eq. 4.45)."""
     q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.sqrt(q * contact_modulus / (np.pi * radius)))
 
 
 def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
-    """Load per length q = π E* b²/(4ρ) [N/mm]."""
+    """Load per length q = π E* b²/(4ρ), N/mm."""
     b, radius = np.asarray(half_width, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.pi * contact_modulus * b**2 / (4.0 * radius))
 
@@ -58,7 +58,7 @@ def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulu
 def half_plane_approach(
     line_load: ArrayLike, half_width: ArrayLike, depth: ArrayLike, young_modulus: float, poisson_ratio: float
 ) -> Array:
-    """Approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane [mm].
+    """Approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane, mm.
 
     δ = q (1−ν²)/(π E) (2 ln(2d/b) − ν/(1−ν)), plane strain (Johnson section 5.6).
     """
@@ -70,7 +70,7 @@ def half_plane_approach(
 def cylinder_approach(
     line_load: ArrayLike, half_width: ArrayLike, radius: ArrayLike, young_modulus: float, poisson_ratio: float
 ) -> Array:
-    """Approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them [mm].
+    """Approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them, mm.
 
     δ = q (1−ν²)/(π E) (2 ln(4R/b) − 1), plane strain (Johnson section 5.6, Eq. 5.57). The compression of the
     diameter is the sum of both sides with their own half-widths (Eq. 5.58).
@@ -82,7 +82,7 @@ def cylinder_approach(
 def strip_approach(
     line_load: ArrayLike, half_width: ArrayLike, length: ArrayLike, contact_modulus: float
 ) -> tuple[Array, Array]:
-    """Approach of two half-spaces over a long strip with Hertz pressure across and even load along it [mm].
+    """Approach of two half-spaces over a long strip with Hertz pressure across and even load along it, mm.
 
     At mid-length δ = q/(π E*) (2 ln(2L/b) + 1) (Lundberg's 1.1932 + ln(L/b), twice); averaged over the length
     δ = q/(π E*) (2 ln(4L/b) − 1). A real contact evens the approach out and lies between the two; the mean is
@@ -102,7 +102,7 @@ def strip_approach(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneStress2D:
-    """Stresses in the plane of a line contact [MPa], compression negative.
+    """Stresses in the plane of a line contact, compression negative, MPa.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class PlaneStress2D:
 
     @property
     def max_shear(self) -> Array:
-        """Largest shear stress in the plane [MPa]."""
+        """Largest shear stress in the plane, MPa."""
         return np.asarray(np.hypot(0.5 * (self.across - self.depthwise), self.shear))
 
 
@@ -126,11 +126,11 @@ def line_contact_stress(x: ArrayLike, depth: ArrayLike, half_width: float, peak_
     Parameters
     ----------
     x, depth : array_like
-        Place along the surface and depth ≥ 0 [mm].
+        Place along the surface and depth ≥ 0, mm.
     half_width : float
-        b [mm].
+        b, mm.
     peak_pressure : float
-        p0 [MPa].
+        p0, MPa.
 
     Examples
     --------
@@ -167,13 +167,13 @@ class PointContact:
     Attributes
     ----------
     load : float
-        Normal load [N].
+        Normal load, N.
     approach : float
-        Approach [mm].
+        Approach, mm.
     half_axis_long, half_axis_short : float
-        Half axes of the contact ellipse [mm].
+        Half axes of the contact ellipse, mm.
     peak_pressure : float
-        Pressure at the centre [MPa].
+        Pressure at the centre, MPa.
     """
 
     load: float
@@ -184,7 +184,7 @@ class PointContact:
 
     @property
     def energy(self) -> float:
-        """∫ F dδ = 2/5 F δ [N·mm], since F grows like δ^1.5."""
+        """∫ F dδ = 2/5 F δ, N·mm, since F grows like δ^1.5."""
         return 0.4 * self.load * self.approach
 
 
@@ -199,11 +199,11 @@ def solve_point_contact(
     Parameters
     ----------
     approach : float
-        δ [mm], positive.
+        δ, mm, positive.
     radius_small, radius_large : float
-        Principal relative radii [mm], radius_small ≤ radius_large.
+        Principal relative radii, mm, radius_small ≤ radius_large.
     contact_modulus : float
-        E* [MPa].
+        E*, MPa.
 
     Raises
     ------

@@ -50,14 +50,14 @@ def love_displacement(
     Parameters
     ----------
     x, y : float or ndarray
-        Points of the surface [mm]; corners and edges are allowed.
+        Points of the surface, mm; corners and edges are allowed.
     half_length_x, half_length_y : float or ndarray
-        Half sides of the rectangle [mm].
+        Half sides of the rectangle, mm.
 
     Returns
     -------
     ndarray
-        The integral [mm], broadcast over all arguments.
+        The integral, mm, broadcast over all arguments.
 
     References
     ----------
@@ -192,20 +192,20 @@ def lagged_influence(
     Parameters
     ----------
     cell_width : float
-        Width of the x cells [mm].
+        Width of the x cells, mm.
     lag_count : int
         Number of lags (0, 1, … cells).
     y_edges : ndarray, shape (n + 1,)
-        Ascending edges of the y cells [mm].
+        Ascending edges of the y cells, mm.
     mirrored : bool
         Add the images of the cells in the plane y = 0 (then ``y_edges`` must start at 0).
     end_plane, end_factor : float
-        Add the images in the planes y = ±``end_plane`` [mm], times ``end_factor`` (see `ltca.contact.free_end`).
+        Add the images in the planes y = ±``end_plane``, mm, times ``end_factor`` (see `ltca.contact.free_end`).
 
     Returns
     -------
     ndarray, shape (lag_count, n, n)
-        ∫∫ 1/r dA_i dA_j [mm³], symmetric in the last two axes.
+        ∫∫ 1/r dA_i dA_j, mm³, symmetric in the last two axes.
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
@@ -234,18 +234,18 @@ def assemble_influence_matrix(
     Parameters
     ----------
     x_edges : ndarray, shape (nx + 1,)
-        Ascending, uniformly spaced edges along the profile [mm].
+        Ascending, uniformly spaced edges along the profile, mm.
     y_edges : ndarray, shape (ny + 1,)
-        Ascending edges along the width [mm]; any spacing.
+        Ascending edges along the width, mm; any spacing.
     symmetric_x, symmetric_y : bool
         Whether the grid is the positive half of a symmetric one.
     end_plane, end_factor : float
-        Images in the free ends at y = ±``end_plane`` [mm], see `ltca.contact.free_end`; none by default.
+        Images in the free ends at y = ±``end_plane``, mm, see `ltca.contact.free_end`; none by default.
 
     Returns
     -------
     ndarray, shape (nx·ny, nx·ny)
-        Symmetric positive definite, ∫∫ 1/r dA_i dA_j [mm³]; divide by π E* for the displacement moment.
+        Symmetric positive definite, ∫∫ 1/r dA_i dA_j, mm³; divide by π E* for the displacement moment.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Profiles of rollers and pins along their length: what crowning and relief take away from the cylinder.
 
-Each profile is symmetric about mid-width and gives the relief z(y) ≥ 0 [mm] and the half-length within which the
-undeformed bodies overlap at a given approach (no contact can reach beyond it).
+Each profile is symmetric about mid-width and gives the relief z(y) ≥ 0 and the half-length within which the
+undeformed bodies overlap at a given approach (no contact can reach beyond it), both in mm.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ class LengthProfile(Protocol):
 
     @property
     def length(self) -> float:
-        """Length of the contact line [mm]."""
+        """Length of the contact line, mm."""
 
     def relief(self, y: ArrayLike) -> Array:
-        """z(y) [mm] at the distance y from mid-width; even in y."""
+        """z(y) at the distance y from mid-width, mm; even in y."""
 
     def overlap_half_length(self, approach: float) -> float:
-        """Largest |y| ≤ length/2 with z(y) < approach [mm]."""
+        """Largest |y| ≤ length/2 with z(y) < approach, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,20 +39,20 @@ class CircularCrown:
     Parameters
     ----------
     length : float
-        Length [mm].
+        Length, mm.
     crown_radius : float
-        R [mm].
+        R, mm.
     """
 
     length: float
     crown_radius: float
 
     def relief(self, y: ArrayLike) -> Array:
-        """z(y) [mm]."""
+        """z(y), mm."""
         return np.asarray(np.asarray(y, dtype=float) ** 2 / (2.0 * self.crown_radius))
 
     def overlap_half_length(self, approach: float) -> float:
-        """√(2 R δ), at most half the length [mm]."""
+        """√(2 R δ), at most half the length, mm."""
         return min(0.5 * self.length, float(np.sqrt(2.0 * self.crown_radius * approach)))
 
 
@@ -63,9 +63,9 @@ class LogarithmicRelief:
     Parameters
     ----------
     length : float
-        Effective length L [mm].
+        Effective length L, mm.
     diameter : float
-        Diameter D of the roller [mm].
+        Diameter D of the roller, mm.
     amplitude : float
         0.00035 in ISO/TS 16281 (rollers no longer than 2.5 D).
     """
@@ -75,14 +75,14 @@ class LogarithmicRelief:
     amplitude: float = 0.00035
 
     def relief(self, y: ArrayLike) -> Array:
-        """z(y) [mm]; infinite at and beyond the ends."""
+        """z(y), mm; infinite at and beyond the ends."""
         square = (2.0 * np.asarray(y, dtype=float) / self.length) ** 2
         inside = square < 1.0
         depth = -self.amplitude * self.diameter * np.log1p(-np.where(inside, square, 0.0))
         return np.where(inside, depth, np.inf)
 
     def overlap_half_length(self, approach: float) -> float:
-        """L/2 √(1 − exp(−δ/(amplitude D))) [mm]."""
+        """L/2 √(1 − exp(−δ/(amplitude D))), mm."""
         fraction = -np.expm1(-approach / (self.amplitude * self.diameter))
         return 0.5 * self.length * float(np.sqrt(fraction))
 
@@ -94,11 +94,11 @@ class EndRelief:
     Parameters
     ----------
     length : float
-        Whole length [mm].
+        Whole length, mm.
     relief_length : float
-        Length of the relieved part at each end [mm], at most half the length.
+        Length of the relieved part at each end, mm, at most half the length.
     depth : float
-        Drop at the very end [mm].
+        Drop at the very end, mm.
     """
 
     length: float
@@ -107,15 +107,15 @@ class EndRelief:
 
     @property
     def straight_half_length(self) -> float:
-        """Half the length left cylindrical, y0 [mm]."""
+        """Half the length left cylindrical, y0, mm."""
         return 0.5 * self.length - self.relief_length
 
     def relief(self, y: ArrayLike) -> Array:
-        """z(y) [mm]."""
+        """z(y), mm."""
         beyond = np.maximum(np.abs(np.asarray(y, dtype=float)) - self.straight_half_length, 0.0)
         return np.asarray(self.depth * (beyond / self.relief_length) ** 2)
 
     def overlap_half_length(self, approach: float) -> float:
-        """y0 + relief_length √(δ/depth), at most half the length [mm]."""
+        """y0 + relief_length √(δ/depth), at most half the length, mm."""
         reach = self.straight_half_length + self.relief_length * float(np.sqrt(approach / self.depth))
         return min(0.5 * self.length, reach)

@@ -59,13 +59,13 @@ class PatchGrid:
     Parameters
     ----------
     x_edges : ndarray, shape (nx + 1,)
-        Uniform edges along the profile [mm]; from 0 when ``symmetric_x``.
+        Uniform edges along the profile, mm; from 0 when ``symmetric_x``.
     y_edges : ndarray, shape (ny + 1,)
-        Edges along the width [mm]; from 0 when ``symmetric_y``.
+        Edges along the width, mm; from 0 when ``symmetric_y``.
     symmetric_x, symmetric_y : bool
         Whether the edges give the positive half of a symmetric patch.
     end_plane, end_factor : float
-        Free ends of the bodies at y = ±``end_plane`` [mm] and the weight of their images (`ltca.contact.free_end`).
+        Free ends of the bodies at y = ±``end_plane``, mm, and the weight of their images (`ltca.contact.free_end`).
     """
 
     x_edges: Array
@@ -120,22 +120,22 @@ class PatchGrid:
 
     @property
     def end_cell(self) -> float:
-        """Length of the last cell in y [mm], on which the pressure at an unrelieved end depends."""
+        """Length of the last cell in y, on which the pressure at an unrelieved end depends, mm."""
         return float(self.y_edges[-1] - self.y_edges[-2])
 
     @cached_property
     def areas(self) -> Array:
-        """Cell areas [mm²], shape (nx, ny)."""
+        """Cell areas, mm², shape (nx, ny)."""
         return np.outer(np.diff(self.x_edges), np.diff(self.y_edges))
 
     @cached_property
     def x_centres(self) -> Array:
-        """Centres of the cells along x [mm]."""
+        """Centres of the cells along x, mm."""
         return np.asarray(0.5 * (self.x_edges[1:] + self.x_edges[:-1]))
 
     @cached_property
     def y_centres(self) -> Array:
-        """Centres of the cells along y [mm]."""
+        """Centres of the cells along y, mm."""
         return np.asarray(0.5 * (self.y_edges[1:] + self.y_edges[:-1]))
 
     @cached_property
@@ -169,15 +169,15 @@ class PatchSolution:
     grid : PatchGrid
         The grid it was solved on.
     approach : float
-        Approach of distant points [mm].
+        Approach of distant points, mm.
     pressure : ndarray, shape (nx, ny)
-        Mean pressure of each cell [MPa].
+        Mean pressure of each cell, MPa.
     load : float
-        Normal load [N] of the whole patch.
+        Normal load of the whole patch, N.
     stiffness : float
-        dF/dδ [N/mm] with the contact cells held: the exact tangent of the discrete load.
+        dF/dδ with the contact cells held, the exact tangent of the discrete load, N/mm.
     energy : float
-        ∫ F dδ [N·mm].
+        ∫ F dδ, N·mm.
     solution : UnilateralSolution
         The complementarity solution behind it.
     """
@@ -197,11 +197,11 @@ class PatchSolution:
 
     @property
     def mid_profile(self) -> tuple[Array, Array]:
-        """Cell centres along x and the pressure there at mid-width y = 0 [mm, MPa]."""
+        """Cell centres along x and the pressure there at mid-width y = 0, mm and MPa."""
         return self.grid.x_centres, self._at_mid_width(self.pressure)
 
     def whole_field(self) -> tuple[Array, Array, Array]:
-        """Cell centres along x and y and the pressure over the whole patch, images unfolded [mm, mm, MPa]."""
+        """Cell centres along x and y and the pressure over the whole patch, images unfolded; mm, mm, MPa."""
         x, y, pressure = self.grid.x_centres, self.grid.y_centres, self.pressure
         if self.grid.symmetric_x:
             x, pressure = np.concatenate([-x[::-1], x]), np.concatenate([pressure[::-1], pressure])
@@ -211,7 +211,7 @@ class PatchSolution:
 
     @property
     def half_width(self) -> float:
-        """Contact half-width at mid-width [mm]: 2 √⟨x²⟩ with the pressure as weight (exact for Hertz).
+        """Contact half-width at mid-width, mm: 2 √⟨x²⟩ with the pressure as weight (exact for Hertz).
 
         The origin of x is the centre of pressure when the patch is not symmetric.
         """
@@ -226,7 +226,7 @@ class PatchSolution:
 
     @property
     def mid_pressure(self) -> float:
-        """Largest pressure at mid-width [MPa]: the cell mean corrected for the curvature of a Hertz profile."""
+        """Largest pressure at mid-width, MPa: the cell mean corrected for the curvature of a Hertz profile."""
         p = self._at_mid_width(self.pressure)
         half_width = self.half_width
         if half_width == 0.0:
@@ -243,7 +243,7 @@ class PatchSolution:
 
     @property
     def max_pressure(self) -> float:
-        """Largest cell pressure [MPa]; at unrelieved ends it depends on ``grid.end_cell``."""
+        """Largest cell pressure, MPa; at unrelieved ends it depends on ``grid.end_cell``."""
         return float(np.max(self.pressure))
 
     def _at_mid_width(self, field: Array) -> Array:
@@ -281,11 +281,11 @@ def solve_patch(
     grid : PatchGrid
         Whole, half or quarter grid.
     separation : ndarray, shape (nx, ny)
-        Mean separation of the undeformed bodies over each cell [mm] (`PatchGrid.cell_means`).
+        Mean separation of the undeformed bodies over each cell, mm (`PatchGrid.cell_means`).
     contact_modulus : float
-        E* [MPa].
+        E*, MPa.
     approach : float
-        Approach of distant points [mm]; nothing touches where the separation exceeds it.
+        Approach of distant points, mm; nothing touches where the separation exceeds it.
     start : ndarray of bool, shape (nx, ny), optional
         Contact cells to start from; default where the undeformed bodies overlap.
 
@@ -319,7 +319,7 @@ def solve_patch(
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
-    """Half-width at mid-width of an uncrowned contact [mm], a first guess: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
+    """First guess of the half-width at mid-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
 
     From δ = q/(π E*) (1 + 2 ln(length/b) + ln 4 …) for a Hertz strip of even load q, solved for b.
     """
@@ -351,19 +351,19 @@ def solve_cylinder_patch(
     Parameters
     ----------
     length : float
-        Length of the line contact [mm].
+        Length of the line contact, mm.
     effective_radius : float
-        1/(1/r1 + 1/r2) [mm].
+        1/(1/r1 + 1/r2), mm.
     contact_modulus : float
-        E* [MPa].
+        E*, MPa.
     approach : float
-        Approach at mid-width [mm], positive.
+        Approach at mid-width, mm, positive.
     relief : callable, optional
-        z(y) ≥ 0 [mm], symmetric: what the profile takes away along the width.
+        z(y) ≥ 0, mm, symmetric: what the profile takes away along the width.
     cells, y_cells : int
         Cells over the half-width and over half the length (default: the same number).
     half_width : float, optional
-        Where to put the edge [mm]; found on a grid of half as many cells when not given.
+        Where to put the edge, mm; found on a grid of half as many cells when not given.
     grading : float, optional
         Exponent of the cells along y, see `graded_edges`.
     end_factor : float, optional

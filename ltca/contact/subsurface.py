@@ -36,9 +36,9 @@ def rectangle_stress(
     Parameters
     ----------
     x, y, depth : array_like
-        Points [mm], depth > 0.
+        Points, mm, depth > 0.
     half_length_x, half_length_y : array_like
-        Half sides [mm].
+        Half sides, mm.
     poisson_ratio : float
         ν of the body.
 
@@ -75,21 +75,21 @@ def rectangle_stress(
 
 
 def patch_stress(solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float) -> Array:
-    """Stress tensor at points below a solved patch [MPa]; the free ends' images are not included.
+    """Stress tensor at points below a solved patch, MPa; the free ends' images are not included.
 
     Parameters
     ----------
     solution : PatchSolution
         Pressure over the patch.
     x, y, depth : array_like
-        Points [mm], depth > 0, broadcast together.
+        Points, mm, depth > 0, broadcast together.
     poisson_ratio : float
         ν of the body looked into.
 
     Returns
     -------
     ndarray, shape (..., 6)
-        σx, σy, σz, τxy, τxz, τyz [MPa].
+        σx, σy, σz, τxy, τxz, τyz, MPa.
     """
     x, y, z = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (x, y, depth)))
     grid = solution.grid
@@ -128,11 +128,11 @@ class SubsurfaceShear:
     Attributes
     ----------
     max_shear : float
-        [MPa]
+        MPa.
     depth : float
-        [mm]
+        mm.
     x : float
-        Place along the profile, under the peak of the pressure [mm].
+        Place along the profile, under the peak of the pressure, mm.
     """
 
     max_shear: float

@@ -227,7 +227,7 @@ class GridContact:
         place : float
             Any number that tells places with different separations apart; unchanged places change nothing.
         departure : callable
-            Separation [mm] over the distance along the tangent [mm].
+            Separation over the distance along the tangent, both in mm.
         """
         if self._unit_separation is not None and place == self.place:
             return
@@ -244,7 +244,7 @@ class GridContact:
         self.place, self._solution = place, None
 
     def press(self, approach: float) -> tuple[float, float]:
-        """Return load [N] and stiffness [N/mm, contact cells held] at an approach [mm]."""
+        """Return load and stiffness (contact cells held) at an approach in mm, N and N/mm."""
         grid = self._grid()
         pressure = self._pressure(approach)
         solution = self._solution

@@ -14,7 +14,7 @@ class LoadLaw(Protocol):
     """Load of contacts pressed together."""
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return load [N] and its derivative by the approach [N/mm]; zeros where the approach is not positive."""
+        """Return load and its derivative by the approach, N and N/mm; zeros where the approach is not positive."""
         ...
 
 

@@ -97,15 +97,15 @@ def line_contact_table(
 class LineContactLaw:
     """Load, stiffness, energy, pressure and half-width of uncrowned cylinders of one length and modulus.
 
-    Every method takes approach and effective radius [mm], broadcasts them and returns arrays; an open contact
+    Every method takes approach and effective radius in mm, broadcasts them and returns arrays; an open contact
     (approach ≤ 0) gives zeros. The load is continuously differentiable where the approach is positive.
 
     Parameters
     ----------
     length : float
-        Length of the line contact [mm].
+        Length of the line contact, mm.
     contact_modulus : float
-        E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2) [MPa].
+        E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2), MPa.
     table : LineContactTable, optional
         The dimensionless law; default `line_contact_table`.
     """
@@ -124,7 +124,7 @@ class LineContactLaw:
         return pressed, np.log(np.where(closed, delta, 1.0) * radius / square), closed
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array]:
-        """Load [N] and its exact derivative by the approach [N/mm]."""
+        """Load and its exact derivative by the approach, N and N/mm."""
         pressed, place, closed = self._place(approach, effective_radius)
         w, first, second = self.table.inverse_energy.value_and_derivatives(place)
         inverse = 1.0 / w
@@ -135,20 +135,20 @@ class LineContactLaw:
         return load, stiffness
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
-        """∫ F dδ [N·mm], closed."""
+        """∫ F dδ in closed form, N·mm."""
         pressed, place, _ = self._place(approach, effective_radius)
         scale = self.contact_modulus * self.length
         return np.asarray(scale * pressed**2 / self.table.inverse_energy.value(place))
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
-        """Largest pressure at mid-width [MPa]."""
+        """Largest pressure at mid-width, MPa."""
         pressed, place, _ = self._place(approach, effective_radius)
         ratio = self.table.inverse_square_pressure.value(place)
         radius = np.asarray(effective_radius, dtype=float)
         return np.asarray(self.contact_modulus * np.sqrt(pressed / (radius * ratio)))
 
     def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
-        """Contact half-width at mid-width [mm], 2 √⟨x²⟩ with the pressure as weight."""
+        """Contact half-width at mid-width, 2 √⟨x²⟩ with the pressure as weight, mm."""
         pressed, place, _ = self._place(approach, effective_radius)
         ratio = self.table.inverse_square_half_width.value(place)
         return np.asarray(np.sqrt(pressed * np.asarray(effective_radius, dtype=float) / ratio))

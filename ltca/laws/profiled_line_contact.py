@@ -52,7 +52,7 @@ def solve_profiled_patch(
     profile : LengthProfile
         Relief along the width.
     effective_radius, contact_modulus, approach : float
-        ρ [mm], E* [MPa], δ at mid-width [mm].
+        ρ in mm, E* in MPa, δ at mid-width in mm.
     cells, half_width, start :
         As in `ltca.contact.pressure_cells.solve_cylinder_patch`.
 
@@ -89,7 +89,7 @@ class ProfiledTable:
     Attributes
     ----------
     smallest_radius, largest_radius : float
-        Range of effective radii served [mm].
+        Range of effective radii served, mm.
     start, spacing : float
         First knot in X and distance of the knots.
     log_radii : ndarray, shape (r,)
@@ -123,7 +123,7 @@ def profiled_table(
     profile : LengthProfile
         Relief along the width (hashable).
     smallest_radius, largest_radius : float
-        Range of ρ [mm]; equal for a single radius.
+        Range of ρ, mm; equal for a single radius.
     cells : int
         Cells over the half-width and the half-length on the finer of two grids.
     nodes : int
@@ -204,7 +204,7 @@ class ProfiledLineContactLaw:
     profile : LengthProfile
         Relief along the width.
     contact_modulus : float
-        E* [MPa].
+        E*, MPa.
     table : ProfiledTable
         From `profiled_table`.
     """
@@ -217,11 +217,11 @@ class ProfiledLineContactLaw:
     def for_radii(
         cls, profile: LengthProfile, contact_modulus: float, smallest_radius: float, largest_radius: float
     ) -> ProfiledLineContactLaw:
-        """Build (or reuse) the table for effective radii between two bounds [mm]."""
+        """Build (or reuse) the table for effective radii between two bounds, mm."""
         return cls(profile, contact_modulus, profiled_table(profile, smallest_radius, largest_radius))
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array]:
-        """Load [N] and its exact derivative by the approach [N/mm]."""
+        """Load and its exact derivative by the approach, N and N/mm."""
         pressed, place, radius, closed = self._place(approach, effective_radius)
         m, first, second = self._evaluate(self.table.exponent, place, radius)
         scale = self.contact_modulus * self.profile.length * np.exp(-m)
@@ -229,19 +229,19 @@ class ProfiledLineContactLaw:
         return load, scale * (2.0 - 3.0 * first + first**2 - second) * closed
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
-        """∫ F dδ [N·mm], closed."""
+        """∫ F dδ in closed form, N·mm."""
         pressed, place, radius, _ = self._place(approach, effective_radius)
         m, _, _ = self._evaluate(self.table.exponent, place, radius)
         return np.asarray(self.contact_modulus * self.profile.length * pressed**2 * np.exp(-m))
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
-        """Largest pressure at mid-width [MPa]."""
+        """Largest pressure at mid-width, MPa."""
         pressed, place, radius, _ = self._place(approach, effective_radius)
         logarithm, _, _ = self._evaluate(self.table.log_pressure, place, radius)
         return np.asarray(self.contact_modulus * np.sqrt(pressed / radius) * np.exp(logarithm))
 
     def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
-        """Contact half-width at mid-width [mm]."""
+        """Contact half-width at mid-width, mm."""
         pressed, place, radius, _ = self._place(approach, effective_radius)
         logarithm, _, _ = self._evaluate(self.table.log_half_width, place, radius)
         return np.asarray(np.sqrt(pressed * radius) * np.exp(logarithm))

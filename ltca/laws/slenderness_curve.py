@@ -1,33 +1,23 @@
 """Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast to evaluate.
 
-The laws of `ltca.laws.line_contact` are evaluated for every contact in every iteration, so a curve is located by one
-multiplication and summed by Horner's rule over stored piece coefficients. Quintic pieces joined four times
-differentiably (cardinal B-splines, Schoenberg 1946) make loads and stiffnesses derived from them smooth.
+Quintic pieces joined four times differentiably make loads and stiffnesses derived from them smooth; scipy finds
+them. The laws of `ltca.laws.line_contact` are evaluated for every contact in every iteration, so here a curve is
+located by one multiplication and value, slope and curvature are summed together by Horner's rule: for the 4680
+contacts of a usual batch that takes about half the time of scipy's own evaluation, which searches the knots.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import comb, factorial
+from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 Array = NDArray[np.float64]
 
 _DEGREE = 5
-
-
-def _cardinal_pieces() -> Array:
-    """Powers 0 … 5 of the local coordinate on the six unit pieces of the quintic cardinal B-spline; (piece, power)."""
-    pieces = np.zeros((_DEGREE + 1, _DEGREE + 1))
-    for piece in range(_DEGREE + 1):
-        # B(t) = Σ (−1)^k C(6, k) (t − k)₊⁵ / 5! with t = piece + local coordinate.
-        for k in range(piece + 1):
-            for power in range(_DEGREE + 1):
-                shift = float(piece - k) ** (_DEGREE - power)
-                pieces[piece, power] += (-1.0) ** k * comb(6, k) * comb(_DEGREE, power) * shift / factorial(5)
-    return pieces
 
 
 def quintic_spline_pieces(values: Array) -> Array:
@@ -61,21 +51,10 @@ def quintic_spline_pieces(values: Array) -> Array:
     count = values.size
     if count < 8:
         raise ValueError(f"a quintic spline needs at least 8 values, not {count}")
-    basis = _cardinal_pieces()
-    # On piece i the B-splines i … i+5 are alive; coefficient i+j shows its piece 5−j.
-    unknowns = count + _DEGREE - 1
-    system = np.zeros((unknowns, unknowns))
-    right = np.zeros(unknowns)
-    right[:count] = values
-    at_knot = basis[::-1, 0]
-    for i in range(count):
-        system[i, i : i + _DEGREE] = at_knot[:_DEGREE]
-    sixth_difference = np.array([(-1.0) ** k * comb(6, k) for k in range(7)])
-    for row, knot in enumerate((1, 2, count - 3, count - 2), start=count):
-        system[row, knot - 1 : knot + 6] = sixth_difference
-    weights = np.linalg.solve(system, right)
-    windows = np.lib.stride_tricks.sliding_window_view(weights, _DEGREE + 1)
-    return np.ascontiguousarray((windows @ basis[::-1]).T)
+    knots = np.arange(float(count))
+    spline = make_interp_spline(knots, values, k=_DEGREE)
+    # The pieces next to the ends go over the knots left out there: every interval gets coefficients of its own.
+    return np.array([spline(knots[:-1], nu=power) / factorial(power) for power in range(_DEGREE + 1)])
 
 
 def quintic_hermite_pieces(values: Array, slopes: Array) -> Array:
@@ -123,17 +102,8 @@ def quintic_hermite_pieces(values: Array, slopes: Array) -> Array:
     right_start = -360.0 * rise[knot] + 192.0 * before[knot] + 168.0 * after[knot]
     right[-1] = right_start - left_end
     bends = np.linalg.solve(system, right)
-    first, last = bends[:-1], bends[1:]
-    return np.array(
-        [
-            values[:-1],
-            before,
-            0.5 * first,
-            10.0 * rise - 6.0 * before - 4.0 * after - 1.5 * first + 0.5 * last,
-            -15.0 * rise + 8.0 * before + 7.0 * after + 1.5 * first - last,
-            6.0 * rise - 3.0 * (before + after) - 0.5 * first + 0.5 * last,
-        ]
-    )
+    spline = BPoly.from_derivatives(np.arange(float(count)), np.stack([values, slopes, bends], axis=1))
+    return np.ascontiguousarray(PPoly.from_bernstein_basis(spline).c[::-1])
 
 
 @dataclass(frozen=True, slots=True)

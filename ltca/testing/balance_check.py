@@ -51,7 +51,7 @@ class PotentialEnergy:
     wheel_moment: float
 
     def at(self, pose: FloatArray) -> FloatArray:
-        """Return Π [N·mm] of poses, shape (poses, 4), with the effective radii of the first of them."""
+        """Return Π of poses, shape (poses, 4), with the effective radii of the first of them, N·mm."""
         place = self.model.geometry.placement
         e, u = self.drive.crank.eccentricity, float(self.drive.reduction_ratio)
         shift = pose[:, 0] + 1j * pose[:, 1]

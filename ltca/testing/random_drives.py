@@ -35,7 +35,7 @@ def _often_zero(part: float) -> float:
 
 
 def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
-    """Return a drive and a crank angle [rad] for a point of the unit cube, None where no drive fits.
+    """Return a drive and a crank angle in rad for a point of the unit cube, None where no drive fits.
 
     Parameters
     ----------

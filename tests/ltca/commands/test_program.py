@@ -186,7 +186,7 @@ def test_run_imports_no_finite_elements_and_no_system_libraries(tmp_path):
 import sys
 from ltca.commands.program import main
 assert main(["run", "paper", "--no-figures", "--positions", "4", "--case", "CS-1", "--out", {str(tmp_path)!r}]) == 0
-heavy = {{"gmsh", "vtk", "vtkmodules", "pyvista", "skfem", "meshio", "validation", "matplotlib", "plotly"}}
+heavy = {{"gmsh", "vtk", "vtkmodules", "pyvista", "skfem", "meshio", "validation", "matplotlib"}}
 found = heavy & {{name.partition(".")[0] for name in sys.modules}}
 # the packages' commands are listed by the parser, nothing else of them
 found |= {{n for n in sys.modules if n.startswith("fem.") and not n.startswith("fem.commands")}}

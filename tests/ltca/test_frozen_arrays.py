@@ -1,0 +1,99 @@
+"""Frozen results: no name of theirs, of the caller's or of a view writes into them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from ltca.compliance.response import ContactPressures, KindPressures
+from ltca.frozen_arrays import freeze
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inner:
+    load: np.ndarray
+    note: str = "N"
+
+
+@dataclass(frozen=True)
+class Outer:
+    inner: Inner
+    pairs: tuple
+    angle: np.ndarray
+    history: list = field(default_factory=list)
+
+
+class Corner(NamedTuple):
+    place: np.ndarray
+    name: str
+
+
+def arrays(value):
+    """Every array of a result, however deep."""
+    if isinstance(value, np.ndarray):
+        return [value]
+    if isinstance(value, tuple):
+        return [array for item in value for array in arrays(item)]
+    if hasattr(value, "__dataclass_fields__"):
+        return [array for item in fields(value) for array in arrays(getattr(value, item.name))]
+    return []
+
+
+def test_no_array_of_a_nested_result_can_be_written():
+    angle = np.arange(3.0)
+    given = Outer(Inner(load=np.ones((2, 2))), (np.zeros(2), Corner(np.zeros(1), "pin")), angle)
+    frozen = freeze(given)
+    assert len(arrays(frozen)) == 4
+    for array in arrays(frozen):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 7.0
+    assert isinstance(frozen.pairs[1], Corner)
+    assert frozen.history is given.history  # passed through, as documented
+
+
+def test_what_the_caller_writes_later_does_not_arrive():
+    whole = np.arange(6.0)
+    frozen = freeze(Inner(load=whole[:3]))
+    whole[:] = -1.0
+    np.testing.assert_array_equal(frozen.load, [0.0, 1.0, 2.0])
+
+
+def test_the_arrays_given_stay_writable():
+    load = np.ones(2)
+    freeze(Inner(load=load))
+    load[0] = 2.0
+    assert load[0] == 2.0
+
+
+def test_a_read_only_view_of_a_writable_array_is_copied():
+    whole = np.arange(3.0)
+    view = whole[:]
+    view.flags.writeable = False
+    frozen = freeze(Inner(load=view))
+    whole[0] = 5.0
+    assert frozen.load[0] == 0.0
+
+
+def test_freezing_twice_changes_nothing_and_copies_nothing():
+    once = freeze(Outer(Inner(load=np.ones(2)), (), np.zeros(1)))
+    assert freeze(once) is once
+
+
+def test_what_holds_no_array_is_shared():
+    shared = Corner("no array", "pin")
+    assert freeze(shared) is shared
+    assert freeze(Outer(None, (), np.zeros(1))).pairs == ()
+
+
+def test_an_array_in_two_places_stays_one():
+    mid = np.ones((1, 2))
+    pins = KindPressures(mid=mid, largest=mid, half_width=np.ones((1, 2)), end_cell=0.1)
+    frozen = freeze(ContactPressures(pins=pins, outer=pins, inner=pins))
+    assert frozen.pins.mid is frozen.pins.largest
+    assert frozen.pins is frozen.outer
+    assert type(frozen) is ContactPressures
+    with pytest.raises(ValueError, match="read-only"):
+        frozen.pins.mid[0, 0] = 0.0
