@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -126,12 +127,15 @@ def _solve(
     print(f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limit:g} MPa")
     if not arguments.no_figures:
         folder = out / "figures"
+        first = safety.position - safety.position % POSITIONS_PER_TURN
+        turn = slice(first, first + POSITIONS_PER_TURN)
         paths = [
             figures.draw_torque_curve(curve, title, folder / "torque_curve"),
             figures.draw_spectrum(spectrum, title, folder / "transmission_error_orders"),
+            # The turn that holds the largest pressure of all: what is drawn is what is printed.
             figures.draw_pressure(
-                angle[:POSITIONS_PER_TURN], pressure[:POSITIONS_PER_TURN],
-                pressure_safety(pressure[:POSITIONS_PER_TURN], limit), title, folder / "flank_pressure",
+                angle[turn], pressure[turn], replace(safety, position=safety.position - turn.start), title,
+                folder / "flank_pressure",
             ),
         ]  # fmt: skip
         print(f"figures: {folder} ({len(paths)} as SVG and PNG)")

@@ -1,10 +1,13 @@
 """Numbers read off a pressure, against Hertz' semi-ellipse; stresses against a turned tensor."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from fem.body.stress import Stress, stress_of_strain
 from fem.contact.pressure_measures import peak_of, pressure_moments, vertex_means
+from fem.drive.contact_results import _detail
 from fem.drive.fields import fit_rigid_motion, turn_stress
 from ltca.drive.parts import Material
 
@@ -43,6 +46,22 @@ def test_peak_of_a_projection(shift):
     pressure = np.linalg.solve(hats @ hats.T, hats @ ellipse(x - middle))
     assert peak_of(arc, pressure, HALF_WIDTH) == pytest.approx(PEAK, rel=5e-4)
     assert abs(pressure.max() / PEAK - 1.0) > abs(peak_of(arc, pressure, HALF_WIDTH) / PEAK - 1.0)
+
+
+def test_what_is_said_of_one_contact():
+    """Load, share, peak and half-width of Hertz' own pressure: 2√⟨x²⟩ of a semi-ellipse is its half-width."""
+    arc = np.linspace(0.0, 4.0 * HALF_WIDTH, 801)
+    full = ellipse(arc - 1.9 * HALF_WIDTH)
+    zone = SimpleNamespace(arc=arc, at_vertices=lambda unknowns: np.concatenate([[0.0], unknowns, [0.0]]))
+    found = _detail(SimpleNamespace(zone=zone), full[1:-1], 600.0, 800.0)
+    assert (found.load, found.share) == (600.0, 0.75)
+    # 200 edges for each half-width: straight lines under the square-root ends cost 0.5 (1/200)^1.5 = 2e-4
+    assert found.half_width == pytest.approx(HALF_WIDTH, rel=5e-4)
+    assert found.peak_pressure == pytest.approx(PEAK, rel=1e-3)
+    assert found.middle == pytest.approx(1.9 * HALF_WIDTH, rel=1e-3)
+    assert found.largest_edge == pytest.approx(HALF_WIDTH / 200.0, rel=1e-9)
+    nothing = _detail(SimpleNamespace(zone=zone), np.zeros(799), 0.0, 800.0)
+    assert (nothing.load, nothing.share, nothing.peak_pressure, nothing.half_width) == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_means_keep_the_load_and_do_not_swing():

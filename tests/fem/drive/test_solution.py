@@ -61,6 +61,25 @@ def test_coarse_drive_balances(coarse):
     assert tangential == pytest.approx(TANGENTIAL, rel=1.5e-3)
 
 
+def test_contacts_are_hertzian(coarse):
+    """Load, peak and half-width of every contact go together as Hertz' do, p₀ = 2F/(π b t), whatever carries it."""
+    ratios = [
+        detail.peak_pressure * np.pi * detail.half_width * 11.8 / (2.0 * detail.load)
+        for detail in coarse.contacts.details
+        if detail.share > 0.05
+    ]
+    assert len(ratios) >= 12
+    # 2.8 elements for each half-width: 2.3 % at worst, 0.9 % in the mean
+    np.testing.assert_allclose(ratios, 1.0, atol=0.03)
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.015)
+
+
+def test_the_pose_is_at_rest(coarse):
+    """Half a micrometre and a thousandth of the load, as the design asks for; the answer is that of its own pose."""
+    assert coarse.state.increments[-1] < 5e-4
+    assert coarse.state.load_changes[-1] < 1e-3
+
+
 def test_arrays_have_full_length(coarse):
     summary = summarise(coarse)
     assert [len(summary[name]) for name in ("pin_load_N", "roller_load_outer_N", "pin_shaft_load_N")] == [14, 11, 8]

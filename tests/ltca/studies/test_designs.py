@@ -94,6 +94,26 @@ def test_regression_finds_the_shares_of_a_linear_law():
     assert regress(lambda: iter([(x[:8], y[:8])])) is None
 
 
+def test_regression_with_few_samples_is_adjusted():
+    """Pure noise: R² is f/(n − 1) in the mean, adjusted R² is nothing; against residuals of a plain least-squares fit."""
+    rng = np.random.default_rng(8)
+    count, factors, quantities = 30, 10, 2000
+    x, y = rng.normal(size=(count, factors)), rng.normal(size=(count, quantities))
+    found = regress(lambda: iter([(x[:17], y[:17]), (x[17:], y[17:])]))
+    columns = np.column_stack([np.ones(count), x])
+    left = y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]
+    per_freedom = (left**2).sum(axis=0) / (count - factors - 1)
+    np.testing.assert_allclose(found.explained, 1.0 - per_freedom / y.var(axis=0, ddof=1), atol=1e-10)
+    # standard error √(2 f/(n − f − 1)/(n + 1)/2000)·… about 0.004; the plain R² would be 0.345
+    assert abs(found.explained.mean()) < 0.02
+    # a share of noise is what chance gives: nothing in the mean of SRC² less chance, before it is cut at zero
+    spread = x.std(axis=0)[:, None] / y.std(axis=0)
+    slopes = np.linalg.lstsq(columns, y, rcond=None)[0][1:]
+    np.testing.assert_allclose(found.coefficients, slopes * spread, rtol=1e-9, atol=1e-12)
+    chance = (left**2).sum(axis=0) / (count * y.var(axis=0)) / (count - factors - 1)
+    np.testing.assert_allclose(found.shares, np.maximum(found.coefficients**2 - chance, 0.0), atol=1e-10)
+
+
 def test_sobol_indices_of_ishigami():
     """a = 7, b = 0.1: S = 0.3139, 0.4424, 0; S_T = 0.5576, 0.4424, 0.2437 (Ishigami and Homma 1990)."""
 

@@ -57,6 +57,19 @@ def test_pressures_are_compared_above_five_per_cent():
     np.testing.assert_array_equal(found.compared, [False, True, True])
 
 
+def test_the_reference_says_what_is_compared():
+    """A model that underrates a contact cannot take it out of the comparison, nor bring one in that is not there."""
+    reference = kind([21.0, 19.0, 400.0, 0.0], pressure=[10.0, 10.0, 100.0, 0.0])
+    model = kind([19.0, 21.0, 200.0, 50.0], pressure=[8.0, 11.0, 90.0, 70.0])
+    found = compare_kind(model, reference)
+    np.testing.assert_array_equal(found.compared, [True, False, True, False])
+    np.testing.assert_allclose(found.pressure, [-0.2, np.nan, -0.1, np.nan], rtol=1e-12)
+    np.testing.assert_allclose(found.half_width[[0, 2]], np.sqrt([19.0 / 21.0, 0.5]) - 1.0, rtol=1e-12)
+    np.testing.assert_allclose(found.load, np.array([-2.0, 2.0, -200.0, 50.0]) / 400.0, rtol=1e-14)
+    # an open contact of the model is still compared where the reference carries
+    assert compare_kind(kind([0.0, 400.0]), kind([100.0, 400.0])).pressure[0] == -1.0
+
+
 def test_a_model_without_pressures_has_no_pressure_difference():
     found = compare_kind(kind([0.0, 1.0], pressure=[np.nan, np.nan]), kind([0.0, 1.0]))
     place, difference = found.worst_pressure

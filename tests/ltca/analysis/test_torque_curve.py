@@ -1,0 +1,100 @@
+"""Torque against wind-up: a spring system with a closed form, rigid play, and the balance of single torques."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.torque_curve import LOST_MOTION, SMALLEST, STIFF_FROM, torque_curve
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.geometry.first_contact import WHEEL_ANGLE
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import rigid_play
+
+ANGLES = np.array([0.1, 0.35])
+
+
+@dataclass(frozen=True)
+class SpringsWithPlay:
+    """The wheel on two springs, one for each sense, with play between them; the disc on springs of its own."""
+
+    real: HalfSpaceCompliance
+    ccw: float
+    clockwise: float
+    play: float
+
+    @property
+    def geometry(self):
+        return self.real.geometry
+
+    def respond(self, crank_angle, pose, start=None):
+        response = self.real.respond(crank_angle, pose, start)
+        wheel = pose[:, WHEEL_ANGLE]
+        beyond = np.sign(wheel) * np.maximum(np.abs(wheel) - 0.5 * self.play, 0.0)
+        stiffness = np.where(wheel > 0.0, self.ccw, self.clockwise)
+        force = 1e5 * pose
+        force[:, WHEEL_ANGLE] = stiffness * beyond
+        tangent = np.tile(1e5 * np.eye(4), (len(pose), 1, 1))
+        tangent[:, WHEEL_ANGLE, WHEEL_ANGLE] = np.where(beyond == 0.0, 0.0, stiffness)
+        return replace(response, force=force, tangent=tangent)
+
+
+def test_springs_with_play(paper_cases):
+    """θ = ±(play/2 + |T|/k): every figure of the curve in closed form, the two senses apart."""
+    drive = paper_cases["CS-1"]
+    rated, ccw, clockwise, play = 377_300.0, 6e8, 4e8, 3e-3
+    springs = SpringsWithPlay(HalfSpaceCompliance.of_drive(drive), ccw, clockwise, play)
+    found = torque_curve(drive, ANGLES, points=2, build=lambda _: springs)
+    expected = np.where(found.torque > 0.0, 0.5 * play + found.torque / ccw, -0.5 * play + found.torque / clockwise)
+    # the balance closes to 1e-9 of the load: 1e-12 rad here
+    np.testing.assert_allclose(found.wheel_angle, np.tile(expected, (2, 1)), rtol=0.0, atol=1e-11)
+    both = rated * (1.0 / ccw + 1.0 / clockwise)
+    np.testing.assert_allclose(found.backlash, play + 1e-4 * both, rtol=1e-8)
+    np.testing.assert_allclose(found.lost_motion, play + 0.03 * both, rtol=1e-8)
+    np.testing.assert_allclose(found.stiffness, [[clockwise, ccw]] * 2, rtol=1e-7)
+    assert np.all(np.diff(found.torque) > 0.0)
+    np.testing.assert_allclose(found.torque, -found.torque[::-1], rtol=1e-15)
+    for part in (1e-4, 0.03, 0.5, 1.0):  # what is read off is solved for, not read beside
+        assert np.min(np.abs(found.torque - part * rated)) < 1e-9 * rated
+    np.testing.assert_array_equal(found.crank_angle, ANGLES)
+
+
+def test_figures_are_those_of_single_torques(paper_cases):
+    """Lost motion and stiffness against balances found one torque at a time, away from any curve."""
+    drive = paper_cases["CS-3"]
+    model = HalfSpaceCompliance.of_drive(drive)
+    found = torque_curve(drive, ANGLES, points=3)
+
+    def wheel(part):
+        return solve_equilibrium(model, ANGLES, part * 377_300.0).pose[:, WHEEL_ANGLE]
+
+    # both end at 1e-9 of the load over the stiffness, 1e-12 rad; wind-up from half to full load is 2e-4 rad
+    np.testing.assert_allclose(found.lost_motion, wheel(0.03) - wheel(-0.03), rtol=1e-8)
+    clockwise, ccw = 0.5 * 377_300.0 / (wheel(-0.5) - wheel(-1.0)), 0.5 * 377_300.0 / (wheel(1.0) - wheel(0.5))
+    np.testing.assert_allclose(found.stiffness, np.stack([clockwise, ccw], axis=1), rtol=1e-7)
+
+
+def test_backlash_is_the_play_of_rigid_parts(paper_cases):
+    """A linear programme over the gaps knows nothing of loads; 1e-4 of the torque winds the drive up by 3e-7 rad."""
+    drive = paper_cases["CS-6"]
+    found = torque_curve(drive, ANGLES, points=2)
+    play = rigid_play(ContactGeometry.of_drive(drive), ANGLES)
+    assert np.all(found.backlash > play)
+    np.testing.assert_allclose(found.backlash, play, atol=1e-6)
+
+
+def test_parts_of_the_rated_torque():
+    """Makers of precision reducers read lost motion at ±3 %; stiffness is the slope over the upper half."""
+    assert (LOST_MOTION, STIFF_FROM) == (0.03, 0.5)
+    assert SMALLEST <= 1e-3
+
+
+def test_both_senses_mirror_each_other(paper_cases):
+    """At φ_C = 0 the drive, rollers included, is its own mirror image."""
+    found = torque_curve(paper_cases["CS-6"], np.array([0.0]), points=4)
+    # 1e-9 of the load over the stiffness is 1e-12 rad, of 1e-4 rad between half and full load
+    np.testing.assert_allclose(found.wheel_angle[0], -found.wheel_angle[0, ::-1], rtol=0.0, atol=1e-11)
+    assert found.stiffness[0, 0] == pytest.approx(found.stiffness[0, 1], rel=1e-6)

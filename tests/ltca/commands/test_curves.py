@@ -1,0 +1,163 @@
+"""``cyclo curves``: what is printed, kept and drawn is one thing, and it is what the analysis says."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+import ltca.commands.curves as curves
+import ltca.figures.curve_figures as curve_figures
+from ltca.analysis import loaded_analysis
+from ltca.analysis.loaded_analysis import analyse
+from ltca.commands.program import main
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+
+CASE, TURNS, SPEED = "CS-6", 14, 1500.0
+PER_TURN = 88  # orders of 2 z_C + 2 z_PS = 42 a turn are told apart
+ARCMIN, ARCSEC = 10_800.0 / np.pi, 648_000.0 / np.pi
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory):
+    """One run with coarse turns: what it printed, what it kept, its figures unsaved, and the analysis behind them."""
+    figures, printed, analyses = {}, [], []
+
+    def keep(figure, stem):
+        figures[stem.name] = figure
+        return stem.with_suffix(".png")
+
+    def follow(*words, **options):
+        analyses.append(analyse(*words, **options))
+        return analyses[-1]
+
+    out = tmp_path_factory.mktemp("curves")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(curves, "POSITIONS_PER_TURN", PER_TURN)
+        patch.setattr(curves, "HARMONICS", 1)
+        patch.setattr(curve_figures, "_save", keep)
+        patch.setattr(loaded_analysis, "analyse", follow)
+        patch.setattr("builtins.print", lambda *words, **options: printed.append(" ".join(map(str, words))))
+        words = ["curves", "paper", "--case", CASE, "--turns", str(TURNS), "--speed", str(SPEED), "--out", str(out)]
+        status = main([*words, "--pressure-limit", "1.2 GPa"])
+    assert status == 0
+    content = json.loads((out / "curves.json").read_text(encoding="utf-8"))
+    (analysis,) = analyses
+    return "\n".join(printed), content, figures, analysis
+
+
+def printed_range(text, name):
+    low, high = re.search(rf"{name}\D*?([\d.]+) … ([\d.]+)", text).groups()
+    return float(low), float(high)
+
+
+def test_torque_curve_is_printed_as_it_is_kept(told):
+    text, content, *_ = told
+    kept = content["torque_curve"]
+    for name, values in (
+        ("backlash at the wheel, disc floating", np.array(kept["backlash_rad"]) * ARCMIN),
+        (r"lost motion at ±3 % of the rated torque", np.array(kept["lost_motion_rad"]) * ARCMIN),
+        # N·mm/rad to N·m for each arc minute
+        (r"torsional stiffness, 50 … 100 %", np.array(kept["stiffness_N_mm_per_rad"]) / ARCMIN / 1000.0),
+    ):
+        # printed with four digits
+        assert printed_range(text, name) == pytest.approx((values.min(), values.max()), rel=1e-3), name
+
+
+def test_torque_curve_is_that_of_the_drive(told, paper_cases):
+    """At the last angle against two balances; the angles divide one tooth of the flank."""
+    kept = told[1]["torque_curve"]
+    angles = np.array(kept["crank_angle_rad"])
+    np.testing.assert_allclose(angles, 2.0 * np.pi / 13.0 * np.arange(angles.size) / angles.size, rtol=1e-12)
+    model, at = HalfSpaceCompliance.of_drive(paper_cases[CASE]), np.repeat(angles[-1:], 4)
+    half, full, low, high = solve_equilibrium(model, at, 377_300.0 * np.array([0.5, 1.0, -0.03, 0.03])).pose[:, 3]
+    assert kept["stiffness_N_mm_per_rad"][-1][1] == pytest.approx(0.5 * 377_300.0 / (full - half), rel=1e-7)
+    assert kept["lost_motion_rad"][-1] == pytest.approx(high - low, rel=1e-7)
+
+
+def test_torque_curve_is_drawn_as_it_is_kept(told):
+    kept, (whole, close) = told[1]["torque_curve"], told[2]["torque_curve"].axes
+    for axis in (whole, close):
+        lines = axis.get_lines()[: len(kept["crank_angle_rad"])]
+        for line, wheel in zip(lines, kept["wheel_angle_rad"], strict=True):
+            np.testing.assert_allclose(line.get_xdata(), np.array(wheel) * ARCMIN, rtol=1e-12)
+            np.testing.assert_allclose(line.get_ydata(), np.array(kept["torque_N_mm"]) / 1000.0, rtol=1e-12)
+    labels = [text.get_text() for text in whole.get_legend().get_texts()]
+    assert labels == [f"{np.degrees(angle):.0f}°" for angle in kept["crank_angle_rad"]]
+    # ±3 % of the rated torque, dashed
+    dashed = sorted(float(line.get_ydata()[0]) for line in close.get_lines()[-2:])
+    assert dashed == pytest.approx([-0.03 * 377.3, 0.03 * 377.3])
+
+
+def test_orders_rebuild_the_transmission_error(told):
+    """Σ a cos(o φ − p) and a mean leave the residual that is printed, and what it leaves is orthogonal to every order."""
+    text, content, _, analysis = told
+    angle = 2.0 * np.pi * np.arange(TURNS * PER_TURN) / PER_TURN
+    np.testing.assert_allclose(analysis.full.crank_angle, angle, rtol=1e-14)
+    kept = content["transmission_error_orders"]
+    error = analysis.full.pose[:, 3]
+    left = error - error.mean()
+    for entry in kept["orders"]:
+        left = left - entry["amplitude_rad"] * np.cos(entry["order"] * angle - entry["phase_rad"])
+    left -= left.mean()
+    rms = float(np.sqrt(np.mean(left**2)))
+    assert kept["residual_rms_rad"] == pytest.approx(rms, rel=1e-6)
+    assert rms < 0.5 * np.std(error)
+    for entry in kept["orders"]:
+        assert abs(np.mean(left * np.cos(entry["order"] * angle))) < 1e-9 * np.std(error)
+    assert float(re.search(r"unexplained, rms\s+([\d.]+)″", text).group(1)) == pytest.approx(rms * ARCSEC, abs=6e-5)
+    assert kept["turns"] == TURNS
+
+
+def test_orders_are_printed_and_drawn_as_they_are_kept(told):
+    text, content, figures, _ = told
+    largest = sorted(content["transmission_error_orders"]["orders"], key=lambda entry: -entry["amplitude_rad"])
+    printed = re.findall(r"^ +([\d.]+)  (\S.*?) +([\d.]+)″$", text, flags=re.M)
+    printed = [row for row in printed if row[1] in {entry["name"] for entry in largest}]
+    (axes,) = figures["transmission_error_orders"].axes
+    listed = [item.get_text() for item in axes.texts if "″" in item.get_text()]
+    assert len(printed) == 8
+    for entry, (order, name, amplitude) in zip(largest, printed, strict=False):
+        seconds = entry["amplitude_rad"] * ARCSEC
+        assert (float(order), name) == (pytest.approx(entry["order"], abs=6e-5), entry["name"])
+        assert float(amplitude) == pytest.approx(seconds, abs=6e-5)
+        assert any(line.split()[:2] == [f"{entry['order']:.4f}", f"{seconds:.3f}″"] for line in listed)
+    assert f"{content['transmission_error_orders']['residual_rms_rad'] * ARCSEC:.2g}″ rms" in axes.get_title()
+
+
+def test_pressure_is_one_number(told):
+    """Printed, kept and drawn from the same positions: all turns, not the first alone."""
+    text, content, figures, analysis = told
+    kept = content["pressure_safety"]
+    pressure = analysis.pressures.pins.mid
+    assert kept["largest_MPa"] == pytest.approx(pressure.max(), rel=1e-12)
+    assert kept["pin"] == int(np.argmax(pressure.max(axis=0)))
+    assert kept["limit_MPa"] == pytest.approx(1200.0)
+    assert kept["safety"] == pytest.approx(1200.0 / pressure.max(), rel=1e-12)
+    assert kept["load_factor"] == pytest.approx(kept["safety"] ** 2, rel=1e-12)
+    largest, safety = re.search(r"flank pressure ([\d.]+) MPa, safety ([\d.]+) against 1200 MPa", text).groups()
+    assert (largest, safety) == (f"{kept['largest_MPa']:.1f}", f"{kept['safety']:.3f}")
+    (axes,) = figures["flank_pressure"].axes
+    assert f"safety {safety} against 1200 MPa (pin {kept['pin']})" in axes.get_title()
+    *_, mark = axes.get_lines()
+    assert mark.get_ydata()[0] == pytest.approx(kept["largest_MPa"])
+    curve = axes.get_lines()[-3]  # the largest of all pins
+    assert np.max(curve.get_ydata()) == pytest.approx(kept["largest_MPa"])
+    at = int(np.argmax(curve.get_ydata()))
+    assert mark.get_xdata()[0] == pytest.approx(curve.get_xdata()[at])
+
+
+def test_life_is_printed_as_it_is_kept(told):
+    text, content, *_ = told
+    kept = content["bearing_life"]
+    rating, load, life = re.search(r"C (\d+) N, P (\d+) N, L10r ([\d.]+) million turns", text).groups()
+    assert (rating, load) == (f"{kept['dynamic_load_rating_N']:.0f}", f"{kept['equivalent_load_N']:.0f}")
+    assert life == f"{kept['million_turns']:.1f}"
+    # (C/P)^(10/3), and a million turns at 1500 a minute
+    ratio = kept["dynamic_load_rating_N"] / kept["equivalent_load_N"]
+    assert kept["million_turns"] == pytest.approx(ratio ** (10.0 / 3.0), rel=1e-9)
+    assert kept["hours"] == pytest.approx(kept["million_turns"] * 1e6 / 1500.0 / 60.0, rel=1e-12)
+    assert f"{kept['hours']:.0f} h at 1500 turns a minute" in text
