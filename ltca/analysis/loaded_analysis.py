@@ -13,6 +13,7 @@ from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
+from ltca.frozen_arrays import freeze
 
 FloatArray = NDArray[np.float64]
 
@@ -100,12 +101,12 @@ def analyse(
         drive=drive,
         torque=torque,
         engine=used,
-        full=full,
-        light=light,
+        full=freeze(full),
+        light=freeze(light),
         model=prepared.model,
-        pressures=pressures,
-        bearing_radial=push.real,
-        bearing_tangential=push.imag,
+        pressures=freeze(pressures),
+        bearing_radial=freeze(push.real),
+        bearing_tangential=freeze(push.imag),
     )
 
 

@@ -111,6 +111,23 @@ def test_what_is_handed_out_changes_nothing(result):
     assert result.summary
 
 
+def test_arrays_of_a_result_are_read_only(result):
+    full, pressures = result.loaded.full, result.loaded.pressures
+    for array in (
+        full.pose, full.residual, full.response.pin_load, full.response.flank.approach,
+        full.response.rollers.outer_load, pressures.pins.mid, result.loaded.bearing_radial, result.loaded.light.pose,
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+
+
+def test_angles_of_the_caller_stay_the_callers():
+    angles = np.array([0.1, 0.2])
+    kept = ltca.analyse(DRIVE, crank_angle=angles)
+    angles[:] = 9.0
+    np.testing.assert_array_equal(kept.loaded.full.crank_angle, [0.1, 0.2])
+
+
 def test_one_angle_says_nothing_of_ranges():
     """Once it printed a transmission error of 0.00″ and a loaded range of 90°."""
     one = ltca.analyse(DRIVE, crank_angle=[0.5])

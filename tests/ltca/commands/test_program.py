@@ -78,7 +78,7 @@ def test_torque_with_a_unit_is_that_torque(tmp_path):
         np.testing.assert_array_equal(a["pin_load"], b["pin_load"])
         np.testing.assert_array_equal(a["crank_angle"], [2.0 * np.pi * k / 3 for k in range(3)])
         # half the torque, about half the mean load: the sum of F times its lever is the torque
-        assert float(a.attrs["torque_N_mm"]) == 188_650.0
+        assert float(a["torque"].item()) == 188_650.0
 
 
 @pytest.mark.parametrize(
