@@ -20,7 +20,7 @@ from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import ContactGeometry, disc_displacement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 
@@ -173,7 +173,7 @@ class HalfSpaceCompliance:
         hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
         rollers = balance_rollers(
             self.geometry.rollers(crank_angle),
-            pose[:, 0] + 1j * pose[:, 1],
+            disc_displacement(pose),
             self.roller_laws,
             None if start is None else start.share,
         )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,8 @@ from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-BatchScalar: TypeAlias = Any
-"""A number of one drive, a float; of a batch of drives an array of shape (positions, 1)."""
+BatchScalar: TypeAlias = float | FloatArray
+"""What is one number for one drive, and an array of shape (positions, 1) for a batch of drives."""
 
 
 def _filled(values: Sequence[float], count: int) -> FloatArray:
