@@ -59,7 +59,7 @@ class Plan:
 
     @property
     def steps(self) -> int:
-        """Number of steps that `run_study` reports."""
+        """Number of steps that `run_validation` reports."""
         return 5 + 2 * len(self.drives) + len(self.drives) * len(self.crank_angles)
 
 
@@ -122,7 +122,7 @@ def plan_study(
     )
 
 
-def run_study(plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]) -> Study:
+def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]) -> Study:
     """Run a validation.
 
     Parameters

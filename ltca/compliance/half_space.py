@@ -91,8 +91,7 @@ class HalfSpaceCompliance:
         cls, geometry: ContactGeometry, drive: Drive, pin_radii: FloatArray, hole_stiffness: float | FloatArray
     ) -> HalfSpaceCompliance:
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
-        inner_radius = 1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius)
-        outer_radius = 1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius)
+        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
         # Batches differ little from each other: on a ladder they share the tables of profiled parts.
         rungs = _rungs if place.is_batch else np.asarray
         return cls(

@@ -17,21 +17,6 @@ from scipy.special import ellipe, ellipk
 Array = NDArray[np.float64]
 
 
-def contact_modulus(
-    young_modulus_1: float, poisson_ratio_1: float, young_modulus_2: float, poisson_ratio_2: float
-) -> float:
-    """E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2), MPa.
-
-    Examples
-    --------
-    >>> round(contact_modulus(206e3, 0.3, 206e3, 0.3))
-    113187
-    """
-    first = (1.0 - poisson_ratio_1**2) / young_modulus_1
-    second = (1.0 - poisson_ratio_2**2) / young_modulus_2
-    return 1.0 / (first + second)
-
-
 def effective_radius(radius_1: float, radius_2: float) -> float:
     """1/(1/r1 + 1/r2), mm; a concave surface has a negative radius, a flat one an infinite one."""
     return 1.0 / (1.0 / radius_1 + 1.0 / radius_2)

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
-class LengthProfile(Protocol):
-    """What the contact needs to know of a profile along the width; hashable, since tables are cached by it."""
+class Relief(Protocol):
+    """What a contact needs to know of crowning and relief along the width; hashable, tables are cached by it."""
 
     def __hash__(self) -> int:
         """Hash of the parameters."""

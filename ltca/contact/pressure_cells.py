@@ -24,7 +24,7 @@ from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 
 Array = NDArray[np.float64]
 Separation = Callable[[Array, Array], Array]
-Relief = Callable[[Array], Array]
+ReliefFunction = Callable[[Array], Array]
 
 # Room beyond the expected edge: an unrelieved end bulges by up to 1.56 of the half-width at mid-width.
 _ROOM = 1.6
@@ -338,7 +338,7 @@ def solve_cylinder_patch(
     contact_modulus: float,
     approach: float,
     *,
-    relief: Relief | None = None,
+    relief: ReliefFunction | None = None,
     cells: int = 16,
     y_cells: int | None = None,
     half_width: float | None = None,
@@ -405,13 +405,13 @@ def solve_cylinder_patch(
     return solve_on(half_width, cells, count_y, start)
 
 
-def _means_along(relief: Relief, grid: PatchGrid) -> Array:
+def _means_along(relief: ReliefFunction, grid: PatchGrid) -> Array:
     """Mean relief of every y cell by Gauss points."""
     y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS
     return np.asarray(relief(y) @ _GAUSS_WEIGHTS / 2.0)
 
 
-def parabolic_separation(effective_radius: float, relief: Relief | None = None) -> Separation:
+def parabolic_separation(effective_radius: float, relief: ReliefFunction | None = None) -> Separation:
     """h(x, y) = x²/(2ρ) + z(y) as a function for `PatchGrid.cell_means`."""
 
     def separation(x: ArrayLike, y: ArrayLike) -> Array:

@@ -234,15 +234,15 @@ class _System:
         ray = geometry.rollers(angle).direction[0]
         # The pins push the disc inward and back, the bearing outward and ahead.
         zone = carrying_rollers(geometry, angle, angle - 0.25 * np.pi * sense, LOADED_ZONE)[0]
-        for roller, radius in enumerate(place.roller_radii):
+        for roller in range(self.rollers):
             outward, inward = np.zeros(4 + self.rollers), np.zeros(4 + self.rollers)
             outward[:2] = -ray[roller].real, -ray[roller].imag
             outward[4 + roller], inward[4 + roller] = 1.0, -1.0
             modulus = contact_modulus(parts.disc, parts.roller)
-            effective = 1.0 / (1.0 / radius - 1.0 / place.bore_radius)
+            effective = float(place.outer_effective_radii[roller])
             self._add(("outer", roller), modulus, effective, bearing.roller_length, 0.0, outward, bool(zone[roller]))
             modulus = contact_modulus(parts.inner_race, parts.roller)
-            effective = 1.0 / (1.0 / radius + 1.0 / place.inner_race_radius)
+            effective = float(place.inner_effective_radii[roller])
             self._add(("inner", roller), modulus, effective, bearing.roller_length, 0.0, inward, bool(zone[roller]))
         holes = geometry.holes(angle, self.start)
         self.hole_stiffness = drive.pin_shaft.stiffness

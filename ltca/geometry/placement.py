@@ -112,6 +112,21 @@ class Placement:
         )
 
     @property
+    def inner_effective_radii(self) -> FloatArray:
+        """Effective radii of rollers and inner race, 1/(1/r_BR + 1/r_i), mm, shape (n_BR,)."""
+        return np.asarray(1.0 / (1.0 / self.roller_radii + 1.0 / self.inner_race_radius))
+
+    @property
+    def outer_effective_radii(self) -> FloatArray:
+        """Effective radii of rollers and bore, 1/(1/r_BR − 1/r_o), mm, shape (n_BR,)."""
+        return np.asarray(1.0 / (1.0 / self.roller_radii - 1.0 / self.bore_radius))
+
+    @property
+    def hole_effective_radii(self) -> FloatArray:
+        """Effective radii of shaft pins and holes, 1/(1/r_PS − 1/r_PSH), mm, shape (z_PS,)."""
+        return np.asarray(1.0 / (1.0 / self.shaft_pin_radii - 1.0 / self.hole_radii))
+
+    @property
     def is_batch(self) -> bool:
         """Whether every position has a drive of its own."""
         return isinstance(self.eccentricity, np.ndarray)

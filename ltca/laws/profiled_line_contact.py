@@ -17,7 +17,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.contact.length_profile import LengthProfile
+from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
 from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
@@ -36,7 +36,7 @@ _FREE_GRADING = 1.25
 
 
 def solve_profiled_patch(
-    profile: LengthProfile,
+    profile: Relief,
     effective_radius: float,
     contact_modulus: float,
     approach: float,
@@ -49,7 +49,7 @@ def solve_profiled_patch(
 
     Parameters
     ----------
-    profile : LengthProfile
+    profile : Relief
         Relief along the width.
     effective_radius, contact_modulus, approach : float
         ρ in mm, E* in MPa, δ at mid-width in mm.
@@ -110,7 +110,7 @@ class ProfiledTable:
 
 @cache
 def profiled_table(
-    profile: LengthProfile,
+    profile: Relief,
     smallest_radius: float,
     largest_radius: float,
     cells: int = _CELLS,
@@ -120,7 +120,7 @@ def profiled_table(
 
     Parameters
     ----------
-    profile : LengthProfile
+    profile : Relief
         Relief along the width (hashable).
     smallest_radius, largest_radius : float
         Range of ρ, mm; equal for a single radius.
@@ -201,7 +201,7 @@ class ProfiledLineContactLaw:
 
     Parameters
     ----------
-    profile : LengthProfile
+    profile : Relief
         Relief along the width.
     contact_modulus : float
         E*, MPa.
@@ -209,13 +209,13 @@ class ProfiledLineContactLaw:
         From `profiled_table`.
     """
 
-    profile: LengthProfile
+    profile: Relief
     contact_modulus: float
     table: ProfiledTable
 
     @classmethod
     def for_radii(
-        cls, profile: LengthProfile, contact_modulus: float, smallest_radius: float, largest_radius: float
+        cls, profile: Relief, contact_modulus: float, smallest_radius: float, largest_radius: float
     ) -> ProfiledLineContactLaw:
         """Build (or reuse) the table for effective radii between two bounds, mm."""
         return cls(profile, contact_modulus, profiled_table(profile, smallest_radius, largest_radius))
