@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ COLOUR_MAP = "turbo"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Patch:
+class Triangles:
     """Filled triangles.
 
     Attributes
@@ -81,10 +81,10 @@ class Panel:
         mm.
     half_side : float
         mm.
-    patches : tuple of Patch
+    triangles : tuple of Triangles
         Below the lines.
     lines : tuple of Lines
-        Above the patches.
+        Above the triangles.
     label : str
         Of the colour bar; "" for none.
     limits : tuple of two floats
@@ -94,7 +94,7 @@ class Panel:
     title: str
     centre: complex
     half_side: float
-    patches: tuple[Patch, ...]
+    triangles: tuple[Triangles, ...]
     lines: tuple[Lines, ...]
     label: str = ""
     limits: tuple[float, float] = (0.0, 1.0)
@@ -135,25 +135,13 @@ def _clip(panel: Panel) -> Panel:
     def shows(points: ComplexArray) -> NDArray[np.bool_]:
         return may_show(points, panel.centre, panel.half_side)
 
-    patches = []
-    for patch in panel.patches:
-        faces = patch.faces[shows(patch.points[patch.faces])]
-        if len(faces):
-            patches.append(Patch(points=patch.points, faces=faces, values=patch.values, colour=patch.colour))
-    lines = []
-    for item in panel.lines:
-        points = item.points[shows(item.points)]
-        if len(points):
-            lines.append(Lines(points=points, colour=item.colour, width=item.width))
-    return Panel(
-        title=panel.title,
-        centre=panel.centre,
-        half_side=panel.half_side,
-        patches=tuple(patches),
-        lines=tuple(lines),
-        label=panel.label,
-        limits=panel.limits,
-    )
+    triangles = [
+        replace(surface, faces=faces)
+        for surface in panel.triangles
+        if len(faces := surface.faces[shows(surface.points[surface.faces])])
+    ]
+    lines = [replace(item, points=points) for item in panel.lines if len(points := item.points[shows(item.points)])]
+    return replace(panel, triangles=tuple(triangles), lines=tuple(lines))
 
 
 def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None:
@@ -162,14 +150,14 @@ def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None
         plotter.subplot(0, column)
         plotter.set_background("white")
         bar = bool(panel.label)
-        for patch in panel.patches:
-            mesh = flat_surface(patch.points, patch.faces)
-            if patch.values is None:
-                plotter.add_mesh(mesh, color=patch.colour, lighting=False)
+        for surface in panel.triangles:
+            mesh = flat_surface(surface.points, surface.faces)
+            if surface.values is None:
+                plotter.add_mesh(mesh, color=surface.colour, lighting=False)
                 continue
             plotter.add_mesh(
                 mesh,
-                scalars=patch.values,
+                scalars=surface.values,
                 cmap=COLOUR_MAP,
                 clim=panel.limits,
                 lighting=False,
@@ -207,19 +195,19 @@ def _render_with_matplotlib(path: Path, panels: Sequence[Panel], side: int) -> N
     for column, panel in enumerate(panels):
         axes = figure.add_subplot(1, len(panels), column + 1)
         coloured: Any = None
-        for patch in panel.patches:
-            values = np.zeros(len(patch.points)) if patch.values is None else patch.values
+        for surface in panel.triangles:
+            values = np.zeros(len(surface.points)) if surface.values is None else surface.values
             drawn: Any = axes.tripcolor(  # type: ignore[call-overload]
-                patch.points.real,
-                patch.points.imag,
-                patch.faces,
+                surface.points.real,
+                surface.points.imag,
+                surface.faces,
                 values,
                 shading="gouraud",
-                cmap=COLOUR_MAP if patch.values is not None else _single(patch.colour),
+                cmap=COLOUR_MAP if surface.values is not None else _single(surface.colour),
                 vmin=panel.limits[0],
                 vmax=panel.limits[1],
             )
-            coloured = drawn if patch.values is not None else coloured
+            coloured = drawn if surface.values is not None else coloured
         for item in panel.lines:
             segments = coordinate_pairs(item.points)
             axes.add_collection(LineCollection(segments, colors=item.colour, linewidths=0.6 * item.width))
