@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
+from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.placement import position_angles
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
 from validation.compare.model_positions import MODELS, engine_of
-from validation.rows import Row, rounded
+from validation.rows import Row, relative_row, rounded
 
 FloatArray = NDArray[np.float64]
 
@@ -74,7 +76,7 @@ TITLES: dict[str, tuple[str, str]] = {
 def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
     """Return the figures of one turn."""
     response, pressures = analysis.full.response, analysis.pressures
-    wheel, light = (state.pose[:, 3] * ARCSECONDS for state in (analysis.full, analysis.light))
+    wheel, light = (state.pose[:, WHEEL_ANGLE] * ARCSECONDS for state in (analysis.full, analysis.light))
     return TurnFigures(
         pin_load=float(np.max(response.pin_load)),
         roller_load=float(np.max(response.rollers.outer_load)),
@@ -113,7 +115,7 @@ def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> Flexibility
     coefficients : InfluenceCoefficients
         Of its disc.
     """
-    angles = 2.0 * np.pi * np.arange(TURN_POSITIONS) / TURN_POSITIONS
+    angles = position_angles(TURN_POSITIONS)
     turn: dict[str, TurnFigures] = {
         model: turn_figures(analyse(drive, angles, engine=engine_of(model, coefficients))) for model in MODELS
     }
@@ -137,21 +139,8 @@ def flexibility_rows(case: str, effect: FlexibilityEffect) -> list[Row]:
     for model in ("half-space", "hybrid"):
         for name, (title, unit) in TITLES.items():
             value, other = float(getattr(effect.turn[model], name)), float(getattr(reference, name))
-            rows.append(
-                Row(
-                    level=6,
-                    quantity=title,
-                    value=value,
-                    reference=other,
-                    unit=unit,
-                    difference=value / other - 1.0,
-                    limit=None,
-                    reason=CAUSE if model == "half-space" else "finite length at the contacts: informs only",
-                    case=case,
-                    model=model,
-                    against="fe",
-                )
-            )
+            cause = CAUSE if model == "half-space" else "finite length at the contacts: informs only"
+            rows.append(relative_row(6, title, value, other, unit, None, cause, case=case, model=model, against="fe"))
     for multiple, changes in effect.by_torque.items():
         for name, change in changes.items():
             quantity = f"{TITLES[name][0]}, change from half-space to fe at {multiple:g} of the torque"
