@@ -179,7 +179,7 @@ class DiscShape:
         placement = Placement.of_drive(drive)
         return cls(
             flank=FlankCurve(profile=FlankProfile.of_drive(drive)),
-            bore=CircleCurve(name="bore", radius=placement.bore_radius, encloses_body=False),
+            bore=CircleCurve(name="bore", radius=drive.bore_radius, encloses_body=False),
             holes=tuple(
                 CircleCurve(name=f"hole_{k}", radius=float(radius), centre=complex(centre), encloses_body=False)
                 for k, (centre, radius) in enumerate(zip(placement.hole_centres, placement.hole_radii, strict=True))
@@ -352,7 +352,9 @@ class DriveShapes:
         if core_radius is None:
             core_radius = min(DEFAULT_CORE_RADIUS, LARGEST_CORE_SHARE * float(placement.wheel_pin_radii.min()))
         if race_bore_radius is None:
-            race_bore_radius = min(DEFAULT_RACE_BORE_RADIUS, LARGEST_RACE_BORE_SHARE * placement.inner_race_radius)
+            race_bore_radius = min(
+                DEFAULT_RACE_BORE_RADIUS, LARGEST_RACE_BORE_SHARE * drive.crank_bearing.inner_race_radius
+            )
         return cls(
             disc=DiscShape.of_drive(drive),
             wheel_pins=tuple(
@@ -362,7 +364,7 @@ class DriveShapes:
             rollers=tuple(
                 CircleShape(name=f"roller_{n}", radius=float(radius)) for n, radius in enumerate(placement.roller_radii)
             ),
-            inner_race=RingShape(inner_radius=race_bore_radius, outer_radius=placement.inner_race_radius),
+            inner_race=RingShape(inner_radius=race_bore_radius, outer_radius=drive.crank_bearing.inner_race_radius),
             shaft_pins=tuple(
                 CircleShape(name=f"shaft_pin_{k}", radius=float(radius))
                 for k, radius in enumerate(placement.shaft_pin_radii)

@@ -21,7 +21,7 @@ from validation.compare.derived_coefficients import coefficients_of, has_clearan
 from validation.compare.finite_element_positions import FullPosition, Settings, solve_position
 from validation.levels.closed_forms import check_closed_forms
 from validation.levels.coefficients import check_file, halved_mesh_row
-from validation.levels.flexible_disc import CaseMeaning, full_solution_rows, meaning_rows, study_case
+from validation.levels.flexible_disc import FlexibilityEffect, flexibility_rows, full_solution_rows, study_case
 from validation.levels.model_laws import compare_models
 from validation.levels.other_codes import asked_codes
 from validation.levels.positions import compare_position_rows, shared_file_rows
@@ -59,7 +59,7 @@ class Plan:
 
     @property
     def steps(self) -> int:
-        """Number of steps that `run_study` reports."""
+        """Number of steps that `run_validation` reports."""
         return 5 + 2 * len(self.drives) + len(self.drives) * len(self.crank_angles)
 
 
@@ -75,7 +75,7 @@ class Study:
         Of all levels, in order.
     compared : dict of str to list of ComparedPosition
         By case.
-    meanings : dict of str to CaseMeaning
+    flexibility : dict of str to FlexibilityEffect
         By case.
     coefficients : dict of str to InfluenceCoefficients
         By case.
@@ -84,7 +84,7 @@ class Study:
     plan: Plan
     rows: tuple[Row, ...]
     compared: dict[str, list[ComparedPosition]]
-    meanings: dict[str, CaseMeaning]
+    flexibility: dict[str, FlexibilityEffect]
     coefficients: dict[str, InfluenceCoefficients]
 
 
@@ -122,7 +122,7 @@ def plan_study(
     )
 
 
-def run_study(plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]) -> Study:
+def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]) -> Study:
     """Run a validation.
 
     Parameters
@@ -156,13 +156,13 @@ def run_study(plan: Plan, folder: Path, step: Callable[[str], None], say: Callab
     two = _read_rows(kept_answers)
     compared = {case: compare_case(plan.drives[case], full[case], coefficients[case]) for case in plan.drives}
     five = _model_rows(plan, compared, full, coefficients, folder / "coefficients", say)
-    meanings, six = {}, []
+    flexibility, six = {}, []
     for case, drive in plan.drives.items():
         step(f"one turn of {case}")
-        meanings[case] = study_case(drive, coefficients[case])
-        six += [*full_solution_rows(case, compared[case]), *meaning_rows(case, meanings[case])]
+        flexibility[case] = study_case(drive, coefficients[case])
+        six += [*full_solution_rows(case, compared[case]), *flexibility_rows(case, flexibility[case])]
     rows = (*one, *two, *three, *four, *five, *six)
-    return Study(plan=plan, rows=rows, compared=compared, meanings=meanings, coefficients=coefficients)
+    return Study(plan=plan, rows=rows, compared=compared, flexibility=flexibility, coefficients=coefficients)
 
 
 def _before_positions(

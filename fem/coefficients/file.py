@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.errors import MeshError
-from fem.mesh.mesh_file import written_whole
+from ltca.output.files import whole_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,11 +46,11 @@ def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
 
     Raises
     ------
-    MeshError
+    CycloError
         When it cannot be written.
     """
-    with written_whole(path) as temporary:
-        dataset.to_netcdf(temporary, engine="h5netcdf")
+    with whole_file(path) as part:
+        dataset.to_netcdf(part, engine="h5netcdf")
     return path
 
 

@@ -7,6 +7,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem.commands.position_arguments import (
+    add_position_arguments,
+    check_position_arguments,
+    chosen_drive,
+    output_folder,
+)
 from ltca.errors import CycloError
 
 if TYPE_CHECKING:
@@ -19,16 +25,7 @@ SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
-    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
-    parser.add_argument("--angle", type=float, default=0.0, metavar="PHI", help="crank angle, rad (default 0)")
-    parser.add_argument(
-        "--size",
-        type=float,
-        default=1.0,
-        metavar="S",
-        help="element edge as a multiple of the default of 8 elements for each contact half-width; 0.5 halves it",
-    )
+    add_position_arguments(parser)
     parser.add_argument("--torque", type=float, metavar="T", help="output torque, N·mm (default: the drive's own)")
     parser.add_argument(
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
@@ -62,15 +59,12 @@ def execute(arguments: argparse.Namespace) -> int:
     from fem.drive.fields import recover_fields
     from fem.drive.solution import solve_drive
     from fem.drive.solution_files import write_solution
-    from ltca.reading.drive_file import load_drive
 
-    _check_numbers(arguments)
-    out = Path(arguments.out)
-    if out.exists() and not out.is_dir():
-        raise CycloError(f"--out {out}: is a file, not a folder")
+    check_position_arguments(arguments)
+    _check_torque(arguments.torque)
+    out = output_folder(arguments)
     referee = _referee(arguments.referee)
-    file = load_drive(arguments.drive)
-    case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    name, case, drive = chosen_drive(arguments)
     solution = solve_drive(
         drive,
         arguments.angle,
@@ -86,7 +80,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if not arguments.no_pictures:
         from fem.pictures.solution_pictures import draw_solution
 
-        problem = draw_solution(solution, fields, f"{file.name}, {case}, {arguments.angle:g} rad", out)
+        problem = draw_solution(solution, fields, f"{name}, {case}, {arguments.angle:g} rad", out)
         if problem:
             print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
     if arguments.export or referee:
@@ -99,15 +93,11 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _check_numbers(arguments: argparse.Namespace) -> None:
+def _check_torque(torque: float | None) -> None:
     import math
 
-    if not math.isfinite(arguments.angle):
-        raise CycloError(f"--angle {arguments.angle:g}: must be a finite number (rad)")
-    if not (math.isfinite(arguments.size) and arguments.size > 0.0):
-        raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
-    if arguments.torque is not None and not (math.isfinite(arguments.torque) and arguments.torque > 0.0):
-        raise CycloError(f"--torque {arguments.torque:g}: must be a finite number greater than 0 (N·mm)")
+    if torque is not None and not (math.isfinite(torque) and torque > 0.0):
+        raise CycloError(f"--torque {torque:g}: must be a finite number greater than 0 (N·mm)")
 
 
 def _progress() -> Callable[[str], None] | None:

@@ -6,7 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ltca.errors import CycloError
+from fem.commands.position_arguments import (
+    add_position_arguments,
+    check_position_arguments,
+    chosen_drive,
+    output_folder,
+)
 
 if TYPE_CHECKING:
     from fem.drive.expected_contacts import ExpectedContacts
@@ -20,16 +25,7 @@ SUMMARY: str = "mesh the bodies of a drive for the contacts expected at a crank 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
-    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
-    parser.add_argument("--angle", type=float, default=0.0, metavar="PHI", help="crank angle, rad (default 0)")
-    parser.add_argument(
-        "--size",
-        type=float,
-        default=1.0,
-        metavar="S",
-        help="element edge as a multiple of the default of 8 elements for each contact half-width; 0.5 halves it",
-    )
+    add_position_arguments(parser)
     parser.add_argument("--order", type=int, choices=(1, 2), default=2, help="1 straight, 2 curved triangles (default)")
     parser.add_argument("--out", metavar="DIR", default="mesh", help="folder for the files (default: mesh)")
 
@@ -54,11 +50,9 @@ def execute(arguments: argparse.Namespace) -> int:
     from fem.mesh.quality import measure_quality
     from fem.shapes import DriveShapes
 
-    name, case, drive = _select(arguments.drive, arguments.case)
-    _check_numbers(arguments.angle, arguments.size)
-    out = Path(arguments.out)
-    if out.exists() and not out.is_dir():
-        raise CycloError(f"--out {out}: is a file, not a folder")
+    name, case, drive = chosen_drive(arguments)
+    check_position_arguments(arguments)
+    out = output_folder(arguments)
 
     def report(body: BodyMesh) -> None:
         print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
@@ -75,23 +69,6 @@ def execute(arguments: argparse.Namespace) -> int:
     _draw(drive, shapes, contacts, meshes, out / "mesh.png", headline)
     print(f"written to {out}")
     return 0
-
-
-def _select(source: str, case: str | None) -> tuple[str, str, Drive]:
-    from ltca.reading.drive_file import load_drive
-
-    file = load_drive(source)
-    chosen, drive = next(iter(file.select([case] if case else None).items()))
-    return file.name, chosen, drive
-
-
-def _check_numbers(angle: float, size: float) -> None:
-    import math
-
-    if not math.isfinite(angle):
-        raise CycloError(f"--angle {angle:g}: must be a finite number (rad)")
-    if not (math.isfinite(size) and size > 0.0):
-        raise CycloError(f"--size {size:g}: must be a finite number greater than 0 (a multiple of the default edge)")
 
 
 def _write_files(meshes: DriveMeshes, out: Path) -> None:

@@ -14,7 +14,7 @@ from fem.body.condensation import CondensedBody
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.pressure_measures import peak_of, pressure_moments
-from fem.contact.unilateral import ContactProblem, ContactSolution, solve_unilateral_contact
+from fem.contact.unilateral import ContactProblem, ContactSolution, solve_floating_contact
 
 FloatArray = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ def press_together(
     arc = zone.arc
     vertices = arc if zone.loaded_ends else arc[1:-1]
     start = np.abs(vertices - 0.5 * arc[-1]) < 0.8 * expected_half_width
-    solution = solve_unilateral_contact(problem, start)
+    solution = solve_floating_contact(problem, start)
     pressure = zone.at_vertices(solution.pressure)
     force = integrals.force @ solution.pressure
     half_width = 2.0 * float(np.sqrt(pressure_moments(arc, pressure)[2]))

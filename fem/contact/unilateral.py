@@ -82,7 +82,7 @@ class ContactSolution:
     iterations: int
 
 
-def solve_unilateral_contact(problem: ContactProblem, start: BoolArray, *, limit: int = 120) -> ContactSolution:
+def solve_floating_contact(problem: ContactProblem, start: BoolArray, *, limit: int = 120) -> ContactSolution:
     """Solve the contact problem by a primal–dual active set.
 
     Parameters

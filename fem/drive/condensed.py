@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 from fem.body.condensation import CondensedBody, condense_body
 from fem.body.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
 from fem.body.surface import OppositeZone, PressureZone
-from fem.drive.expected_contacts import ExpectedContacts
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes
 from fem.drive.model import ContactPair, DriveModel, PairKind, RoundGroup
 from fem.mesh.body_mesh import BodyMesh
@@ -62,78 +64,129 @@ def condense_drive(
     MeshError
         When a boundary is missing or too coarse for a contact zone.
     """
-    thickness, materials = drive.disc.thickness, drive.materials
-    groups: list[RoundGroup] = []
-    pairs: list[ContactPair] = []
-    place = Placement.of_drive(drive)
-
-    def condense_round(
-        bodies: tuple[BodyMesh, ...],
-        directions: tuple[FloatArray, ...],
-        widths: tuple[FloatArray, ...],
-        material: Material,
-        core: bool,
-    ) -> dict[int, tuple[int, float]]:
-        """Return group and turn of every candidate body."""
-        found: dict[int, tuple[int, float]] = {}
-        shared: dict[int, list[int]] = {}
-        for index, body in enumerate(bodies):
-            if widths[0][index] > 0.0:
-                shared.setdefault(id(body.mesh.t), []).append(index)
-        for members in shared.values():
-            body = bodies[members[0]]
-            radius = float(np.abs(body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]).max())
-            zones = []
-            for direction, width in zip(directions, widths, strict=True):
-                place_on = radius * np.exp(1j * direction[members[0]])
-                reach = OPPOSITE_REACH * float(width[members].max())
-                zones.append(OppositeZone.on_circle(body, "surface", complex(place_on), reach))
-            loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
-            stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-            fixed = unknowns_of_boundary(body, "core") if core else None
-            condensed = condense_body(body, stiffness, loads, fixed=fixed)
-            groups.append(RoundGroup(body=body, condensed=condensed, zones=tuple(zones)))
-            for index in members:
-                turn = float(directions[0][index] - directions[0][members[0]])
-                found[index] = (len(groups) - 1, turn)
-        return found
-
-    pin_groups = condense_round(
-        meshes.wheel_pins, (contacts.pins.direction,), (contacts.pins.half_width,), materials.wheel_pin, True
-    )
+    place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=state)
+    materials, holes = drive.materials, contacts.holes
     outer, inner = contacts.rollers_outer, contacts.rollers_inner
-    roller_groups = condense_round(
-        meshes.rollers,
-        (outer.direction, inner.direction),
-        (outer.half_width, inner.half_width),
-        materials.roller,
-        False,
+    pins = _condense_round(meshes.wheel_pins, (contacts.pins,), materials.wheel_pin, slab, held="core")
+    rollers = _condense_round(meshes.rollers, (outer, inner), materials.roller, slab)
+    elastic = _condense_round(shaft_pins, (holes,), materials.shaft_pin, slab) if shaft_pins else _RoundBodies()
+    pairs = _PairList(thickness=slab.thickness)
+    groups = (*pins.groups, *rollers.groups, *elastic.groups)
+    rollers = rollers.counted_from(len(pins.groups))
+    elastic = elastic.counted_from(len(pins.groups) + len(rollers.groups))
+    disc = shapes.disc
+    pairs.add("pin", meshes.disc, (disc.flank,), contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
+    pairs.add("hole", meshes.disc, disc.holes, contacts.hole_points, holes, place.shaft_pin_radii, elastic)
+    pairs.add("roller_outer", meshes.disc, (disc.bore,), contacts.bore_points, outer, place.roller_radii, rollers)
+    on_disc = len(pairs.found)
+    race = shapes.inner_race.curves[0]
+    pairs.add("roller_inner", meshes.inner_race, (race,), contacts.race_points, inner, place.roller_radii, rollers)
+    return DriveModel(
+        drive=drive,
+        crank_angle=contacts.crank_angle,
+        shapes=shapes,
+        meshes=meshes,
+        contacts=contacts,
+        disc=_condense_carrier(meshes.disc, pairs.found[:on_disc], materials.disc, slab),
+        race=_condense_carrier(meshes.inner_race, pairs.found[on_disc:], materials.inner_race, slab, held="inner"),
+        groups=groups,
+        pairs=tuple(pairs.found),
+        placement=place,
+        shaft_pins=shaft_pins,
     )
 
-    hole_groups: dict[int, tuple[int, float]] = {}
-    if shaft_pins:
-        holes_expected = contacts.holes
-        hole_groups = condense_round(
-            shaft_pins, (holes_expected.direction,), (holes_expected.half_width,), materials.shaft_pin, False
-        )
 
-    def add_pairs(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Slab:
+    """What all bodies share: thickness in mm and plane state."""
+
+    thickness: float
+    state: PlaneState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _RoundBodies:
+    """Condensed round bodies of one kind: the groups, and of every candidate body its group and its turn there."""
+
+    groups: tuple[RoundGroup, ...] = ()
+    places: dict[int, tuple[int, float]] = field(default_factory=dict)
+
+    def counted_from(self, first: int) -> _RoundBodies:
+        """Return the same bodies with their groups numbered from `first` on."""
+        places = {body: (first + group, turn) for body, (group, turn) in self.places.items()}
+        return _RoundBodies(groups=self.groups, places=places)
+
+
+def _condense_round(
+    bodies: tuple[BodyMesh, ...],
+    expected: tuple[ContactGroup, ...],
+    material: Material,
+    slab: _Slab,
+    held: str = "",
+) -> _RoundBodies:
+    """Condense pins or rollers: bodies of one mesh share a factorisation; `held` is a boundary that does not move."""
+    directions = expected[0].direction
+    shared: dict[int, list[int]] = {}
+    for index, body in enumerate(bodies):
+        if expected[0].half_width[index] > 0.0:
+            shared.setdefault(id(body.mesh.t), []).append(index)
+    groups: list[RoundGroup] = []
+    places: dict[int, tuple[int, float]] = {}
+    for members in shared.values():
+        first, body = members[0], bodies[members[0]]
+        radius = float(np.abs(body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]).max())
+        zones = []
+        for side in expected:
+            place = radius * np.exp(1j * side.direction[first])
+            reach = OPPOSITE_REACH * float(side.half_width[members].max())
+            zones.append(OppositeZone.on_circle(body, "surface", complex(place), reach))
+        loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
+        condensed = _condense(body, loads, material, slab, held)
+        for index in members:
+            places[index] = (len(groups), float(directions[index] - directions[first]))
+        groups.append(RoundGroup(body=body, condensed=condensed, zones=tuple(zones)))
+    return _RoundBodies(groups=tuple(groups), places=places)
+
+
+def _condense_carrier(
+    body: BodyMesh, pairs: list[ContactPair], material: Material, slab: _Slab, held: str = ""
+) -> CondensedBody:
+    """Condense the disc or the race under the pressures of its pairs."""
+    loads = sp.hstack([pair.zone.load_shapes(body.unknowns) for pair in pairs], format="csc")
+    return _condense(body, loads, material, slab, held)
+
+
+def _condense(body: BodyMesh, loads: sp.csc_matrix, material: Material, slab: _Slab, held: str) -> CondensedBody:
+    stiffness = assemble_stiffness(body, material, thickness=slab.thickness, state=slab.state)
+    return condense_body(body, stiffness, loads, fixed=unknowns_of_boundary(body, held) if held else None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _PairList:
+    """Candidate contacts, their pressure unknowns counted on from one to the next."""
+
+    thickness: float
+    found: list[ContactPair] = field(default_factory=list)
+
+    def add(
+        self,
         kind: PairKind,
         body: BodyMesh,
         curves: tuple[Curve, ...],
         points: ComplexArray,
-        width: FloatArray,
-        load: FloatArray,
+        expected: ContactGroup,
         radii: FloatArray,
-        found: dict[int, tuple[int, float]],
+        opposite: _RoundBodies,
     ) -> None:
+        """Add the pairs of one kind: pressure on `body`, along one curve or along one for each pair."""
+        width, load = expected.half_width, expected.load
         for index in np.flatnonzero(width > 0.0).tolist():
             reach = PRESSURE_REACH * float(width[index])
             curve = curves[index] if len(curves) > 1 else curves[0]
-            zone = PressureZone.on_boundary(body, curve, complex(points[index]), reach, thickness=thickness)
-            first = pairs[-1].unknowns.stop if pairs else 0
-            group, turn = found.get(index, (-1, 0.0))
-            pairs.append(
+            zone = PressureZone.on_boundary(body, curve, complex(points[index]), reach, thickness=self.thickness)
+            first = self.found[-1].unknowns.stop if self.found else 0
+            group, turn = opposite.places.get(index, (-1, 0.0))
+            self.found.append(
                 ContactPair(
                     kind=kind,
                     index=index,
@@ -146,60 +199,3 @@ def condense_drive(
                     expected_load=float(load[index]),
                 )
             )
-
-    disc, race = meshes.disc, meshes.inner_race
-    flank, bore, holes = shapes.disc.flank, shapes.disc.bore, shapes.disc.holes
-    pins = contacts.pins
-    add_pairs(
-        "pin", disc, (flank,), contacts.flank_points, pins.half_width, pins.load, place.wheel_pin_radii, pin_groups
-    )
-    add_pairs(
-        "hole",
-        disc,
-        holes,
-        contacts.hole_points,
-        contacts.holes.half_width,
-        contacts.holes.load,
-        place.shaft_pin_radii,
-        hole_groups,
-    )
-    add_pairs(
-        "roller_outer",
-        disc,
-        (bore,),
-        contacts.bore_points,
-        outer.half_width,
-        outer.load,
-        place.roller_radii,
-        roller_groups,
-    )
-    split = len(pairs)
-    add_pairs(
-        "roller_inner",
-        race,
-        (shapes.inner_race.curves[0],),
-        contacts.race_points,
-        inner.half_width,
-        inner.load,
-        place.roller_radii,
-        roller_groups,
-    )
-
-    def condense_carrier(body: BodyMesh, own: list[ContactPair], material: Material, free: bool) -> CondensedBody:
-        stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-        loads = sp.hstack([pair.zone.load_shapes(body.unknowns) for pair in own], format="csc")
-        return condense_body(body, stiffness, loads, fixed=None if free else unknowns_of_boundary(body, "inner"))
-
-    return DriveModel(
-        drive=drive,
-        crank_angle=contacts.crank_angle,
-        shapes=shapes,
-        meshes=meshes,
-        contacts=contacts,
-        disc=condense_carrier(disc, pairs[:split], materials.disc, True),
-        race=condense_carrier(race, pairs[split:], materials.inner_race, False),
-        groups=tuple(groups),
-        pairs=tuple(pairs),
-        placement=place,
-        shaft_pins=shaft_pins,
-    )

@@ -48,6 +48,41 @@ class ContactGroup:
     half_width: FloatArray
     direction: FloatArray
 
+    @classmethod
+    def of_loads(
+        cls,
+        load: FloatArray,
+        candidate: NDArray[np.bool_],
+        direction: ComplexArray,
+        *,
+        smallest_share: float,
+        length: float,
+        effective_radius: FloatArray,
+        modulus: float,
+    ) -> ContactGroup:
+        """Return contacts with the half-widths that Hertz gives their loads.
+
+        Parameters
+        ----------
+        load : array
+            N.
+        candidate : array of bool
+            Which of them get a half-width.
+        direction : array of complex
+            Toward the contact, of any length.
+        smallest_share : float
+            Share of the largest load for which candidates get a half-width at least.
+        length : float
+            Of the line contacts, mm.
+        effective_radius : array
+            mm.
+        modulus : float
+            E*, MPa.
+        """
+        graded = np.maximum(load, smallest_share * float(load.max(initial=0.0)))
+        width = hertz_half_width(graded / length, effective_radius, modulus)
+        return cls(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExpectedContacts:
@@ -247,10 +282,15 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
     inner_effective = radius * placement.inner_race_radius / (placement.inner_race_radius + radius)
 
     def group(kind: int, effective: FloatArray, modulus: float, length: float, ray: ComplexArray) -> ContactGroup:
-        load = loads[kind]
-        graded = np.maximum(load, SMALLEST_LOAD_SHARE * load.max(initial=0.0))
-        width = hertz_half_width(graded / length, effective, modulus)
-        return ContactGroup(load=load, half_width=np.where(nearly[kind], width, 0.0), direction=np.angle(ray))
+        return ContactGroup.of_loads(
+            loads[kind],
+            nearly[kind],
+            ray,
+            smallest_share=SMALLEST_LOAD_SHARE,
+            length=length,
+            effective_radius=effective,
+            modulus=modulus,
+        )
 
     turn_back = np.exp(-1j * pose[2])
     hole_direction = hole_rays / np.abs(hole_rays)

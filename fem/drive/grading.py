@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.contact.hertz import hertz_half_width
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.geometry.flank import FlankProfile
@@ -73,14 +72,10 @@ def measure_gaps(
     start = np.angle(place.wheel_pin_centres) + wheel - rotation
     theta = profile.nearest_parameter(pins, start)
     rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
-    # Distance along the ray from the race centre to the bore wall.
-    inward = (displacement * rays.conjugate()).real
-    across = (displacement * rays.conjugate()).imag
-    wall = inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2)
     holes = place.shaft_pin_centres - (centre + place.hole_centres * turn)
     return RigidGaps(
         pins=profile.distance(pins, theta) - place.wheel_pin_radii,
-        rollers=wall - place.roller_radii - place.inner_race_radius,
+        rollers=_reach_to_bore(displacement, place, rays) - place.roller_radii - place.inner_race_radius,
         holes=place.hole_radii - place.shaft_pin_radii - np.abs(holes),
         flank_parameters=theta,
         pin_normals=profile.normal(theta) * turn,
@@ -141,10 +136,15 @@ def grade_contacts(
     def group(
         load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
     ) -> ContactGroup:
-        graded = np.maximum(load, smallest_share * float(load.max(initial=0.0)))
-        width = hertz_half_width(graded / thickness, effective, modulus)
-        candidate = (load > 0.0) | (gap < margin)
-        return ContactGroup(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+        return ContactGroup.of_loads(
+            load,
+            (load > 0.0) | (gap < margin),
+            direction,
+            smallest_share=smallest_share,
+            length=thickness,
+            effective_radius=effective,
+            modulus=modulus,
+        )
 
     hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
     flank_effective = profile.effective_radius(gaps.flank_parameters, place.wheel_pin_radii)
@@ -185,8 +185,12 @@ def grade_contacts(
 
 def _bore_points(displacement: complex, place: Placement, rays: ComplexArray) -> ComplexArray:
     """Return where rollers that touch the bore touch it, about the bore centre, fixed axes, mm."""
+    from_bore_centre = _reach_to_bore(displacement, place, rays) * rays - displacement
+    return np.asarray(place.bore_radius * from_bore_centre / np.abs(from_bore_centre))
+
+
+def _reach_to_bore(displacement: complex, place: Placement, rays: ComplexArray) -> FloatArray:
+    """Return how far out along its cage ray the centre of each roller stands when it touches the bore, mm."""
     inward = (displacement * rays.conjugate()).real
     across = (displacement * rays.conjugate()).imag
-    wall = inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2)
-    from_bore_centre = wall * rays - displacement
-    return np.asarray(place.bore_radius * from_bore_centre / np.abs(from_bore_centre))
+    return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))

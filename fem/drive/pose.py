@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.contact.coupling import PairIntegrals
-from fem.contact.unilateral import ContactSolution, solve_unilateral_contact
+from fem.contact.unilateral import ContactSolution, solve_floating_contact
 from fem.drive.model import DriveModel, DrivePose
 from ltca.errors import ConvergenceError
 
@@ -109,7 +109,7 @@ def solve_pose(
     for iteration in range(1, limit + 1):
         integrals = [model.integrate(pair, pose) for pair in model.pairs]
         problem = model.contact_problem(pose, integrals, wheel_moment)
-        contact = solve_unilateral_contact(problem, active)
+        contact = solve_floating_contact(problem, active)
         forces = pair_forces(model, integrals, contact.pressure)
         previous, loads = loads, np.hypot(forces[:, 0], forces[:, 1])
         following, increment = _move(model, pose, contact, forces)

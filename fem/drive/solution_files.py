@@ -13,7 +13,8 @@ from fem.contact.pressure_measures import vertex_means
 from fem.drive.contact_results import ContactResults
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.solution import FullSolution
-from fem.mesh.mesh_file import write_vtu, written_whole
+from fem.mesh.mesh_file import write_vtu
+from ltca.output.files import whole_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -138,16 +139,16 @@ def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: st
 
     Raises
     ------
-    MeshError
+    CycloError
         When the folder cannot be written to.
     """
-    with written_whole(folder / "fem.nc") as temporary:
-        build_dataset(solution, case).to_netcdf(temporary, engine="h5netcdf")
+    with whole_file(folder / "fem.nc") as part:
+        build_dataset(solution, case).to_netcdf(part, engine="h5netcdf")
     for field in fields:
         write_field(field, folder / f"{field.body.name}.vtu")
-    with written_whole(folder / "summary.json") as temporary:
+    with whole_file(folder / "summary.json") as part:
         text = json.dumps(summarise(solution), indent=2, ensure_ascii=False, allow_nan=False)
-        temporary.write_text(text + "\n", encoding="utf-8")
+        part.write_text(text + "\n", encoding="utf-8")
 
 
 def write_field(field: BodyField, path: Path) -> Path:

@@ -6,11 +6,8 @@ second-order meshes, which the reader of scikit-fem loses. A file appears under 
 
 from __future__ import annotations
 
-import os
 import struct
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +17,7 @@ from numpy.typing import NDArray
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, IntArray, triangle_mesh
 from fem.mesh.quality import require_valid_elements
+from ltca.output.files import whole_file
 
 if TYPE_CHECKING:
     import meshio
@@ -40,35 +38,6 @@ _PARSER_ERRORS = (
     MemoryError,
     struct.error,
 )
-
-
-@contextmanager
-def written_whole(path: Path) -> Iterator[Path]:
-    """Give a temporary path with the same suffix, renamed to `path` at the end; a killed run leaves no half file.
-
-    Raises
-    ------
-    MeshError
-        When the folder cannot be written to.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
-        os.close(handle)
-    except OSError as error:
-        raise MeshError(f"cannot write {path}: {error.strerror or error}") from error
-    temporary = Path(name)
-    try:
-        yield temporary
-        # mkstemp makes files private; give the rights an ordinary new file would have.
-        mask = os.umask(0)
-        os.umask(mask)
-        temporary.chmod(0o666 & ~mask)
-        temporary.replace(path)
-    except OSError as error:
-        raise MeshError(f"cannot write {path}: {error.strerror or error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def element_nodes(body: BodyMesh) -> IntArray:
@@ -106,7 +75,7 @@ def write_msh(body: BodyMesh, path: str | Path) -> Path:
 
     Raises
     ------
-    MeshError
+    CycloError
         When the file cannot be written.
     """
     import meshio
@@ -122,8 +91,8 @@ def write_msh(body: BodyMesh, path: str | Path) -> Path:
         _points(body), cells, cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags}, field_data=groups
     )
     path = Path(path)
-    with written_whole(path) as temporary:
-        meshio.gmsh.write(temporary, content, fmt_version="2.2", binary=False, float_fmt=".16e")
+    with whole_file(path) as part:
+        meshio.gmsh.write(part, content, fmt_version="2.2", binary=False, float_fmt=".16e")
     return path
 
 
@@ -147,7 +116,9 @@ def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatAr
     Raises
     ------
     MeshError
-        When the file cannot be written or a field does not fit the nodes.
+        When a field does not fit the nodes.
+    CycloError
+        When the file cannot be written.
     """
     import meshio
 
@@ -158,8 +129,8 @@ def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatAr
     cell = "triangle" if body.order == 1 else "triangle6"
     content = meshio.Mesh(_points(body), [(cell, element_nodes(body))], point_data=fields)
     path = Path(path)
-    with written_whole(path) as temporary:
-        meshio.vtu.write(temporary, content, binary=True)
+    with whole_file(path) as part:
+        meshio.vtu.write(part, content, binary=True)
     return path
 
 

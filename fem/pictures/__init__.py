@@ -4,6 +4,8 @@ Modules in the order data passes:
 
 =================  ============================================================
 offscreen          Whether pyvista can render off-screen here, found out in a subprocess
+flat_view          What all off-screen pictures of flat things share: surfaces and lines of pyvista, a camera that
+                   looks down
 scene              Flat scenes of coloured triangles and lines, rendered by pyvista off-screen or, without GL, by
                    matplotlib
 mesh_picture       Picture of the mesh of a whole drive with zooms at its contacts: pyvista off-screen, or matplotlib

@@ -12,11 +12,19 @@ from numpy.typing import NDArray
 
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes
-from fem.mesh.mesh_file import written_whole
 from fem.mesh.placed_body import PlacedBody
+from fem.pictures.flat_view import (
+    coordinate_pairs,
+    flat_lines,
+    flat_surface,
+    look_down,
+    may_show,
+    open_plotter,
+)
 from fem.pictures.offscreen import rendering_problem
 from fem.shapes import CircleShape
 from ltca.geometry.placement import Placement
+from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -132,48 +140,31 @@ def draw_drive_mesh(
 
     Raises
     ------
-    MeshError
+    CycloError
         When the file cannot be written.
     """
     problem = rendering_problem()
     circles = [centre + shape.radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721)) for centre, shape in shaft_pins]
-    with written_whole(Path(path)) as temporary:
+    with whole_file(Path(path)) as part:
         draw = _draw_with_matplotlib if problem else _draw_with_pyvista
-        draw(temporary, placed, zooms, circles, title)
+        draw(part, placed, zooms, circles, title)
     return problem
 
 
 def _draw_with_pyvista(
     path: Path, placed: Sequence[PlacedBody], zooms: Sequence[Zoom], circles: Sequence[ComplexArray], title: str
 ) -> None:
-    import pyvista
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    def flat(points: ComplexArray, height: float) -> FloatArray:
-        ravelled = points.ravel()
-        return np.column_stack([ravelled.real, ravelled.imag, np.full(ravelled.size, height)])
-
-    def lines(points: ComplexArray, height: float) -> pyvista.PolyData:
-        count, length = points.shape
-        index = np.arange(points.size).reshape(count, length)
-        return pyvista.PolyData(flat(points, height), lines=np.column_stack([np.full(count, length), index]).ravel())
-
     layers = []
     for item in placed:
         fill, line = COLOURS[item.kind]
-        faces = item.faces()
-        padded = np.column_stack([np.full(len(faces), 3), faces]).ravel()
-        layers.append((pyvista.PolyData(flat(item.nodes, 0.0), padded), fill))
-        layers.append((lines(item.edge_lines(), 0.01), line))
+        layers.append((flat_surface(item.nodes, item.faces()), fill))
+        layers.append((flat_lines(item.edge_lines(), 0.01), line))
     for circle in circles:
-        polygon = np.concatenate([[circle.size - 1], np.arange(circle.size - 1)])  # without the repeated end
-        layers.append((pyvista.PolyData(flat(circle[:-1], 0.0), polygon), COLOURS["shaft_pin"][0]))
-        layers.append((lines(circle[None, :], 0.02), COLOURS["shaft_pin"][1]))
+        corners = circle[:-1]  # without the repeated end
+        layers.append((flat_surface(corners, np.arange(corners.size)[None, :]), COLOURS["shaft_pin"][0]))
+        layers.append((flat_lines(circle[None, :], 0.02), COLOURS["shaft_pin"][1]))
 
-    # VTK warns about a missing X server before it takes EGL.
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    groups: Any = [(slice(0, 2), slice(0, 2))]
-    plotter: Any = pyvista.Plotter(off_screen=True, shape=(2, 4), groups=groups, window_size=[2400, 1200])
+    plotter = open_plotter(shape=(2, 4), groups=[(slice(0, 2), slice(0, 2))], window_size=[2400, 1200])
     everything = np.concatenate([item.nodes for item in placed])
     reach = 1.04 * max(float(np.ptp(everything.real)), float(np.ptp(everything.imag))) / 2.0
     middle = complex(
@@ -187,12 +178,7 @@ def _draw_with_pyvista(
         for mesh, colour in layers:
             plotter.add_mesh(mesh, color=colour, lighting=False, line_width=1)
         plotter.add_text(zoom.title, font_size=10, color="black", position="upper_edge")
-        plotter.enable_parallel_projection()
-        plotter.camera.focal_point = (zoom.centre.real, zoom.centre.imag, 0.0)
-        plotter.camera.position = (zoom.centre.real, zoom.centre.imag, 10.0)
-        plotter.camera.up = (0.0, 1.0, 0.0)
-        plotter.camera.parallel_scale = zoom.half_side
-        plotter.camera.clipping_range = (1.0, 20.0)
+        look_down(plotter, zoom.centre, zoom.half_side, 10.0)
     plotter.screenshot(str(path))
     plotter.close()
 
@@ -216,9 +202,13 @@ def _draw_with_matplotlib(
             nodes = item.nodes
             polygons, edges = nodes[item.faces()], item.edge_lines()
             if window is not None:
-                polygons, edges = (_inside(array, window) for array in (polygons, edges))
-            axes.add_collection(PolyCollection(_pairs(polygons), facecolors=fill, edgecolors=fill, linewidths=0.2))
-            axes.add_collection(LineCollection(_pairs(edges), colors=line, linewidths=0.25 if window is None else 0.7))
+                polygons, edges = (rows[may_show(rows, window.centre, window.half_side)] for rows in (polygons, edges))
+            axes.add_collection(
+                PolyCollection(coordinate_pairs(polygons), facecolors=fill, edgecolors=fill, linewidths=0.2)
+            )
+            axes.add_collection(
+                LineCollection(coordinate_pairs(edges), colors=line, linewidths=0.25 if window is None else 0.7)
+            )
         for circle in circles:
             fill, line = COLOURS["shaft_pin"]
             axes.fill(circle.real, circle.imag, facecolor=fill, edgecolor=line, linewidth=1.0)
@@ -232,20 +222,3 @@ def _draw_with_matplotlib(
         axes.set_xlabel("x, mm")
         axes.set_ylabel("y, mm")
     figure.savefig(path, dpi=100.0)
-
-
-def _pairs(points: ComplexArray) -> Any:  # matplotlib asks for a sequence and takes an array
-    return np.stack([points.real, points.imag], axis=-1)
-
-
-def _inside(points: ComplexArray, window: Zoom) -> ComplexArray:
-    """Return the rows that may show in a window."""
-    away = points - window.centre
-    reach = window.half_side
-    hidden = (
-        (away.real.min(axis=1) > reach)
-        | (away.real.max(axis=1) < -reach)
-        | (away.imag.min(axis=1) > reach)
-        | (away.imag.max(axis=1) < -reach)
-    )
-    return np.asarray(points[~hidden])

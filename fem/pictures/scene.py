@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.mesh.mesh_file import written_whole
+from fem.pictures.flat_view import (
+    coordinate_pairs,
+    flat_lines,
+    flat_surface,
+    look_down,
+    may_show,
+    open_plotter,
+)
 from fem.pictures.offscreen import rendering_problem
+from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -21,7 +29,7 @@ COLOUR_MAP = "turbo"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Patch:
+class Triangles:
     """Filled triangles.
 
     Attributes
@@ -73,10 +81,10 @@ class Panel:
         mm.
     half_side : float
         mm.
-    patches : tuple of Patch
+    triangles : tuple of Triangles
         Below the lines.
     lines : tuple of Lines
-        Above the patches.
+        Above the triangles.
     label : str
         Of the colour bar; "" for none.
     limits : tuple of two floats
@@ -86,7 +94,7 @@ class Panel:
     title: str
     centre: complex
     half_side: float
-    patches: tuple[Patch, ...]
+    triangles: tuple[Triangles, ...]
     lines: tuple[Lines, ...]
     label: str = ""
     limits: tuple[float, float] = (0.0, 1.0)
@@ -111,13 +119,13 @@ def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
 
     Raises
     ------
-    MeshError
+    CycloError
         When the file cannot be written.
     """
     problem = rendering_problem()
     clipped = [_clip(panel) for panel in panels]
-    with written_whole(path) as temporary:
-        (_render_with_matplotlib if problem else _render_with_pyvista)(temporary, clipped, side)
+    with whole_file(path) as part:
+        (_render_with_matplotlib if problem else _render_with_pyvista)(part, clipped, side)
     return problem
 
 
@@ -125,61 +133,31 @@ def _clip(panel: Panel) -> Panel:
     """Leave out what lies outside the window."""
 
     def shows(points: ComplexArray) -> NDArray[np.bool_]:
-        away = points - panel.centre
-        reach = panel.half_side
-        return np.asarray(
-            (away.real.min(axis=1) < reach)
-            & (away.real.max(axis=1) > -reach)
-            & (away.imag.min(axis=1) < reach)
-            & (away.imag.max(axis=1) > -reach)
-        )
+        return may_show(points, panel.centre, panel.half_side)
 
-    patches = []
-    for patch in panel.patches:
-        faces = patch.faces[shows(patch.points[patch.faces])]
-        if len(faces):
-            patches.append(Patch(points=patch.points, faces=faces, values=patch.values, colour=patch.colour))
-    lines = []
-    for item in panel.lines:
-        points = item.points[shows(item.points)]
-        if len(points):
-            lines.append(Lines(points=points, colour=item.colour, width=item.width))
-    return Panel(
-        title=panel.title,
-        centre=panel.centre,
-        half_side=panel.half_side,
-        patches=tuple(patches),
-        lines=tuple(lines),
-        label=panel.label,
-        limits=panel.limits,
-    )
-
-
-def _flat(points: ComplexArray, height: float) -> FloatArray:
-    ravelled = points.ravel()
-    return np.column_stack([ravelled.real, ravelled.imag, np.full(ravelled.size, height)])
+    triangles = [
+        replace(surface, faces=faces)
+        for surface in panel.triangles
+        if len(faces := surface.faces[shows(surface.points[surface.faces])])
+    ]
+    lines = [replace(item, points=points) for item in panel.lines if len(points := item.points[shows(item.points)])]
+    return replace(panel, triangles=tuple(triangles), lines=tuple(lines))
 
 
 def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None:
-    import pyvista
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    # VTK warns about a missing X server before it takes EGL.
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    plotter: Any = pyvista.Plotter(off_screen=True, shape=(1, len(panels)), window_size=[side * len(panels), side])
+    plotter = open_plotter(shape=(1, len(panels)), window_size=[side * len(panels), side])
     for column, panel in enumerate(panels):
         plotter.subplot(0, column)
         plotter.set_background("white")
         bar = bool(panel.label)
-        for patch in panel.patches:
-            padded = np.column_stack([np.full(len(patch.faces), 3), patch.faces]).ravel()
-            mesh = pyvista.PolyData(_flat(patch.points, 0.0), padded)
-            if patch.values is None:
-                plotter.add_mesh(mesh, color=patch.colour, lighting=False)
+        for surface in panel.triangles:
+            mesh = flat_surface(surface.points, surface.faces)
+            if surface.values is None:
+                plotter.add_mesh(mesh, color=surface.colour, lighting=False)
                 continue
             plotter.add_mesh(
                 mesh,
-                scalars=patch.values,
+                scalars=surface.values,
                 cmap=COLOUR_MAP,
                 clim=panel.limits,
                 lighting=False,
@@ -199,23 +177,10 @@ def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None
             )
             bar = False
         for item in panel.lines:
-            count, length = item.points.shape
-            index = np.arange(item.points.size).reshape(count, length)
-            cells = np.column_stack([np.full(count, length), index]).ravel()
-            plotter.add_mesh(
-                pyvista.PolyData(_flat(item.points, 0.01 * panel.half_side), lines=cells),
-                color=item.colour,
-                lighting=False,
-                line_width=item.width,
-            )
+            lines = flat_lines(item.points, 0.01 * panel.half_side)
+            plotter.add_mesh(lines, color=item.colour, lighting=False, line_width=item.width)
         plotter.add_text(panel.title, font_size=11, color="black", position="upper_edge")
-        plotter.enable_parallel_projection()
-        distance = 10.0 * panel.half_side
-        plotter.camera.focal_point = (panel.centre.real, panel.centre.imag, 0.0)
-        plotter.camera.position = (panel.centre.real, panel.centre.imag, distance)
-        plotter.camera.up = (0.0, 1.0, 0.0)
-        plotter.camera.parallel_scale = panel.half_side
-        plotter.camera.clipping_range = (0.5 * distance, 2.0 * distance)
+        look_down(plotter, panel.centre, panel.half_side, 10.0 * panel.half_side)
     plotter.screenshot(str(path))
     plotter.close()
 
@@ -230,21 +195,21 @@ def _render_with_matplotlib(path: Path, panels: Sequence[Panel], side: int) -> N
     for column, panel in enumerate(panels):
         axes = figure.add_subplot(1, len(panels), column + 1)
         coloured: Any = None
-        for patch in panel.patches:
-            values = np.zeros(len(patch.points)) if patch.values is None else patch.values
+        for surface in panel.triangles:
+            values = np.zeros(len(surface.points)) if surface.values is None else surface.values
             drawn: Any = axes.tripcolor(  # type: ignore[call-overload]
-                patch.points.real,
-                patch.points.imag,
-                patch.faces,
+                surface.points.real,
+                surface.points.imag,
+                surface.faces,
                 values,
                 shading="gouraud",
-                cmap=COLOUR_MAP if patch.values is not None else _single(patch.colour),
+                cmap=COLOUR_MAP if surface.values is not None else _single(surface.colour),
                 vmin=panel.limits[0],
                 vmax=panel.limits[1],
             )
-            coloured = drawn if patch.values is not None else coloured
+            coloured = drawn if surface.values is not None else coloured
         for item in panel.lines:
-            segments: Any = np.stack([item.points.real, item.points.imag], axis=-1)
+            segments = coordinate_pairs(item.points)
             axes.add_collection(LineCollection(segments, colors=item.colour, linewidths=0.6 * item.width))
         if coloured is not None and panel.label:
             figure.colorbar(coloured, ax=axes, label=panel.label, shrink=0.8)

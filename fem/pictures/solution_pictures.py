@@ -13,7 +13,7 @@ from fem.contact.pressure_measures import vertex_means
 from fem.drive.fields import BodyField
 from fem.drive.model import ContactPair, DriveModel
 from fem.drive.solution import FullSolution
-from fem.pictures.scene import Lines, Panel, Patch, render
+from fem.pictures.scene import Lines, Panel, Triangles, render
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -67,7 +67,7 @@ def draw_solution(
         title=f"{headline}: von Mises stress, colours end at {limit:.3g} MPa",
         centre=room,
         half_side=reach,
-        patches=tuple(_patch(field, field.places, field.stress.von_mises) for field in fields),
+        triangles=tuple(_triangles(field, field.places, field.stress.von_mises) for field in fields),
         lines=(*(_outline(field, field.places) for field in fields), shaft),
         label="von Mises, MPa",
         limits=(0.0, limit),
@@ -80,8 +80,8 @@ def draw_solution(
         title=f"{headline}: elastic displacement x {scale:g} at the loaded pose (grey: undeformed)",
         centre=room,
         half_side=reach,
-        patches=tuple(
-            _patch(field, field.places + scale * field.elastic, 1e3 * np.abs(field.elastic)) for field in fields
+        triangles=tuple(
+            _triangles(field, field.places + scale * field.elastic, 1e3 * np.abs(field.elastic)) for field in fields
         ),
         lines=(
             *(_outline(field, field.places, "#999999") for field in fields),
@@ -114,8 +114,8 @@ def _round_down(value: float) -> float:
     return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= value) * power)
 
 
-def _patch(field: BodyField, places: ComplexArray, values: FloatArray) -> Patch:
-    return Patch(points=places, faces=field.placed.faces(), values=values)
+def _triangles(field: BodyField, places: ComplexArray, values: FloatArray) -> Triangles:
+    return Triangles(points=places, faces=field.placed.faces(), values=values)
 
 
 def _outline(field: BodyField, places: ComplexArray, colour: str = "#202020") -> Lines:
@@ -179,7 +179,9 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
                 ),
                 centre=middle,
                 half_side=half_side,
-                patches=tuple(_patch(field, field.places + field.elastic, field.stress.von_mises) for field in near),
+                triangles=tuple(
+                    _triangles(field, field.places + field.elastic, field.stress.von_mises) for field in near
+                ),
                 lines=(
                     *(Lines(points=_edges(field), colour="#404040", width=0.8) for field in near),
                     _shaft_pins(solution),

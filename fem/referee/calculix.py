@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.drive.solution import FullSolution
-from fem.mesh.mesh_file import written_whole
 from fem.referee.calculix_deck import pair_name, slave_faces, write_deck
 from ltca.errors import CycloError
+from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 
@@ -121,8 +121,8 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
         When it fails.
     """
     text, seconds = run_calculix(deck, program)
-    with written_whole(deck.with_suffix(".dat")) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    with whole_file(deck.with_suffix(".dat")) as part:
+        part.write_text(text, encoding="utf-8")
     forces, pressures = read_forces(text), read_pressures(text)
     # ccx counts the faces of the expanded wedge: 1 and 2 are front and back, the sides of the triangle follow.
     faces = slave_faces(solution)

@@ -24,9 +24,10 @@ from fem.contact.coupling import Pose
 from fem.drive.model import ContactPair
 from fem.drive.solution import FullSolution
 from fem.mesh.body_mesh import BodyMesh, IntArray
-from fem.mesh.mesh_file import element_nodes, written_whole
+from fem.mesh.mesh_file import element_nodes
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
+from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -142,9 +143,7 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
     Raises
     ------
     CycloError
-        For plane stress and for elastic shaft pins, which the deck does not have.
-    MeshError
-        When the file cannot be written.
+        For plane stress and for elastic shaft pins, which the deck does not have; when the file cannot be written.
     """
     if solution.plane_state != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
@@ -234,8 +233,8 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
         deck.lines += [f"*CONTACT PRINT, SLAVE=S_{name}, MASTER=O_{name}", "CFN"]
     deck.lines += ["*CONTACT PRINT", "CSTR"]
     deck.lines += ["*NSET, NSET=WHEEL", str(wheel), "*NODE PRINT, NSET=WHEEL", "U", "*END STEP"]
-    with written_whole(path) as temporary:
-        temporary.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
+    with whole_file(path) as part:
+        part.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
     return path
 
 

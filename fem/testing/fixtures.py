@@ -18,10 +18,11 @@ from fem.drive.meshes import disc_refinements, race_refinements
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
 from fem.mesh.gmsh_session import load_gmsh
-from fem.mesh.mesh_file import write_msh, written_whole
+from fem.mesh.mesh_file import write_msh
 from fem.mesh.quality import measure_quality
 from fem.mesh.triangulation import mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DriveShapes
+from ltca.output.files import whole_file
 from ltca.reading.drive_file import load_drive
 
 CASE = "CS-1"
@@ -126,8 +127,8 @@ def write_fixtures(folder: Path) -> list[Path]:
     paths = [write_msh(fixture.body, folder / f"{fixture.body.name}.msh") for fixture in fixtures]
     hashes = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
     readme = folder / "README.md"
-    with written_whole(readme) as temporary:
-        temporary.write_text(describe_fixtures(fixtures, hashes), encoding="utf-8")
+    with whole_file(readme) as part:
+        part.write_text(describe_fixtures(fixtures, hashes), encoding="utf-8")
     return [*paths, readme]
 
 

@@ -21,10 +21,11 @@ from fem.body.stress import recover_stress
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import Pose
 from fem.contact.two_bodies import press_together
-from fem.mesh.mesh_file import read_msh, written_whole
+from fem.mesh.mesh_file import read_msh
 from fem.shapes import CircleCurve
 from fem.testing.fixtures import CYLINDER_RADIUS
 from ltca.drive.parts import Material
+from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 
@@ -106,8 +107,8 @@ def main() -> None:
     parser.add_argument("--meshes", type=Path, default=Path("meshes"))
     parser.add_argument("--out", type=Path, default=Path("tests/regression/fem_fields.json"))
     arguments = parser.parse_args()
-    with written_whole(arguments.out) as temporary:
-        temporary.write_text(json.dumps(collect(arguments.meshes), indent=1) + "\n", encoding="utf-8")
+    with whole_file(arguments.out) as part:
+        part.write_text(json.dumps(collect(arguments.meshes), indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -155,6 +155,7 @@ def roller_fields(
     kind = kinds.outer if outer else kinds.inner
     approach = rollers.outer_approach if outer else rollers.inner_approach
     race = -float(place.bore_radius) if outer else float(place.inner_race_radius)
+    effective_radii = place.outer_effective_radii if outer else place.inner_effective_radii
     fields = {}
     for roller in _loaded(rollers.outer_load, position):
         radius = float(place.roller_radii[roller])
@@ -165,7 +166,7 @@ def roller_fields(
         fields[roller] = recover_pressure(
             kind,
             float(approach[position, roller]),
-            1.0 / (1.0 / radius + 1.0 / race),
+            float(effective_radii[roller]),
             departure,
             analysis.drive.materials.roller.poisson_ratio,
         )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 

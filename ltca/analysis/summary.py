@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.units import ARCMIN, ARCSEC
-from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.first_contact import backlash
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 

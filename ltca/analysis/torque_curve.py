@@ -16,7 +16,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.geometry.first_contact import WHEEL_ANGLE
+from ltca.geometry.pairs import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 

@@ -54,8 +54,8 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     import numpy as np
 
     from ltca.drive.units import ARCMIN
-    from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
-    from ltca.geometry.pairs import ContactGeometry
+    from ltca.geometry.first_contact import backlash
+    from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
     from ltca.geometry.placement import position_angles
 
     geometry = ContactGeometry.of_drive(drive)
@@ -98,7 +98,7 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     from ltca.drive.units import ARCMIN
 
     contacts = analysis.full.response
-    pose = analysis.full.pose[0]
+    x, y, rotation, wheel_angle = analysis.full.pose[0]
     radial, tangential = analysis.bearing_radial[0], analysis.bearing_tangential[0]
 
     def loaded(load: FloatArray) -> str:
@@ -111,6 +111,6 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
         ("rollers, on the bore", loaded(contacts.rollers.outer_load)),
         ("shaft pins", loaded(contacts.hole_load)),
         ("bearing load on the disc, radial, tangential", f"{radial:.1f}, {tangential:.1f} N"),
-        ("disc displacement x, y", f"{1e3 * pose[0]:.2f}, {1e3 * pose[1]:.2f} µm"),
-        ("disc rotation, wheel angle", f"{pose[2] * ARCMIN:.4f}′, {pose[3] * ARCMIN:.4f}′"),
+        ("disc displacement x, y", f"{1e3 * x:.2f}, {1e3 * y:.2f} µm"),
+        ("disc rotation, wheel angle", f"{rotation * ARCMIN:.4f}′, {wheel_angle * ARCMIN:.4f}′"),
     ]  # fmt: skip

@@ -192,7 +192,7 @@ class _Batch:
             np.angle(self.outward) - turn,
             np.angle(play) - turn,
             geometry.profile.flank(flank.parameter),
-            place.bore_radius,
+            float(place.bore_radius),
         )
         own = np.concatenate(
             [
@@ -202,7 +202,7 @@ class _Batch:
             ]
         )
         self.body += np.diag(own)
-        self.race = c.race_matrix(np.angle(self.rays.direction), place.inner_race_radius)
+        self.race = c.race_matrix(np.angle(self.rays.direction), float(place.inner_race_radius))
         self.race += np.diag(np.full(self.rollers, model.own.inner))
         self.outer = slice(self.pins, self.pins + self.rollers)
 

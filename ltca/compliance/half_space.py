@@ -20,7 +20,7 @@ from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import ContactGeometry, disc_displacement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 
@@ -91,8 +91,7 @@ class HalfSpaceCompliance:
         cls, geometry: ContactGeometry, drive: Drive, pin_radii: FloatArray, hole_stiffness: float | FloatArray
     ) -> HalfSpaceCompliance:
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
-        inner_radius = 1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius)
-        outer_radius = 1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius)
+        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
         # Batches differ little from each other: on a ladder they share the tables of profiled parts.
         rungs = _rungs if place.is_batch else np.asarray
         return cls(
@@ -173,7 +172,7 @@ class HalfSpaceCompliance:
         hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
         rollers = balance_rollers(
             self.geometry.rollers(crank_angle),
-            pose[:, 0] + 1j * pose[:, 1],
+            disc_displacement(pose),
             self.roller_laws,
             None if start is None else start.share,
         )

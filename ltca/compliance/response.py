@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
+from ltca.geometry.pairs import DISC_PLACE, ContactGeometry, FlankMotion, PairMotion, X, Y
 
 FloatArray = NDArray[np.float64]
 
@@ -163,7 +163,7 @@ def assemble_response(
     """
     force = resultant(flank, pin_load, holes, hole_load, rollers)
     tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
-    tangent[:, :2, :2] += rollers.tangent.sum(axis=1)
+    tangent[:, DISC_PLACE, DISC_PLACE] += rollers.tangent.sum(axis=1)
     return Response(
         force=force,
         tangent=tangent,
@@ -188,8 +188,8 @@ def resultant(
     force = np.einsum("bi,bij->bj", pin_load, flank.gradient)
     force += np.einsum("bi,bij->bj", hole_load, holes.gradient)
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
-    force[:, 0] -= push.real
-    force[:, 1] -= push.imag
+    force[:, X] -= push.real
+    force[:, Y] -= push.imag
     return np.asarray(force)
 
 

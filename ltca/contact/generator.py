@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.contact import length_profile
-from ltca.drive import parts as drive
+from ltca.contact.length_profile import CircularCrown, EndRelief, LogarithmicRelief, Relief
+from ltca.drive.parts import LengthProfile
 
 FloatArray = NDArray[np.float64]
 
@@ -21,12 +21,12 @@ class SummedProfile:
     ----------
     length : float
         Length, mm.
-    parts : tuple of ltca.contact.length_profile.LengthProfile
+    parts : tuple of ltca.contact.Relief
         The terms, all of that length.
     """
 
     length: float
-    parts: tuple[length_profile.LengthProfile, ...]
+    parts: tuple[Relief, ...]
 
     def relief(self, y: ArrayLike) -> FloatArray:
         """Return z(y), mm."""
@@ -47,28 +47,24 @@ class SummedProfile:
         return low
 
 
-def generator_profile(profile: drive.LengthProfile, length: float, radius: float) -> SummedProfile | None:
+def generator_profile(profile: LengthProfile, length: float, radius: float) -> SummedProfile | None:
     """Return the generator profile of a roller or pin, None for a cylinder.
 
     Parameters
     ----------
-    profile : ltca.drive.parts.LengthProfile
+    profile : LengthProfile
         The fields of the drive.
     length, radius : float
         Length of the contact and radius of the part, mm.
     """
     if profile.is_cylinder:
         return None
-    parts: list[length_profile.LengthProfile] = []
+    parts: list[Relief] = []
     if profile.crown_drop > 0.0:
-        parts.append(length_profile.CircularCrown(length=length, crown_radius=length**2 / (8.0 * profile.crown_drop)))
+        parts.append(CircularCrown(length=length, crown_radius=length**2 / (8.0 * profile.crown_drop)))
     if profile.logarithmic_factor > 0.0:
         amplitude = 0.00035 * profile.logarithmic_factor
-        parts.append(length_profile.LogarithmicRelief(length=length, diameter=2.0 * radius, amplitude=amplitude))
+        parts.append(LogarithmicRelief(length=length, diameter=2.0 * radius, amplitude=amplitude))
     if profile.end_relief_length > 0.0 and profile.end_relief_depth > 0.0:
-        parts.append(
-            length_profile.EndRelief(
-                length=length, relief_length=profile.end_relief_length, depth=profile.end_relief_depth
-            )
-        )
+        parts.append(EndRelief(length=length, relief_length=profile.end_relief_length, depth=profile.end_relief_depth))
     return SummedProfile(length=length, parts=tuple(parts))

@@ -14,22 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-Array = NDArray[np.float64]
-
-
-def contact_modulus(
-    young_modulus_1: float, poisson_ratio_1: float, young_modulus_2: float, poisson_ratio_2: float
-) -> float:
-    """E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2), MPa.
-
-    Examples
-    --------
-    >>> round(contact_modulus(206e3, 0.3, 206e3, 0.3))
-    113187
-    """
-    first = (1.0 - poisson_ratio_1**2) / young_modulus_1
-    second = (1.0 - poisson_ratio_2**2) / young_modulus_2
-    return 1.0 / (first + second)
+FloatArray = NDArray[np.float64]
 
 
 def effective_radius(radius_1: float, radius_2: float) -> float:
@@ -37,19 +22,19 @@ def effective_radius(radius_1: float, radius_2: float) -> float:
     return 1.0 / (1.0 / radius_1 + 1.0 / radius_2)
 
 
-def line_half_width(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
+def line_half_width(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> FloatArray:
     """Half-width b = √(4 q ρ/(π E*)), mm (Johnson Eq. 4.43)."""
     q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.sqrt(4.0 * q * radius / (np.pi * contact_modulus)))
 
 
-def line_peak_pressure(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
+def line_peak_pressure(line_load: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> FloatArray:
     """Peak pressure p0 = √(q E*/(π ρ)), MPa (Johnson Eq. 4.45)."""
     q, radius = np.asarray(line_load, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.sqrt(q * contact_modulus / (np.pi * radius)))
 
 
-def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> Array:
+def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulus: float) -> FloatArray:
     """Load per length q = π E* b²/(4ρ), N/mm."""
     b, radius = np.asarray(half_width, dtype=float), np.asarray(effective_radius, dtype=float)
     return np.asarray(np.pi * contact_modulus * b**2 / (4.0 * radius))
@@ -57,7 +42,7 @@ def line_load(half_width: ArrayLike, effective_radius: ArrayLike, contact_modulu
 
 def half_plane_approach(
     line_load: ArrayLike, half_width: ArrayLike, depth: ArrayLike, young_modulus: float, poisson_ratio: float
-) -> Array:
+) -> FloatArray:
     """Approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane, mm.
 
     δ = q (1−ν²)/(π E) (2 ln(2d/b) − ν/(1−ν)), plane strain (Johnson section 5.6).
@@ -69,7 +54,7 @@ def half_plane_approach(
 
 def cylinder_approach(
     line_load: ArrayLike, half_width: ArrayLike, radius: ArrayLike, young_modulus: float, poisson_ratio: float
-) -> Array:
+) -> FloatArray:
     """Approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them, mm.
 
     δ = q (1−ν²)/(π E) (2 ln(4R/b) − 1), plane strain (Johnson section 5.6, Eq. 5.57). The compression of the
@@ -81,7 +66,7 @@ def cylinder_approach(
 
 def strip_approach(
     line_load: ArrayLike, half_width: ArrayLike, length: ArrayLike, contact_modulus: float
-) -> tuple[Array, Array]:
+) -> tuple[FloatArray, FloatArray]:
     """Approach of two half-spaces over a long strip with Hertz pressure across and even load along it, mm.
 
     At mid-length δ = q/(π E*) (2 ln(2L/b) + 1) (Lundberg's 1.1932 + ln(L/b), twice); averaged over the length
@@ -110,12 +95,12 @@ class PlaneStress2D:
         σx along the surface, σz into the body, τxz.
     """
 
-    across: Array
-    depthwise: Array
-    shear: Array
+    across: FloatArray
+    depthwise: FloatArray
+    shear: FloatArray
 
     @property
-    def max_shear(self) -> Array:
+    def max_shear(self) -> FloatArray:
         """Largest shear stress in the plane, MPa."""
         return np.asarray(np.hypot(0.5 * (self.across - self.depthwise), self.shear))
 

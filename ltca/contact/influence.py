@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 # Beyond this ratio of distance along y to the largest distance along x a power series replaces the closed
 # form, whose second difference in x would lose (distance/cell)² digits: 1e-9 at worst on either side.
@@ -31,7 +31,7 @@ _FAR_LENGTHS = 1.5
 _FAR_WIDTHS = 4.0
 
 
-def _product_with_inverse_sinh(factor: Array, ratio_of: Array, to: Array) -> Array:
+def _product_with_inverse_sinh(factor: FloatArray, ratio_of: FloatArray, to: FloatArray) -> FloatArray:
     """``factor · asinh(ratio_of / |to|)``, zero where ``to`` is zero (its limit: the factor holds |to| or to²)."""
     size = np.abs(to)
     safe = np.where(size > 0.0, size, 1.0)
@@ -39,8 +39,8 @@ def _product_with_inverse_sinh(factor: Array, ratio_of: Array, to: Array) -> Arr
 
 
 def love_displacement(
-    x: Array | float, y: Array | float, half_length_x: Array | float, half_length_y: Array | float
-) -> Array:
+    x: FloatArray | float, y: FloatArray | float, half_length_x: FloatArray | float, half_length_y: FloatArray | float
+) -> FloatArray:
     r"""Integral of 1/r over a rectangle centred on the origin, seen from points of the surface (Love).
 
     .. math:: \int_{-a}^{a}\int_{-b}^{b} \frac{d\eta\, d\xi}{\sqrt{(x-\xi)^2 + (y-\eta)^2}}
@@ -79,7 +79,7 @@ def love_displacement(
     return total
 
 
-def _inverse_sinh_difference(upper: Array, lower: Array, difference: Array) -> Array:
+def _inverse_sinh_difference(upper: FloatArray, lower: FloatArray, difference: FloatArray) -> FloatArray:
     """asinh(upper) − asinh(lower), upper − lower given exactly: no cancellation when both are large or close."""
     root_upper, root_lower = np.hypot(1.0, upper), np.hypot(1.0, lower)
     same_side = upper * lower > 0.0
@@ -93,7 +93,7 @@ def _inverse_sinh_difference(upper: Array, lower: Array, difference: Array) -> A
     return np.asarray(np.arcsinh(argument))
 
 
-def _fourfold_potential(x: Array, y: Array) -> Array:
+def _fourfold_potential(x: FloatArray, y: FloatArray) -> FloatArray:
     """K with ∂⁴K/∂x²∂y² = 1/r: ½x²y asinh(y/|x|) + ½xy² asinh(x/|y|) − r³/6."""
     cube = np.hypot(x, y) ** 3
     return (
@@ -103,17 +103,17 @@ def _fourfold_potential(x: Array, y: Array) -> Array:
     )
 
 
-def _even_moment(lag: Array, width: float, order: int) -> Array:
+def _even_moment(lag: FloatArray, width: float, order: int) -> FloatArray:
     """Mean of (ξ−ξ')^order over two cells of equal width at a distance of ``lag``."""
     n = order + 2
     difference = (lag + width) ** n - 2.0 * lag**n + (lag - width) ** n
     return np.asarray(difference / (n * (n - 1) * width**2))
 
 
-def _mean_logarithm(lag: Array, width: float) -> Array:
+def _mean_logarithm(lag: FloatArray, width: float) -> FloatArray:
     """Mean of ln|ξ−ξ'| over two cells of equal width at a distance of ``lag``."""
 
-    def twice_integrated(value: Array) -> Array:
+    def twice_integrated(value: FloatArray) -> FloatArray:
         size = np.abs(value)
         return np.asarray(0.5 * value**2 * np.log(np.where(size > 0.0, size, 1.0)) - 0.75 * value**2)
 
@@ -121,7 +121,7 @@ def _mean_logarithm(lag: Array, width: float) -> Array:
     return np.asarray(difference / width**2)
 
 
-def _mean_line_potential(lags: Array, width: float, distance: Array) -> Array:
+def _mean_line_potential(lags: FloatArray, width: float, distance: FloatArray) -> FloatArray:
     """Mean over two x cells of M(x, Y), where ∂²M/∂Y² = 1/r; shape (lags, *distance)."""
     size = np.abs(distance).ravel()
     far = size > _SERIES_RATIO * (lags[-1] + width)
@@ -145,7 +145,7 @@ def _mean_line_potential(lags: Array, width: float, distance: Array) -> Array:
     return mean.reshape(lags.size, *distance.shape)
 
 
-def _far_mean(lag: Array, width: float, distance: Array, receive: Array, send: Array) -> Array:
+def _far_mean(lag: FloatArray, width: float, distance: FloatArray, receive: FloatArray, send: FloatArray) -> FloatArray:
     """Mean of 1/r over two cells well apart, times their lengths in y: Gauss in y, moments in x; flat pairs."""
     nodes_receive = np.repeat(_GAUSS_POINTS, _GAUSS_POINTS.size)[:, None]
     nodes_send = np.tile(_GAUSS_POINTS, _GAUSS_POINTS.size)[:, None]
@@ -163,7 +163,7 @@ def _far_mean(lag: Array, width: float, distance: Array, receive: Array, send: A
     return np.asarray((weights @ (np.sqrt(inverse_square) * series)) * receive * send)
 
 
-def _lagged_block(lags: Array, width: float, y_edges: Array, sign: float, shift: float) -> Array:
+def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: float, shift: float) -> FloatArray:
     """Fourfold integrals per width² between cells at y and their images at ``sign·y + shift``; (lags, n, n)."""
     lengths = np.diff(y_edges)
     centres = 0.5 * (y_edges[1:] + y_edges[:-1])
@@ -181,12 +181,12 @@ def _lagged_block(lags: Array, width: float, y_edges: Array, sign: float, shift:
 def lagged_influence(
     cell_width: float,
     lag_count: int,
-    y_edges: Array,
+    y_edges: FloatArray,
     *,
     mirrored: bool,
     end_plane: float = 0.0,
     end_factor: float = 0.0,
-) -> Array:
+) -> FloatArray:
     """Fourfold integrals of 1/r between cells of a tensor grid with uniform x cells, by lag in x.
 
     Parameters
@@ -218,14 +218,14 @@ def lagged_influence(
 
 
 def assemble_influence_matrix(
-    x_edges: Array,
-    y_edges: Array,
+    x_edges: FloatArray,
+    y_edges: FloatArray,
     *,
     symmetric_x: bool = False,
     symmetric_y: bool = False,
     end_plane: float = 0.0,
     end_factor: float = 0.0,
-) -> Array:
+) -> FloatArray:
     """Area-weighted influence matrix of a tensor grid, cells ordered x-major.
 
     A symmetric direction is given by its positive half (edges from 0); the images of the cells are added, so

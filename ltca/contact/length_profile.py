@@ -12,11 +12,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 
-class LengthProfile(Protocol):
-    """What the contact needs to know of a profile along the width; hashable, since tables are cached by it."""
+class Relief(Protocol):
+    """What a contact needs to know of crowning and relief along the width; hashable, tables are cached by it."""
 
     def __hash__(self) -> int:
         """Hash of the parameters."""
@@ -25,7 +25,7 @@ class LengthProfile(Protocol):
     def length(self) -> float:
         """Length of the contact line, mm."""
 
-    def relief(self, y: ArrayLike) -> Array:
+    def relief(self, y: ArrayLike) -> FloatArray:
         """z(y) at the distance y from mid-width, mm; even in y."""
 
     def overlap_half_length(self, approach: float) -> float:
@@ -47,7 +47,7 @@ class CircularCrown:
     length: float
     crown_radius: float
 
-    def relief(self, y: ArrayLike) -> Array:
+    def relief(self, y: ArrayLike) -> FloatArray:
         """z(y), mm."""
         return np.asarray(np.asarray(y, dtype=float) ** 2 / (2.0 * self.crown_radius))
 
@@ -74,7 +74,7 @@ class LogarithmicRelief:
     diameter: float
     amplitude: float = 0.00035
 
-    def relief(self, y: ArrayLike) -> Array:
+    def relief(self, y: ArrayLike) -> FloatArray:
         """z(y), mm; infinite at and beyond the ends."""
         square = (2.0 * np.asarray(y, dtype=float) / self.length) ** 2
         inside = square < 1.0
@@ -110,7 +110,7 @@ class EndRelief:
         """Half the length left cylindrical, y0, mm."""
         return 0.5 * self.length - self.relief_length
 
-    def relief(self, y: ArrayLike) -> Array:
+    def relief(self, y: ArrayLike) -> FloatArray:
         """z(y), mm."""
         beyond = np.maximum(np.abs(np.asarray(y, dtype=float)) - self.straight_half_length, 0.0)
         return np.asarray(self.depth * (beyond / self.relief_length) ** 2)

@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike, NDArray
 from ltca.contact.influence import assemble_influence_matrix
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 
-Array = NDArray[np.float64]
-Separation = Callable[[Array, Array], Array]
-Relief = Callable[[Array], Array]
+FloatArray = NDArray[np.float64]
+Separation = Callable[[FloatArray, FloatArray], FloatArray]
+ReliefFunction = Callable[[FloatArray], FloatArray]
 
 # Room beyond the expected edge: an unrelieved end bulges by up to 1.56 of the half-width at mid-width.
 _ROOM = 1.6
@@ -37,7 +37,7 @@ _PEAK_BIAS = 0.114
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
-def graded_edges(length: float, cells: int, grading: float) -> Array:
+def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
     """Edges of half the width, 0 … length/2, cells shrinking toward the end like a power law.
 
     The last cell measures ``length/2 · cells**(-grading)``; grading 1 is uniform, 4 resolves the square-root
@@ -68,8 +68,8 @@ class PatchGrid:
         Free ends of the bodies at y = ±``end_plane``, mm, and the weight of their images (`ltca.contact.free_end`).
     """
 
-    x_edges: Array
-    y_edges: Array
+    x_edges: FloatArray
+    y_edges: FloatArray
     symmetric_x: bool = True
     symmetric_y: bool = True
     end_plane: float = 0.0
@@ -124,22 +124,22 @@ class PatchGrid:
         return float(self.y_edges[-1] - self.y_edges[-2])
 
     @cached_property
-    def areas(self) -> Array:
+    def areas(self) -> FloatArray:
         """Cell areas, mm², shape (nx, ny)."""
         return np.outer(np.diff(self.x_edges), np.diff(self.y_edges))
 
     @cached_property
-    def x_centres(self) -> Array:
+    def x_centres(self) -> FloatArray:
         """Centres of the cells along x, mm."""
         return np.asarray(0.5 * (self.x_edges[1:] + self.x_edges[:-1]))
 
     @cached_property
-    def y_centres(self) -> Array:
+    def y_centres(self) -> FloatArray:
         """Centres of the cells along y, mm."""
         return np.asarray(0.5 * (self.y_edges[1:] + self.y_edges[:-1]))
 
     @cached_property
-    def influence(self) -> Array:
+    def influence(self) -> FloatArray:
         """Area-weighted influence matrix without its factor 1/(π E*), see `ltca.contact.influence`."""
         return assemble_influence_matrix(
             self.x_edges,
@@ -150,7 +150,7 @@ class PatchGrid:
             end_factor=self.end_factor,
         )
 
-    def cell_means(self, function: Separation) -> Array:
+    def cell_means(self, function: Separation) -> FloatArray:
         """Mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
         x, y = (
             centres[:, None] + 0.5 * np.diff(edges)[:, None] * _GAUSS_POINTS
@@ -184,7 +184,7 @@ class PatchSolution:
 
     grid: PatchGrid
     approach: float
-    pressure: Array
+    pressure: FloatArray
     load: float
     stiffness: float
     energy: float
@@ -196,11 +196,11 @@ class PatchSolution:
         return self.pressure > 0.0
 
     @property
-    def mid_profile(self) -> tuple[Array, Array]:
+    def mid_profile(self) -> tuple[FloatArray, FloatArray]:
         """Cell centres along x and the pressure there at mid-width y = 0, mm and MPa."""
         return self.grid.x_centres, self._at_mid_width(self.pressure)
 
-    def whole_field(self) -> tuple[Array, Array, Array]:
+    def whole_field(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Cell centres along x and y and the pressure over the whole patch, images unfolded; mm, mm, MPa."""
         x, y, pressure = self.grid.x_centres, self.grid.y_centres, self.pressure
         if self.grid.symmetric_x:
@@ -246,7 +246,7 @@ class PatchSolution:
         """Largest cell pressure, MPa; at unrelieved ends it depends on ``grid.end_cell``."""
         return float(np.max(self.pressure))
 
-    def _at_mid_width(self, field: Array) -> Array:
+    def _at_mid_width(self, field: FloatArray) -> FloatArray:
         """Values at y = 0 from the cell means next to it (parabola across mid-width)."""
         y = self.grid.y_edges
         if self.grid.symmetric_y:
@@ -268,7 +268,7 @@ class PatchSolution:
 
 def solve_patch(
     grid: PatchGrid,
-    separation: Array,
+    separation: FloatArray,
     contact_modulus: float,
     approach: float,
     *,
@@ -338,7 +338,7 @@ def solve_cylinder_patch(
     contact_modulus: float,
     approach: float,
     *,
-    relief: Relief | None = None,
+    relief: ReliefFunction | None = None,
     cells: int = 16,
     y_cells: int | None = None,
     half_width: float | None = None,
@@ -405,16 +405,16 @@ def solve_cylinder_patch(
     return solve_on(half_width, cells, count_y, start)
 
 
-def _means_along(relief: Relief, grid: PatchGrid) -> Array:
+def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:
     """Mean relief of every y cell by Gauss points."""
     y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS
     return np.asarray(relief(y) @ _GAUSS_WEIGHTS / 2.0)
 
 
-def parabolic_separation(effective_radius: float, relief: Relief | None = None) -> Separation:
+def parabolic_separation(effective_radius: float, relief: ReliefFunction | None = None) -> Separation:
     """h(x, y) = x²/(2ρ) + z(y) as a function for `PatchGrid.cell_means`."""
 
-    def separation(x: ArrayLike, y: ArrayLike) -> Array:
+    def separation(x: ArrayLike, y: ArrayLike) -> FloatArray:
         across = np.asarray(x, dtype=float)
         along = np.asarray(y, dtype=float)
         extra = np.zeros_like(along) if relief is None else relief(along)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ltca.contact.pressure_cells import PatchSolution
 
-Array = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 _DEPTHS = 48
 
@@ -30,7 +30,7 @@ def rectangle_stress(
     half_length_x: ArrayLike,
     half_length_y: ArrayLike,
     poisson_ratio: float,
-) -> Array:
+) -> FloatArray:
     """Stress tensor below a rectangle under unit pressure, centred on the origin.
 
     Parameters
@@ -74,7 +74,9 @@ def rectangle_stress(
     return np.asarray(total / (2.0 * np.pi))
 
 
-def patch_stress(solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float) -> Array:
+def patch_stress(
+    solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float
+) -> FloatArray:
     """Stress tensor at points below a solved patch, MPa; the free ends' images are not included.
 
     Parameters
@@ -112,7 +114,7 @@ def patch_stress(solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: Arr
     return total
 
 
-def max_shear_stress(stress: Array) -> Array:
+def max_shear_stress(stress: FloatArray) -> FloatArray:
     """Half the difference of the largest and smallest principal stress; stress in the last axis as above."""
     tensor = np.empty((*stress.shape[:-1], 3, 3))
     for component, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ltca.compliance.response import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
-from ltca.geometry.first_contact import WHEEL_ANGLE, turn_to_contact
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.first_contact import turn_to_contact
+from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ def solve_equilibrium(
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     lever = lever_arms(model)
-    load = np.abs(moment) / lever[..., 3]
+    load = np.abs(moment) / lever[..., WHEEL_ANGLE]
     if start is None:
         start = np.zeros((angle.size, 4))
         sense = np.where(moment < 0.0, -1, 1)
@@ -161,7 +161,7 @@ class _Search:
         model = self.model if whole else cast(BatchModel, self.model).take(rows)
         response = model.respond(self.angle[rows], pose, start)
         gradient = response.force.copy()
-        gradient[:, 3] -= self.moment[rows]
+        gradient[:, WHEEL_ANGLE] -= self.moment[rows]
         gradient /= lever
         if np.isnan(gradient).any():
             row = rows[np.isnan(gradient).any(axis=1)][0]
@@ -173,7 +173,7 @@ class _Search:
         count = self.angle.size
         iterations = np.zeros(count, dtype=np.intp)
         active = np.arange(count)
-        first_bound = STEP_BOUND * float(np.max(self.lever[..., 3]))
+        first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
         damping, bound = np.full(count, 1e-6), np.full(count, first_bound)
         response, gradient, tangent = self.evaluate(active, self.pose, None)
         start = known = Start.after(response)
@@ -207,7 +207,7 @@ class _Search:
 
     def refuse_slip(self, rows: NDArray[np.intp], residual: FloatArray) -> None:
         """Stop where wheel or disc has turned by half a pin pitch: the teeth have slipped, other pins would carry."""
-        turned = np.max(np.abs(self.pose[rows][:, 2:]), axis=1)
+        turned = np.max(np.abs(self.pose[rows][:, ROTATIONS]), axis=1)
         pitch = np.pi / self.model.geometry.placement.reduction_ratio
         if np.max(turned) > pitch:
             worst = rows[int(np.argmax(turned))]

@@ -31,8 +31,8 @@ from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.first_contact import WHEEL_ANGLE, carrying_holes, carrying_rollers, first_contact
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.first_contact import carrying_holes, carrying_rollers, first_contact
+from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -211,13 +211,13 @@ class _System:
         wheel_lever = place.eccentricity * place.reduction_ratio
         self.lever = np.array([1.0, 1.0, wheel_lever - place.eccentricity, wheel_lever])
         self.load = np.zeros(4 + self.rollers)
-        self.load[3] = wheel_moment / wheel_lever
+        self.load[WHEEL_ANGLE] = wheel_moment / wheel_lever
         self.displacement = np.zeros(4 + self.rollers)
         self.cells = cells
         # Some ten elastic approaches. A longer step comes from too few carrying cells: followed in parts, it meets
         # the cells that will carry before the disc has left the others.
         modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
-        self.step_bound = abs(self.load[3]) / (0.1 * modulus * drive.disc.thickness)
+        self.step_bound = abs(self.load[WHEEL_ANGLE]) / (0.1 * modulus * drive.disc.thickness)
 
         parts, bearing = drive.materials, drive.crank_bearing
         flank = geometry.flank(angle, self.start)
@@ -227,22 +227,22 @@ class _System:
             direction[:4] = flank.gradient[0, pin] / self.lever
             # Pins that the load presses on the flank start; without backlash the radial displacement of the disc
             # loads pins behind the pitch line as well, which then overlap and are taken in.
-            effective = direction[3] * self.load[3] > 0.0
+            effective = direction[WHEEL_ANGLE] * self.load[WHEEL_ANGLE] > 0.0
             modulus = contact_modulus(parts.disc, parts.wheel_pin)
             radius, approach = float(flank.effective_radius[0, pin]), float(flank.approach[0, pin])
             self._add(("pin", pin), modulus, radius, drive.disc.thickness, approach, direction, effective)
         ray = geometry.rollers(angle).direction[0]
         # The pins push the disc inward and back, the bearing outward and ahead.
         zone = carrying_rollers(geometry, angle, angle - 0.25 * np.pi * sense, LOADED_ZONE)[0]
-        for roller, radius in enumerate(place.roller_radii):
+        for roller in range(self.rollers):
             outward, inward = np.zeros(4 + self.rollers), np.zeros(4 + self.rollers)
             outward[:2] = -ray[roller].real, -ray[roller].imag
             outward[4 + roller], inward[4 + roller] = 1.0, -1.0
             modulus = contact_modulus(parts.disc, parts.roller)
-            effective = 1.0 / (1.0 / radius - 1.0 / place.bore_radius)
+            effective = float(place.outer_effective_radii[roller])
             self._add(("outer", roller), modulus, effective, bearing.roller_length, 0.0, outward, bool(zone[roller]))
             modulus = contact_modulus(parts.inner_race, parts.roller)
-            effective = 1.0 / (1.0 / radius + 1.0 / place.inner_race_radius)
+            effective = float(place.inner_effective_radii[roller])
             self._add(("inner", roller), modulus, effective, bearing.roller_length, 0.0, inward, bool(zone[roller]))
         holes = geometry.holes(angle, self.start)
         self.hole_stiffness = drive.pin_shaft.stiffness
@@ -261,7 +261,7 @@ class _System:
         direction: FloatArray,
         effective: bool,
     ) -> None:
-        guess = 0.5 * abs(self.load[3])  # a few contacts share the load; grids are laid anew anyway
+        guess = 0.5 * abs(self.load[WHEEL_ANGLE])  # a few contacts share the load; grids are laid anew anyway
         self.patches[key] = _Patch(
             contact_modulus=modulus,
             radius=radius,

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ltca.compliance.response import ComplianceModel, Response, Start
 from ltca.equilibrium.balance import TOLERANCE, Equilibrium, lever_arms
 from ltca.errors import ConvergenceError
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 FloatArray = NDArray[np.float64]
 
@@ -83,11 +84,11 @@ def pose_of_lead(
 def lead_of_pose(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted."""
     place = model.geometry.placement
-    lead = -place.reduction_ratio * pose[:, 3]
+    lead = -place.reduction_ratio * pose[:, WHEEL_ANGLE]
     ideal = crank_angle - lead
     race_shift = place.eccentricity * np.exp(0.5j * lead) * 2j * np.sin(0.5 * lead)
-    displacement = (pose[:, 0] + 1j * pose[:, 1]) * np.exp(-1j * ideal) + race_shift
-    unknowns = np.stack((displacement.real, displacement.imag, pose[:, 2], lead), axis=1)
+    displacement = disc_displacement(pose) * np.exp(-1j * ideal) + race_shift
+    unknowns = np.stack((displacement.real, displacement.imag, pose[:, DISC_ROTATION], lead), axis=1)
     return ideal / place.reduction_ratio, unknowns
 
 
@@ -137,7 +138,7 @@ def _iterate(
 ) -> PaperIteration:
     lever = lever_arms(model)
     reach = model.geometry.placement.eccentricity
-    load = np.abs(wheel_moment) / lever[3]
+    load = np.abs(wheel_moment) / lever[WHEEL_ANGLE]
     guess = np.array(unknowns, dtype=float)
     count = guess.shape[0]
     iterations = np.zeros(count, dtype=np.intp)
@@ -153,7 +154,7 @@ def _iterate(
         angle, pose = pose_of_lead(model, wheel_position[rows], values)
         response = model.respond(angle, pose, before)
         residual = response.force.copy()
-        residual[:, 3] -= wheel_moment[rows]
+        residual[:, WHEEL_ANGLE] -= wheel_moment[rows]
         return residual / lever, response
 
     for _ in range(ITERATIONS + 1):
@@ -244,7 +245,7 @@ def solve_paper_equilibrium(
         if off[-1] <= LABEL:
             response = model.respond(requested, pose)
             residual = response.force.copy()
-            residual[:, 3] -= moment
+            residual[:, WHEEL_ANGLE] -= moment
             return Equilibrium(
                 crank_angle=requested,
                 wheel_moment=np.array(moment),

@@ -40,73 +40,17 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
     path : Path
         Picture file; the suffix chooses the format.
     """
-    geometry = ContactGeometry.of_drive(drive)
-    place, profile = geometry.placement, geometry.profile
-    full = analysis.full
-    angle, pose = float(full.crank_angle[position]), full.pose[position]
-    contacts = full.response
-    race = complex(place.race_centre(np.asarray(angle)))
-    disc = race + complex(pose[0], pose[1])
-    turn = np.exp(1j * pose[2])
-    wheel = place.wheel_pin_centres * np.exp(1j * (angle / place.reduction_ratio + pose[3]))
-
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.0, 8.6))
         axes = figure.subplots()
-        outline = disc + turn * profile.flank(np.linspace(0.0, 2.0 * np.pi, 4000))
-        axes.add_patch(
-            Polygon(np.column_stack((outline.real, outline.imag)), facecolor=STEEL, edgecolor="#4a5560", linewidth=0.9)
-        )
-        holes = disc + turn * place.hole_centres
-        _circles(axes, holes, place.hole_radii, "white", 2)
-        _circles(axes, place.shaft_pin_centres, place.shaft_pin_radii, SHAFT, 3)
-        _circles(axes, np.array([disc]), place.bore_radius, "white", 2)
-        _circles(axes, np.array([race]), place.inner_race_radius, RACE, 3)
-        rays = geometry.rollers(np.array([angle]))
-        free = rays.outermost - contacts.rollers.inner_approach[position]
-        rollers = race + rays.direction[0] * free
-        _circles(axes, rollers, place.roller_radii, ROLLER, 4)
-        _circles(axes, wheel, place.wheel_pin_radii, PIN, 4)
-
-        loads = [
-            (wheel, contacts.pin_load[position], place.wheel_pin_radii, _pin_directions(geometry, full, position)),
-            (
-                rollers,
-                contacts.rollers.outer_load[position],
-                place.roller_radii,
-                contacts.rollers.outer_direction[position],
-            ),
-            (
-                place.shaft_pin_centres,
-                contacts.hole_load[position],
-                place.shaft_pin_radii,
-                _hole_directions(place, disc, turn),
-            ),
-        ]
-        largest = max(float(np.max(load)) for _, load, _, _ in loads)
-        longest = 0.2 * place.eccentricity * place.reduction_ratio + 12.0
-        for centres, load, radii, towards in loads:
-            for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):
-                contact = centre + radius * direction
-                ends = np.array([contact - 0.6 * radius * direction, contact + 0.6 * radius * direction])
-                axes.plot(ends.real, ends.imag, color=NORMAL, linewidth=0.7, zorder=5)
-                if force > 1e-3 * largest:
-                    tip = contact + direction * longest * force / largest
-                    axes.annotate(
-                        "",
-                        xy=(tip.real, tip.imag),
-                        xytext=(contact.real, contact.imag),
-                        arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0},
-                        zorder=7,
-                    )
-                    axes.text(
-                        tip.real, tip.imag, f" {force:.0f} N", fontsize=6.5, color=LOAD, zorder=8,
-                        ha="left" if direction.real >= 0 else "right", va="center",
-                    )  # fmt: skip
+        shown = _Position(ContactGeometry.of_drive(drive), analysis, position)
+        _draw_parts(axes, shown)
+        _draw_loads(axes, shown)
+        race = shown.race
         axes.plot([0.0, race.real], [0.0, race.imag], color="black", linewidth=1.2, zorder=6)
         axes.plot([0.0], [0.0], marker="+", color="black", markersize=9, zorder=6)
         axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
-        reach = 1.06 * (np.abs(wheel).max() + place.wheel_pin_radii.max())
+        reach = 1.06 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
         axes.set_xlim(-reach, reach)
         axes.set_ylim(-reach, reach)
         axes.set_aspect("equal")
@@ -114,7 +58,8 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
         axes.set_xlabel("x [mm]")
         axes.set_ylabel("y [mm]")
         axes.set_title(
-            f"{drive.name}: forces on the disc at φ_C = {angle:.4g} rad, torque {analysis.torque / 1000.0:g} N·m\n"
+            f"{drive.name}: forces on the disc at φ_C = {shown.crank_angle:.4g} rad, "
+            f"torque {analysis.torque / 1000.0:g} N·m\n"
             "blue: contact normals; + crank axis, • inner-race centre (eccentricity)",
             fontsize=9.0,
         )
@@ -122,11 +67,65 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
             figure.savefig(part, dpi=130)
 
 
-def _pin_directions(geometry: ContactGeometry, full: Any, position: int) -> Any:
-    parameter = full.response.flank.parameter[position]
-    return -geometry.profile.normal(parameter) * np.exp(1j * full.pose[position, 2])
+class _Position:
+    """Where all parts of a drive stand at one analysed position, as complex numbers in the fixed frame."""
+
+    def __init__(self, geometry: ContactGeometry, analysis: LoadedAnalysis, position: int) -> None:
+        self.profile, self.place = geometry.profile, geometry.placement
+        full, place = analysis.full, geometry.placement
+        self.crank_angle = float(full.crank_angle[position])
+        x, y, rotation, wheel_angle = full.pose[position]
+        self.race = complex(place.race_centre(np.asarray(self.crank_angle)))
+        self.disc, self.turn = self.race + complex(x, y), np.exp(1j * rotation)
+        wheel_turn = self.crank_angle / place.reduction_ratio + wheel_angle
+        self.pins = place.wheel_pin_centres * np.exp(1j * wheel_turn)
+        self.holes = self.disc + self.turn * place.hole_centres
+        contacts = full.response
+        rays = geometry.rollers(np.array([self.crank_angle]))
+        self.rollers = self.race + rays.direction[0] * (rays.outermost - contacts.rollers.inner_approach[position])
+        play = place.shaft_pin_centres - self.holes
+        normal = -geometry.profile.normal(contacts.flank.parameter[position]) * self.turn
+        pushed = contacts.rollers.outer_direction[position]
+        # Centres of pins, rollers and shaft pins, their loads and radii, and the directions toward their contacts.
+        self.loads = [
+            (self.pins, contacts.pin_load[position], place.wheel_pin_radii, normal),
+            (self.rollers, contacts.rollers.outer_load[position], place.roller_radii, pushed),
+            (place.shaft_pin_centres, contacts.hole_load[position], place.shaft_pin_radii, play / np.abs(play)),
+        ]
 
 
-def _hole_directions(place: Any, disc: complex, turn: complex) -> Any:
-    play = place.shaft_pin_centres - (disc + turn * place.hole_centres)
-    return play / np.abs(play)
+def _draw_parts(axes: Any, shown: _Position) -> None:
+    place = shown.place
+    outline = shown.disc + shown.turn * shown.profile.flank(np.linspace(0.0, 2.0 * np.pi, 4000))
+    axes.add_patch(
+        Polygon(np.column_stack((outline.real, outline.imag)), facecolor=STEEL, edgecolor="#4a5560", linewidth=0.9)
+    )
+    _circles(axes, shown.holes, place.hole_radii, "white", 2)
+    _circles(axes, place.shaft_pin_centres, place.shaft_pin_radii, SHAFT, 3)
+    _circles(axes, np.array([shown.disc]), place.bore_radius, "white", 2)
+    _circles(axes, np.array([shown.race]), place.inner_race_radius, RACE, 3)
+    _circles(axes, shown.rollers, place.roller_radii, ROLLER, 4)
+    _circles(axes, shown.pins, place.wheel_pin_radii, PIN, 4)
+
+
+def _draw_loads(axes: Any, shown: _Position) -> None:
+    largest = max(float(np.max(load)) for _, load, _, _ in shown.loads)
+    longest = 0.2 * shown.place.eccentricity * shown.place.reduction_ratio + 12.0
+    for centres, load, radii, towards in shown.loads:
+        for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):
+            contact = centre + radius * direction
+            ends = np.array([contact - 0.6 * radius * direction, contact + 0.6 * radius * direction])
+            axes.plot(ends.real, ends.imag, color=NORMAL, linewidth=0.7, zorder=5)
+            if force > 1e-3 * largest:
+                tip = contact + direction * longest * force / largest
+                axes.annotate(
+                    "",
+                    xy=(tip.real, tip.imag),
+                    xytext=(contact.real, contact.imag),
+                    arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0},
+                    zorder=7,
+                )
+                axes.text(
+                    tip.real, tip.imag, f" {force:.0f} N", fontsize=6.5, color=LOAD, zorder=8,
+                    ha="left" if direction.real >= 0 else "right", va="center",
+                )  # fmt: skip

@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
-
-DISC_ROTATION, WHEEL_ANGLE = 2, 3
 
 
 def first_contact(

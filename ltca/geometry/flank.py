@@ -31,7 +31,7 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
-class Curve(NamedTuple):
+class CurvePoints(NamedTuple):
     """Points of a curve with two derivatives by θ: complex, mm, mm/rad, mm/rad²."""
 
     point: ComplexArray
@@ -53,7 +53,7 @@ class NearestPoint(NamedTuple):
     """Where the normal of the flank passes through a point: θ and the curve of `FlankProfile.contact_curve` there."""
 
     parameter: FloatArray
-    curve: Curve
+    curve: CurvePoints
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,7 +128,7 @@ class FlankProfile:
             deviation=ProfileDeviation.stack([d.disc.profile_errors for d in drives], positions),
         )
 
-    def locus(self, parameter: FloatArray) -> Curve:
+    def locus(self, parameter: FloatArray) -> CurvePoints:
         """Return the design trochoid about its own centre, and its first two derivatives by the parameter θ.
 
         Parameters
@@ -143,18 +143,18 @@ class FlankProfile:
         """
         return self._locus(unit(parameter))
 
-    def _locus(self, direction: ComplexArray) -> Curve:
+    def _locus(self, direction: ComplexArray) -> CurvePoints:
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))
-        return Curve(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
+        return CurvePoints(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
 
     @property
     def contact_offset(self) -> BatchScalar:
         """Distance of the actual flank from `contact_curve`, mm."""
         return self.offset if self.deviation is None else 0.0
 
-    def contact_curve(self, direction: ComplexArray) -> Curve:
+    def contact_curve(self, direction: ComplexArray) -> CurvePoints:
         """Return a curve whose inward parallel at `contact_offset` is the actual flank: nearest points are common.
 
         Parameters
@@ -164,12 +164,12 @@ class FlankProfile:
 
         Returns
         -------
-        Curve
+        CurvePoints
             The trochoid; with a deviation the flank itself.
         """
         c, dc, ddc = self._locus(direction)
         if self.deviation is None:
-            return Curve(c + self.centre, dc, ddc)
+            return CurvePoints(c + self.centre, dc, ddc)
         # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
         u = self.reduction_ratio
         circle = self.generating_radius * direction
@@ -184,7 +184,7 @@ class FlankProfile:
         delta, slope, bend = self.deviation.value_and_derivatives(direction)
         d = self.offset - delta
         along = speed - d * w
-        return Curve(
+        return CurvePoints(
             c - d * n + self.centre,
             along * t + slope * n,
             (ds + 2.0 * slope * w - d * dw) * t + (bend - w * along) * n,
@@ -314,7 +314,7 @@ class FlankProfile:
         other = self.nearest_point(point, mirrored, across_root=False)
         nearer = doubtful & (np.abs(self.locus(other.parameter).point + self.centre - point) < away)
         chosen = (np.where(nearer, one, two) for one, two in zip(other.curve, found.curve, strict=True))
-        return NearestPoint(np.where(nearer, other.parameter, theta), Curve(*chosen))
+        return NearestPoint(np.where(nearer, other.parameter, theta), CurvePoints(*chosen))
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
         """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""

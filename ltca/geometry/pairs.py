@@ -22,6 +22,22 @@ from ltca.geometry.rotation import unit
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+X, Y, DISC_ROTATION, WHEEL_ANGLE = range(4)
+"""Places of the coordinates in a pose, in gradients by it and in forces on it."""
+DISC_PLACE = slice(X, Y + 1)
+ROTATIONS = slice(DISC_ROTATION, WHEEL_ANGLE + 1)
+
+
+def disc_displacement(pose: FloatArray) -> ComplexArray:
+    """Return x + iy of poses: the disc centre from the inner-race centre in the fixed frame, mm.
+
+    Parameters
+    ----------
+    pose : array, shape (…, 4)
+        q.
+    """
+    return np.asarray(pose[..., X] + 1j * pose[..., Y])
+
 
 def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
     return first.real * second.real + first.imag * second.imag
@@ -73,9 +89,9 @@ class PairMotion:
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ with the disc rotation as coordinate 2."""
+        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ, the disc rotation being coordinate 2."""
         total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
-        total[..., 2, 2] += (load * along[..., 2]).sum(axis=-1)
+        total[..., DISC_ROTATION, DISC_ROTATION] += (load * along[..., DISC_ROTATION]).sum(axis=-1)
         return np.asarray(total)
 
 
@@ -96,13 +112,13 @@ class FlankMotion(PairMotion):
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s₃ e₃e₃ᵀ), wheel angle as coordinate 3."""
+        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s₃ e₃e₃ᵀ), the wheel angle being coordinate 3."""
         total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
         slip = np.matmul(load[..., None, :], along)[..., 0, :]
-        total[..., 2, :] += slip
-        total[..., :, 2] += slip
-        total[..., 2, 2] -= slip[..., 2]
-        total[..., 3, 3] -= slip[..., 3]
+        total[..., DISC_ROTATION, :] += slip
+        total[..., :, DISC_ROTATION] += slip
+        for turn in (DISC_ROTATION, WHEEL_ANGLE):
+            total[..., turn, turn] -= slip[..., turn]
         return np.asarray(-total)
 
 
@@ -186,8 +202,8 @@ class ContactGeometry:
             First guess of the contact parameters; the nominal ones by default.
         """
         place = self.placement
-        rotation, wheel_angle = pose[:, 2, None], pose[:, 3, None]
-        disc_centre = (place.race_centre(crank_angle) + pose[:, 0] + 1j * pose[:, 1])[:, None]
+        rotation, wheel_angle = pose[:, DISC_ROTATION, None], pose[:, WHEEL_ANGLE, None]
+        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
         pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
         arm = place.wheel_axis + pin - disc_centre
         turn = unit(rotation)
@@ -209,10 +225,10 @@ class ContactGeometry:
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
         outward = normal * turn
         gradient, along = np.empty((*approach.shape, 4)), np.empty((*approach.shape, 4))
-        gradient[..., 0], gradient[..., 1] = outward.real, outward.imag
-        gradient[..., 2], gradient[..., 3] = _cross(arm, outward), -_cross(pin, outward)
-        along[..., 0], along[..., 1] = outward.imag, -outward.real
-        along[..., 2], along[..., 3] = -_dot(outward, arm), _dot(outward, pin)
+        gradient[..., X], gradient[..., Y] = outward.real, outward.imag
+        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = _cross(arm, outward), -_cross(pin, outward)
+        along[..., X], along[..., Y] = outward.imag, -outward.real
+        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -_dot(outward, arm), _dot(outward, pin)
         return FlankMotion(
             approach=approach,
             gradient=gradient,
@@ -225,16 +241,16 @@ class ContactGeometry:
     def holes(self, crank_angle: FloatArray, pose: FloatArray) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
-        disc_centre = (place.race_centre(crank_angle) + pose[:, 0] + 1j * pose[:, 1])[:, None]
-        arm = place.hole_centres * unit(pose[:, 2, None])
+        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
+        arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
         play = place.shaft_pin_centres - disc_centre - arm
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
         gradient, along = np.zeros((*distance.shape, 4)), np.zeros((*distance.shape, 4))
-        gradient[..., 0], gradient[..., 1] = -direction.real, -direction.imag
-        gradient[..., 2] = -_cross(arm, direction)
-        along[..., 0], along[..., 1] = -direction.imag, direction.real
-        along[..., 2] = _dot(direction, arm)
+        gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
+        gradient[..., DISC_ROTATION] = -_cross(arm, direction)
+        along[..., X], along[..., Y] = -direction.imag, direction.real
+        along[..., DISC_ROTATION] = _dot(direction, arm)
         approach = distance - (place.hole_radii - place.shaft_pin_radii)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,8 @@ from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-BatchScalar: TypeAlias = Any
-"""A number of one drive, a float; of a batch of drives an array of shape (positions, 1)."""
+BatchScalar: TypeAlias = float | FloatArray
+"""What is one number for one drive, and an array of shape (positions, 1) for a batch of drives."""
 
 
 def _filled(values: Sequence[float], count: int) -> FloatArray:
@@ -110,6 +110,21 @@ class Placement:
             cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
             reduction_ratio=drive.reduction_ratio,
         )
+
+    @property
+    def inner_effective_radii(self) -> FloatArray:
+        """Effective radii of rollers and inner race, 1/(1/r_BR + 1/r_i), mm, shape (n_BR,)."""
+        return np.asarray(1.0 / (1.0 / self.roller_radii + 1.0 / self.inner_race_radius))
+
+    @property
+    def outer_effective_radii(self) -> FloatArray:
+        """Effective radii of rollers and bore, 1/(1/r_BR − 1/r_o), mm, shape (n_BR,)."""
+        return np.asarray(1.0 / (1.0 / self.roller_radii - 1.0 / self.bore_radius))
+
+    @property
+    def hole_effective_radii(self) -> FloatArray:
+        """Effective radii of shaft pins and holes, 1/(1/r_PS − 1/r_PSH), mm, shape (z_PS,)."""
+        return np.asarray(1.0 / (1.0 / self.shaft_pin_radii - 1.0 / self.hole_radii))
 
     @property
     def is_batch(self) -> bool:

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.first_contact import WHEEL_ANGLE
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.generator import generator_profile
-from ltca.drive import parts as drive
+from ltca.drive.parts import LengthProfile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 
@@ -14,7 +14,7 @@ FloatArray = NDArray[np.float64]
 
 
 def law_for_profile(
-    profile: drive.LengthProfile,
+    profile: LengthProfile,
     *,
     length: float,
     radius: float,
@@ -25,7 +25,7 @@ def law_for_profile(
 
     Parameters
     ----------
-    profile : ltca.drive.parts.LengthProfile
+    profile : LengthProfile
         Crown and relief along the length.
     length, radius : float
         Length of the contact and radius of the part, mm.

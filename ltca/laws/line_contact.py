@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
 from ltca.laws.slenderness_curve import SlendernessCurve
 
-Array = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 LONGEST = 1.0e5
 SHORTEST = 0.15
@@ -114,7 +114,9 @@ class LineContactLaw:
     contact_modulus: float
     table: LineContactTable = field(default_factory=line_contact_table)
 
-    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array, NDArray[np.bool_]]:
+    def _place(
+        self, approach: ArrayLike, effective_radius: ArrayLike
+    ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
         """Approach (zero where open), X (harmless where open) and the mask of closed contacts."""
         delta = np.asarray(approach, dtype=float)
         radius = np.asarray(effective_radius, dtype=float)
@@ -123,7 +125,7 @@ class LineContactLaw:
         square = self.length * self.length
         return pressed, np.log(np.where(closed, delta, 1.0) * radius / square), closed
 
-    def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array]:
+    def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load and its exact derivative by the approach, N and N/mm."""
         pressed, place, closed = self._place(approach, effective_radius)
         w, first, second = self.table.inverse_energy.value_and_derivatives(place)
@@ -134,20 +136,20 @@ class LineContactLaw:
         stiffness = scale * (2.0 - slope * (3.0 - 2.0 * slope) - second * inverse) * closed
         return load, stiffness
 
-    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """∫ F dδ in closed form, N·mm."""
         pressed, place, _ = self._place(approach, effective_radius)
         scale = self.contact_modulus * self.length
         return np.asarray(scale * pressed**2 / self.table.inverse_energy.value(place))
 
-    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
+    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Largest pressure at mid-width, MPa."""
         pressed, place, _ = self._place(approach, effective_radius)
         ratio = self.table.inverse_square_pressure.value(place)
         radius = np.asarray(effective_radius, dtype=float)
         return np.asarray(self.contact_modulus * np.sqrt(pressed / (radius * ratio)))
 
-    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
+    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Contact half-width at mid-width, 2 √⟨x²⟩ with the pressure as weight, mm."""
         pressed, place, _ = self._place(approach, effective_radius)
         ratio = self.table.inverse_square_half_width.value(place)

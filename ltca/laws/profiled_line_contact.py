@@ -17,12 +17,12 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.contact.length_profile import LengthProfile
+from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
 from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
 
-Array = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 LIGHTEST = 2.0e4
 HEAVIEST = 2.0
@@ -36,7 +36,7 @@ _FREE_GRADING = 1.25
 
 
 def solve_profiled_patch(
-    profile: LengthProfile,
+    profile: Relief,
     effective_radius: float,
     contact_modulus: float,
     approach: float,
@@ -49,7 +49,7 @@ def solve_profiled_patch(
 
     Parameters
     ----------
-    profile : LengthProfile
+    profile : Relief
         Relief along the width.
     effective_radius, contact_modulus, approach : float
         ρ in mm, E* in MPa, δ at mid-width in mm.
@@ -102,15 +102,15 @@ class ProfiledTable:
     largest_radius: float
     start: float
     spacing: float
-    log_radii: Array
-    exponent: Array
-    log_pressure: Array
-    log_half_width: Array
+    log_radii: FloatArray
+    exponent: FloatArray
+    log_pressure: FloatArray
+    log_half_width: FloatArray
 
 
 @cache
 def profiled_table(
-    profile: LengthProfile,
+    profile: Relief,
     smallest_radius: float,
     largest_radius: float,
     cells: int = _CELLS,
@@ -120,7 +120,7 @@ def profiled_table(
 
     Parameters
     ----------
-    profile : LengthProfile
+    profile : Relief
         Relief along the width (hashable).
     smallest_radius, largest_radius : float
         Range of ρ, mm; equal for a single radius.
@@ -180,7 +180,7 @@ def profiled_table(
     )
 
 
-def _lagrange_weights(nodes: Array, at: Array) -> list[Array]:
+def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[FloatArray]:
     """Weights of every node for interpolation at ``at``."""
     weights = []
     for i, node in enumerate(nodes):
@@ -201,7 +201,7 @@ class ProfiledLineContactLaw:
 
     Parameters
     ----------
-    profile : LengthProfile
+    profile : Relief
         Relief along the width.
     contact_modulus : float
         E*, MPa.
@@ -209,18 +209,18 @@ class ProfiledLineContactLaw:
         From `profiled_table`.
     """
 
-    profile: LengthProfile
+    profile: Relief
     contact_modulus: float
     table: ProfiledTable
 
     @classmethod
     def for_radii(
-        cls, profile: LengthProfile, contact_modulus: float, smallest_radius: float, largest_radius: float
+        cls, profile: Relief, contact_modulus: float, smallest_radius: float, largest_radius: float
     ) -> ProfiledLineContactLaw:
         """Build (or reuse) the table for effective radii between two bounds, mm."""
         return cls(profile, contact_modulus, profiled_table(profile, smallest_radius, largest_radius))
 
-    def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array]:
+    def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load and its exact derivative by the approach, N and N/mm."""
         pressed, place, radius, closed = self._place(approach, effective_radius)
         m, first, second = self._evaluate(self.table.exponent, place, radius)
@@ -228,25 +228,27 @@ class ProfiledLineContactLaw:
         load = scale * pressed * (2.0 - first)
         return load, scale * (2.0 - 3.0 * first + first**2 - second) * closed
 
-    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """∫ F dδ in closed form, N·mm."""
         pressed, place, radius, _ = self._place(approach, effective_radius)
         m, _, _ = self._evaluate(self.table.exponent, place, radius)
         return np.asarray(self.contact_modulus * self.profile.length * pressed**2 * np.exp(-m))
 
-    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
+    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Largest pressure at mid-width, MPa."""
         pressed, place, radius, _ = self._place(approach, effective_radius)
         logarithm, _, _ = self._evaluate(self.table.log_pressure, place, radius)
         return np.asarray(self.contact_modulus * np.sqrt(pressed / radius) * np.exp(logarithm))
 
-    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> Array:
+    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Contact half-width at mid-width, mm."""
         pressed, place, radius, _ = self._place(approach, effective_radius)
         logarithm, _, _ = self._evaluate(self.table.log_half_width, place, radius)
         return np.asarray(np.sqrt(pressed * radius) * np.exp(logarithm))
 
-    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    def _place(
+        self, approach: ArrayLike, effective_radius: ArrayLike
+    ) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
         """Approach (zero where open), X (harmless where open), radius and the mask of closed contacts."""
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
@@ -263,7 +265,9 @@ class ProfiledLineContactLaw:
         place = np.log(np.where(closed, delta * radius / self.profile.length**2, 1e-4))
         return np.where(closed, delta, 0.0), place, radius, closed
 
-    def _evaluate(self, pieces: Array, place: Array, radius: Array) -> tuple[Array, Array, Array]:
+    def _evaluate(
+        self, pieces: FloatArray, place: FloatArray, radius: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Curve, slope and curvature in X at the radii given; straight beyond the table."""
         table = self.table
         h, count = table.spacing, pieces.shape[2]
@@ -273,7 +277,7 @@ class ProfiledLineContactLaw:
         piece = np.minimum(inside.astype(np.intp), count - 1)
         t = inside - piece
         total = [np.zeros_like(t) for _ in range(3)]
-        weights: list[Array] | list[float] = [1.0]
+        weights: list[FloatArray] | list[float] = [1.0]
         if table.log_radii.size > 1:
             weights = _lagrange_weights(table.log_radii, np.log(radius))
         for weight, rows in zip(weights, pieces, strict=True):

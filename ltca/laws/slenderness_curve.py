@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
-Array = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 _DEGREE = 5
 
 
-def quintic_spline_pieces(values: Array) -> Array:
+def quintic_spline_pieces(values: FloatArray) -> FloatArray:
     """Piece coefficients of the quintic spline through values at uniform knots.
 
     Four not-a-knot conditions close it (no jump of the fifth derivative at the two knots next to each end), so
@@ -57,7 +57,7 @@ def quintic_spline_pieces(values: Array) -> Array:
     return np.array([spline(knots[:-1], nu=power) / factorial(power) for power in range(_DEGREE + 1)])
 
 
-def quintic_hermite_pieces(values: Array, slopes: Array) -> Array:
+def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray:
     """Piece coefficients of the quintic spline with given values and slopes at uniform knots.
 
     Three times continuously differentiable; straight (no curvature) at the first knot, and the fourth derivative is
@@ -127,22 +127,22 @@ class SlendernessCurve:
 
     start: float
     spacing: float
-    coefficients: Array
+    coefficients: FloatArray
     light_slope: float
 
     @classmethod
-    def through(cls, nodes: Array, values: Array, light_slope: float) -> SlendernessCurve:
+    def through(cls, nodes: FloatArray, values: FloatArray, light_slope: float) -> SlendernessCurve:
         """Curve through positive values at uniform nodes."""
         return cls(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values), light_slope)
 
-    def value(self, x: Array) -> Array:
+    def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""
         piece, t, inside = self._locate(x)
         c0, c1, c2, c3, c4, c5 = (row.take(piece) for row in self.coefficients)
         value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
         return np.asarray(value if inside else self._beyond(x, value)[0])
 
-    def value_and_derivatives(self, x: Array) -> tuple[Array, Array, Array]:
+    def value_and_derivatives(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Value, first and second derivative at ``x``, each of its shape."""
         piece, t, inside = self._locate(x)
         c0, c1, c2, c3, c4, c5 = (row.take(piece) for row in self.coefficients)
@@ -155,7 +155,7 @@ class SlendernessCurve:
             value, first, second = self._beyond(x, value, first, second)
         return np.asarray(value), np.asarray(first), np.asarray(second)
 
-    def _locate(self, x: Array) -> tuple[NDArray[np.intp], Array, bool]:
+    def _locate(self, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray, bool]:
         """Piece, local coordinate and whether all points lie on the curve's own range."""
         place = (x - self.start) * (1.0 / self.spacing)
         pieces = self.coefficients.shape[1]
@@ -165,7 +165,7 @@ class SlendernessCurve:
         piece = np.minimum(place.astype(np.intp), pieces - 1)
         return piece, place - piece, inside
 
-    def _beyond(self, x: Array, *found: Array) -> tuple[Array, ...]:
+    def _beyond(self, x: FloatArray, *found: FloatArray) -> tuple[FloatArray, ...]:
         """Replace values (and derivatives) of points off the range."""
         h, c = self.spacing, self.coefficients
         end = self.start + h * c.shape[1]

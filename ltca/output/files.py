@@ -37,7 +37,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield part
         part.replace(path)
     except OSError as error:
-        raise CycloError(f"{path}: cannot be written: {error}") from error
+        raise CycloError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
         with suppress(OSError):  # without a folder there is nothing to take away either
             part.unlink(missing_ok=True)

@@ -14,7 +14,8 @@ from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.errors import CycloError
-from ltca.geometry.first_contact import WHEEL_ANGLE, backlash
+from ltca.geometry.first_contact import backlash
+from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.studies.quantities import QUANTITIES, SampleBatch
 
 FloatArray = NDArray[np.float64]

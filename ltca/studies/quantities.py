@@ -13,7 +13,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ContactPressures
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
-from ltca.geometry.first_contact import WHEEL_ANGLE
+from ltca.geometry.pairs import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import Pose, integrate_pair
 from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
 from fem.contact.two_bodies import press_together
-from fem.contact.unilateral import ContactProblem, solve_unilateral_contact
+from fem.contact.unilateral import ContactProblem, solve_floating_contact
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle
 from fem.shapes import CircleShape
@@ -136,7 +136,7 @@ def test_roller_between_flats(block_of, flat):
     motions[count:, 1] = pairs[1].force[1]
     load = line_load * thickness
     arc = zone.arc[1:-1] - 0.5 * zone.arc[-1]
-    solution = solve_unilateral_contact(
+    solution = solve_floating_contact(
         ContactProblem(
             compliance=compliance,
             gap=np.concatenate([pair.gap for pair in pairs]),

@@ -8,9 +8,11 @@ import pytest
 from ltca.contact import hertz
 from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.subsurface import find_subsurface_shear, patch_stress
+from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.line_contact import LineContactLaw
 
-MODULUS = hertz.contact_modulus(206e3, 0.3, 206e3, 0.3)
+STEEL = Material(youngs_modulus=206e3, poisson_ratio=0.3)
+MODULUS = contact_modulus(STEEL, STEEL)
 
 
 @pytest.mark.parametrize("cells", [8, 16])

@@ -8,12 +8,14 @@ from scipy.integrate import dblquad, quad
 
 from ltca.contact import hertz
 from ltca.contact.subsurface import max_shear_stress, rectangle_stress
+from ltca.drive.parts import Material, contact_modulus
 
 YOUNG, POISSON = 206e3, 0.3
 
 
 def test_line_contact_balances_its_load():
-    modulus = hertz.contact_modulus(YOUNG, POISSON, YOUNG, POISSON)
+    steel = Material(youngs_modulus=YOUNG, poisson_ratio=POISSON)
+    modulus = contact_modulus(steel, steel)
     width = float(hertz.line_half_width(500.0, 2.0, modulus))
     peak = float(hertz.line_peak_pressure(500.0, 2.0, modulus))
     assert np.pi * peak * width / 2 == pytest.approx(500.0, rel=1e-14)  # area of the half ellipse
@@ -23,7 +25,8 @@ def test_line_contact_balances_its_load():
 
 def test_steel_roller_on_flat():
     """The usual formula 271 √(F/(D L)) MPa for steel rollers on a flat (DIN/ISO bearing practice)."""
-    modulus = hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
+    steel = Material(youngs_modulus=210e3, poisson_ratio=0.3)
+    modulus = contact_modulus(steel, steel)
     peak = float(hertz.line_peak_pressure(40e3 / 20.0, 10.0, modulus))
     assert peak == pytest.approx(271.0 * np.sqrt(40e3 / (20 * 20)), rel=5e-4)  # 271 is rounded to three digits
     assert peak == pytest.approx(2710.0, abs=1.0)

@@ -171,8 +171,8 @@ def test_all_pins_larger_is_a_smaller_equidistant_offset(vary):
 
     Moving the flank changes its curvature, so only the unloaded geometry is the same.
     """
-    from ltca.geometry.first_contact import WHEEL_ANGLE, first_contact
-    from ltca.geometry.pairs import ContactGeometry
+    from ltca.geometry.first_contact import first_contact
+    from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
     angles = np.linspace(0.0, 6.0, 20)
     errors = {"diameter": [0.02] * 14}

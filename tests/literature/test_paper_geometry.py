@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.geometry.first_contact import DISC_ROTATION, WHEEL_ANGLE, backlash
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.first_contact import backlash
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
 
 ARCMIN = 60.0 * 180.0 / np.pi
 

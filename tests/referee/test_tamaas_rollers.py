@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact.hertz import contact_modulus, line_half_width, line_peak_pressure
+from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.length_profile import LogarithmicRelief
+from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, solve_profiled_patch
 
@@ -19,7 +20,8 @@ tamaas = pytest.importorskip("tamaas", reason="tamaas (pip install cyclo-ltca[re
 
 pytestmark = pytest.mark.referee
 
-MODULUS = contact_modulus(210e3, 0.3, 210e3, 0.3)
+STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
+MODULUS = contact_modulus(STEEL, STEEL)
 
 
 def press(length, span, counts, separation, load):

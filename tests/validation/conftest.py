@@ -13,7 +13,7 @@ from ltca.compliance.coefficients import without_coupling
 from validation.compare.compared_positions import compare_case
 from validation.compare.finite_element_positions import FullPosition, Settings
 from validation.compare.model_positions import answer_positions
-from validation.levels.flexible_disc import full_solution_rows, meaning_rows, study_case
+from validation.levels.flexible_disc import flexibility_rows, full_solution_rows, study_case
 from validation.levels.positions import compare_position_rows
 from validation.rows import Row
 from validation.study import Plan, Study
@@ -46,7 +46,7 @@ def small_study(paper_cases):
 
 def make_study(paper_cases):
     drives = {name: paper_cases[name] for name in ("CS-1", "CS-6")}
-    compared, meanings, coefficients, rows = {}, {}, {}, []
+    compared, flexibility, coefficients, rows = {}, {}, {}, []
     for case, drive in drives.items():
         answers = answer_positions(drive, np.array(ANGLES), "half-space")
         positions = [
@@ -63,10 +63,10 @@ def make_study(paper_cases):
         ]
         coefficients[case] = without_coupling(drive)
         compared[case] = compare_case(drive, positions, coefficients[case])
-        meanings[case] = study_case(drive, coefficients[case])
+        flexibility[case] = study_case(drive, coefficients[case])
         for item in compared[case]:
             rows += compare_position_rows(item)
-        rows += [*full_solution_rows(case, compared[case]), *meaning_rows(case, meanings[case])]
+        rows += [*full_solution_rows(case, compared[case]), *flexibility_rows(case, flexibility[case])]
     for level in (1, 2, 3, 4):
         rows.append(
             Row(
@@ -81,7 +81,7 @@ def make_study(paper_cases):
             )
         )
     plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", settings=Settings())
-    return Study(plan=plan, rows=tuple(rows), compared=compared, meanings=meanings, coefficients=coefficients)
+    return Study(plan=plan, rows=tuple(rows), compared=compared, flexibility=flexibility, coefficients=coefficients)
 
 
 @pytest.fixture(scope="session")

@@ -68,7 +68,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from validation.report.headline import write_files
     from validation.report.page import write_report
     from validation.rows import failed_rows
-    from validation.study import plan_study, run_study
+    from validation.study import plan_study, run_validation
 
     if not (math.isfinite(arguments.size) and arguments.size > 0.0):
         raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
@@ -82,7 +82,7 @@ def execute(arguments: argparse.Namespace) -> int:
     try:
         # One thread: sums in another order would change last digits, and a resumed run shall end with the same bytes.
         with threadpool_limits(limits=1):
-            study = run_study(plan, out / "kept", progress.step, progress.say)
+            study = run_validation(plan, out / "kept", progress.step, progress.say)
         progress.step("report")
         paths = [write_report(study, out / "report.html"), *write_files(study, out)]
     finally:

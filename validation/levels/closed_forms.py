@@ -17,6 +17,7 @@ from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleShape, RingShape
 from ltca.analysis.loaded_analysis import analyse
 from ltca.contact.hertz import (
+    effective_radius,
     line_contact_stress,
     line_half_width,
     line_peak_pressure,
@@ -111,7 +112,7 @@ def _hole() -> list[Row]:
 
 def _two_cylinders() -> list[Row]:
     radii, load, thickness = (8.0, 6.5), 1500.0, 10.0
-    effective = 1.0 / (1.0 / radii[0] + 1.0 / radii[1])
+    effective = effective_radius(*radii)
     width = float(line_half_width(load / thickness, effective, MODULUS))
     peak = float(line_peak_pressure(load / thickness, effective, MODULUS))
     shapes = [CircleShape(name=f"cylinder_{k}", radius=radius, core_radius=2.0) for k, radius in enumerate(radii)]

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
+from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.placement import position_angles
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
 from validation.compare.model_positions import MODELS, engine_of
-from validation.rows import Row, rounded
+from validation.rows import Row, relative_row, rounded
 
 FloatArray = NDArray[np.float64]
 
@@ -74,7 +76,7 @@ TITLES: dict[str, tuple[str, str]] = {
 def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
     """Return the figures of one turn."""
     response, pressures = analysis.full.response, analysis.pressures
-    wheel, light = (state.pose[:, 3] * ARCSECONDS for state in (analysis.full, analysis.light))
+    wheel, light = (state.pose[:, WHEEL_ANGLE] * ARCSECONDS for state in (analysis.full, analysis.light))
     return TurnFigures(
         pin_load=float(np.max(response.pin_load)),
         roller_load=float(np.max(response.rollers.outer_load)),
@@ -88,8 +90,8 @@ def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CaseMeaning:
-    """One case, all models.
+class FlexibilityEffect:
+    """What the flexible disc changes in one case, by all models.
 
     Attributes
     ----------
@@ -103,7 +105,7 @@ class CaseMeaning:
     by_torque: dict[float, dict[str, float]]
 
 
-def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> CaseMeaning:
+def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> FlexibilityEffect:
     """Run one turn with every model and several torques with two.
 
     Parameters
@@ -113,7 +115,7 @@ def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> CaseMeaning
     coefficients : InfluenceCoefficients
         Of its disc.
     """
-    angles = 2.0 * np.pi * np.arange(TURN_POSITIONS) / TURN_POSITIONS
+    angles = position_angles(TURN_POSITIONS)
     turn: dict[str, TurnFigures] = {
         model: turn_figures(analyse(drive, angles, engine=engine_of(model, coefficients))) for model in MODELS
     }
@@ -127,48 +129,22 @@ def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> CaseMeaning
         by_torque[multiple] = {
             name: getattr(fe, name) / getattr(half, name) - 1.0 for name in ("pin_load", "roller_load", "shaft_load")
         }
-    return CaseMeaning(turn=turn, by_torque=by_torque)
+    return FlexibilityEffect(turn=turn, by_torque=by_torque)
 
 
-def meaning_rows(case: str, meaning: CaseMeaning) -> list[Row]:
+def flexibility_rows(case: str, effect: FlexibilityEffect) -> list[Row]:
     """Return the informing rows of one case over a turn: half-space and hybrid against ``fe``."""
-    reference = meaning.turn["fe"]
+    reference = effect.turn["fe"]
     rows = []
     for model in ("half-space", "hybrid"):
         for name, (title, unit) in TITLES.items():
-            value, other = float(getattr(meaning.turn[model], name)), float(getattr(reference, name))
-            rows.append(
-                Row(
-                    level=6,
-                    quantity=title,
-                    value=value,
-                    reference=other,
-                    unit=unit,
-                    difference=value / other - 1.0,
-                    limit=None,
-                    reason=CAUSE if model == "half-space" else "finite length at the contacts: informs only",
-                    case=case,
-                    model=model,
-                    against="fe",
-                )
-            )
-    for multiple, changes in meaning.by_torque.items():
+            value, other = float(getattr(effect.turn[model], name)), float(getattr(reference, name))
+            cause = CAUSE if model == "half-space" else "finite length at the contacts: informs only"
+            rows.append(relative_row(6, title, value, other, unit, None, cause, case=case, model=model, against="fe"))
+    for multiple, changes in effect.by_torque.items():
         for name, change in changes.items():
-            rows.append(
-                Row(
-                    level=6,
-                    quantity=f"{TITLES[name][0]}, change from half-space to fe at {multiple:g} of the torque",
-                    value=change,
-                    reference=None,
-                    unit="",
-                    difference=change,
-                    limit=None,
-                    reason=CAUSE,
-                    case=case,
-                    model="half-space",
-                    against="fe",
-                )
-            )
+            quantity = f"{TITLES[name][0]}, change from half-space to fe at {multiple:g} of the torque"
+            rows.append(_change_row(case, quantity, change, "fe"))
     return rows
 
 
@@ -188,21 +164,8 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
     """Return the informing rows of one case: full solution against half-space at the chosen angles."""
     rows = []
     for name, change in full_solution_changes(compared).items():
-        rows.append(
-            Row(
-                level=6,
-                quantity=f"largest {name.replace('_', ' ')} at the chosen angles, change from half-space to full FE",
-                value=change,
-                reference=None,
-                unit="",
-                difference=change,
-                limit=None,
-                reason=CAUSE,
-                case=case,
-                model="half-space",
-                against="full FE",
-            )
-        )
+        quantity = f"largest {name.replace('_', ' ')} at the chosen angles, change from half-space to full FE"
+        rows.append(_change_row(case, quantity, change, "full FE"))
     wheel = [
         (position.answers["half-space"].wheel_angle, position.full.answer.wheel_angle, position.full.crank_angle)
         for position in compared
@@ -227,14 +190,31 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
     return rows
 
 
-def judge_half_space(meanings: Mapping[str, CaseMeaning]) -> list[str]:
+def _change_row(case: str, quantity: str, change: float, against: str) -> Row:
+    """Return the informing row of a relative change from half-space to another model."""
+    return Row(
+        level=6,
+        quantity=quantity,
+        value=change,
+        reference=None,
+        unit="",
+        difference=change,
+        limit=None,
+        reason=CAUSE,
+        case=case,
+        model="half-space",
+        against=against,
+    )
+
+
+def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
     """Return what the figures say about when half-spaces are good enough, one sentence each."""
     names = {"pin_load": "pin", "roller_load": "roller", "shaft_load": "pin-shaft"}
     sentences = []
     for name, word in names.items():
         changes = {
             case: getattr(item.turn["fe"], name) / getattr(item.turn["half-space"], name) - 1.0
-            for case, item in meanings.items()
+            for case, item in effects.items()
         }
         low, high = min(changes.values()), max(changes.values())
         safe = [case for case, change in changes.items() if abs(change) <= SAFE]
@@ -249,16 +229,16 @@ def judge_half_space(meanings: Mapping[str, CaseMeaning]) -> list[str]:
             f"Largest {word} load over a turn: the disc's flexibility changes it by {_percent(low)} to {_percent(high)}; "
             f"half-spaces give it {'; '.join(part for part in verdict if part)}."
         )
-    wind = [item.turn["half-space"].elastic / item.turn["fe"].elastic - 1.0 for item in meanings.values()]
+    wind = [item.turn["half-space"].elastic / item.turn["fe"].elastic - 1.0 for item in effects.values()]
     sentences.append(
         f"Mean wind-up from the light torque on: half-spaces differ from fe by {_percent(min(wind))} to "
         f"{_percent(max(wind))}; what they miss is flexibility of the bodies, so stiffness should not be taken from them."
     )
-    torques = sorted({multiple for item in meanings.values() for multiple in item.by_torque})
+    torques = sorted({multiple for item in effects.values() for multiple in item.by_torque})
     for multiple in torques:
         worst = max(
             (abs(change), case, name, change)
-            for case, item in meanings.items()
+            for case, item in effects.items()
             for name, change in item.by_torque.get(multiple, {}).items()
         )
         sentences.append(
@@ -272,8 +252,6 @@ def _percent(value: float) -> str:
     return f"{100.0 * value:+.1f} %".replace("-", "−")
 
 
-def meaning_content(meaning: CaseMeaning) -> dict[str, dict[str, float | None]]:
+def turn_content(effect: FlexibilityEffect) -> dict[str, dict[str, float | None]]:
     """Return the figures of one turn by model, for the report."""
-    return {
-        model: {name: rounded(getattr(figures, name)) for name in TITLES} for model, figures in meaning.turn.items()
-    }
+    return {model: {name: rounded(getattr(figures, name)) for name in TITLES} for model, figures in effect.turn.items()}

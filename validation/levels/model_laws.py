@@ -127,7 +127,7 @@ def pair_approaches(
         np.linspace(0.0, 2.0 * np.pi, rollers, endpoint=False)[None, :],
         np.zeros((1, holes)),
         model.geometry.profile.flank(flank.parameter),
-        model.geometry.placement.bore_radius,
+        drive.bore_radius,
     )
     pins = flank.parameter.shape[1]
     body = np.einsum("bii->bi", matrix)[0, :pins] + model.own.pin

@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 from fem.drive.solution import solve_drive
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import find_calculix, pair_name, write_deck
-from ltca.contact.hertz import contact_modulus
 from ltca.contact.length_profile import LogarithmicRelief
+from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
@@ -175,7 +175,8 @@ def run_calculix() -> list[dict[str, Any]]:
 
 def run_tamaas() -> list[dict[str, Any]]:
     """Press an uncrowned and a logarithmic roller against a flat with both codes; return both answers."""
-    modulus = contact_modulus(210e3, 0.3, 210e3, 0.3)
+    steel = Material(youngs_modulus=210e3, poisson_ratio=0.3)
+    modulus = contact_modulus(steel, steel)
     relief = LogarithmicRelief(length=20.0, diameter=20.0)
     crowned = ProfiledLineContactLaw.for_radii(relief, modulus, 10.0, 10.0)
     cases: tuple[tuple[str, Any, float, float, float, tuple[int, int], Callable[[FloatArray], FloatArray]], ...] = (

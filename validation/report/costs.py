@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ltca.analysis.loaded_analysis import analyse
+from ltca.geometry.placement import position_angles
 from validation.compare.model_positions import MODELS, engine_of
 from validation.study import Study
 
@@ -34,7 +35,7 @@ def measure_costs(study: Study) -> Costs:
     """Time one turn of the first case with each model."""
     case, drive = next(iter(study.plan.drives.items()))
     coefficients = study.coefficients[case]
-    angles = 2.0 * np.pi * np.arange(POSITIONS) / POSITIONS
+    angles = position_angles(POSITIONS)
     models: dict[str, float] = {}
     for model in MODELS:
         seconds = []

@@ -10,7 +10,7 @@ from typing import Any
 
 from ltca.output.files import whole_file
 from validation.compare.model_positions import MODELS
-from validation.levels.flexible_disc import TITLES, judge_half_space, meaning_content
+from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
 from validation.report.scene import drive_scene, position_scene
 from validation.rows import LEVELS, Row
@@ -93,8 +93,8 @@ def _context(study: Study) -> dict[str, Any]:
             (case, *(_signed_percent(values[name]) for name in ("pin_load", "roller_load", "pin_shaft_load")))
             for case, values in head["change_half_space_to_full_fe"].items()
         ],
-        "sentences": judge_half_space(study.meanings),
-        "meanings": [_meaning_table(case, meaning_content(item)) for case, item in study.meanings.items()],
+        "sentences": judge_half_space(study.flexibility),
+        "turns": [_turn_table(case, turn_content(item)) for case, item in study.flexibility.items()],
         "levels": [_level(number, [row for row in study.rows if row.level == number]) for number in LEVELS],
         "pictures": _pictures(study),
         "shared": SHARED,
@@ -127,7 +127,7 @@ def _signed_percent(value: float | None) -> str:
     return f"{100.0 * value:+.3g} %".replace("-", "−")
 
 
-def _meaning_table(case: str, content: dict[str, dict[str, float | None]]) -> dict[str, Any]:
+def _turn_table(case: str, content: dict[str, dict[str, float | None]]) -> dict[str, Any]:
     lines = []
     for name, (title, unit) in TITLES.items():
         values = [content[model][name] for model in MODELS]

@@ -28,8 +28,8 @@ def drive_scene(drive: Drive) -> dict[str, Any]:
     outline = geometry.profile.flank(2.0 * np.pi * np.arange(count) / count)
     return {
         "outline": _points(outline),
-        "bore": rounded(place.bore_radius),
-        "race": rounded(place.inner_race_radius),
+        "bore": rounded(drive.bore_radius),
+        "race": rounded(drive.crank_bearing.inner_race_radius),
         "holes": _circles(place.hole_centres, place.hole_radii),
         "reach": rounded(1.1 * float(np.max(np.abs(place.wheel_pin_centres) + place.wheel_pin_radii))),
     }  # fmt: skip

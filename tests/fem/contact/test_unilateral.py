@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from fem.contact.unilateral import ContactProblem, find_active_set, solve_unilateral_contact
+from fem.contact.unilateral import ContactProblem, find_active_set, solve_floating_contact
 from ltca.errors import ConvergenceError
 
 
@@ -47,7 +47,7 @@ def enumerate_sets(problem):
 @pytest.mark.parametrize("seed", range(12))
 def test_matches_enumeration(seed):
     problem = random_problem(seed)
-    solution = solve_unilateral_contact(problem, np.ones(7, dtype=bool))
+    solution = solve_floating_contact(problem, np.ones(7, dtype=bool))
     pressure, motion = enumerate_sets(problem)
     np.testing.assert_allclose(solution.pressure, pressure, atol=1e-9)
     np.testing.assert_allclose(solution.motion, motion, atol=1e-9)
@@ -57,14 +57,14 @@ def test_matches_enumeration(seed):
 
 def test_start_does_not_matter():
     problem = random_problem(3)
-    answers = [solve_unilateral_contact(problem, start).pressure for start in np.tril(np.ones((7, 7), dtype=bool))[2:]]
+    answers = [solve_floating_contact(problem, start).pressure for start in np.tril(np.ones((7, 7), dtype=bool))[2:]]
     for answer in answers[1:]:
         np.testing.assert_allclose(answer, answers[0], atol=1e-10)
 
 
 def test_empty_start_is_a_start():
     problem = random_problem(4)
-    solution = solve_unilateral_contact(problem, np.zeros(7, dtype=bool))
+    solution = solve_floating_contact(problem, np.zeros(7, dtype=bool))
     np.testing.assert_allclose(solution.pressure, enumerate_sets(problem)[0], atol=1e-9)
 
 
@@ -78,10 +78,10 @@ def test_load_no_pressure_can_balance_is_an_error():
     """Contact can only push: a load that would need a pull has no answer."""
     problem = ContactProblem(compliance=np.eye(2), gap=np.ones(2), motions=np.ones((2, 1)), external=np.array([-1.0]))
     with pytest.raises(ConvergenceError, match="balance the load"):
-        solve_unilateral_contact(problem, np.array([True, False]))
+        solve_floating_contact(problem, np.array([True, False]))
 
 
 def test_limit_gives_history():
     with pytest.raises(ConvergenceError) as caught:
-        solve_unilateral_contact(random_problem(1), np.ones(7, dtype=bool), limit=1)
+        solve_floating_contact(random_problem(1), np.ones(7, dtype=bool), limit=1)
     assert len(caught.value.history) == 1

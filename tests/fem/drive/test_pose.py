@@ -41,7 +41,7 @@ def stepping(monkeypatch):
             pairs=("first", "second"), crank_angle=0.5, integrate=lambda pair, at: pair,
             contact_problem=lambda at, integrals, moment: None,
         )  # fmt: skip
-        monkeypatch.setattr(pose, "solve_unilateral_contact", lambda problem, active: CONTACT)
+        monkeypatch.setattr(pose, "solve_floating_contact", lambda problem, active: CONTACT)
         monkeypatch.setattr(pose, "pair_forces", forces)
         monkeypatch.setattr(pose, "_move", lambda model, at, contact, forces: (at, now["increment"]))
         return pose.solve_pose(model, -1.0, start=plain_pose(), start_active=CONTACT.active, **options)

@@ -10,8 +10,7 @@ import pytest
 from ltca.analysis.torque_curve import LOST_MOTION, SMALLEST, STIFF_FROM, torque_curve
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.geometry.first_contact import WHEEL_ANGLE
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 from ltca.geometry.play import rigid_play
 
 ANGLES = np.array([0.1, 0.35])

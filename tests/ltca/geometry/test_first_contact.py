@@ -9,8 +9,6 @@ from scipy.optimize import brentq
 from ltca.analysis.loaded_analysis import analyse
 from ltca.errors import ConvergenceError
 from ltca.geometry.first_contact import (
-    DISC_ROTATION,
-    WHEEL_ANGLE,
     backlash,
     carrying_holes,
     carrying_pins,
@@ -18,7 +16,7 @@ from ltca.geometry.first_contact import (
     first_contact,
     unloaded_transmission_error,
 )
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
 
 
 def smallest_gap(drive, crank, disc_rotation, wheel_angle):

@@ -29,6 +29,21 @@ def test_clearances_bearing_diametral_and_hole_whole(vary):
     assert place.cage_speed == pytest.approx(19.5 / 49.0, rel=1e-15)
 
 
+def test_effective_radii_of_rollers_and_holes(vary):
+    """Convex on convex r₁r₂/(r₁ + r₂), in a bore or a hole r₁r₂/(r₂ − r₁); the roller that is 10 µm larger alone."""
+    larger = {"diameter": [0.0] * 9 + [0.01, 0.0]}
+    drive = vary(crank_bearing={"roller_errors": larger}, clearance={"pin_hole": 0.02})
+    place = Placement.of_drive(drive)
+    radii = np.where(np.arange(11) == 9, 5.005, 5.0)
+    np.testing.assert_allclose(place.inner_effective_radii, radii * 19.5 / (radii + 19.5), rtol=1e-14)
+    np.testing.assert_allclose(place.outer_effective_radii, radii * 29.5 / (29.5 - radii), rtol=1e-14)
+    pin = drive.pin_shaft.pin_radius
+    np.testing.assert_allclose(place.hole_effective_radii, pin * (pin + 4.02) / 4.02, rtol=1e-12)
+    both = Placement.stack([place, Placement.of_drive(vary())], positions=2)
+    np.testing.assert_allclose(both.inner_effective_radii[:, 9], [5.005 * 19.5 / 24.505] * 2 + [5 * 19.5 / 24.5] * 2)
+    assert both.outer_effective_radii.shape == (4, 11)
+
+
 def test_errors_move_and_resize_one_part_only(vary):
     def one(count, number, value):
         return [value if n == number else 0.0 for n in range(count)]

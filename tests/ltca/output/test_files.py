@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -56,6 +59,27 @@ def test_folder_that_cannot_be_made(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(CycloError, match="cannot be written"), whole_file(tmp_path / "file" / "x.txt") as part:
         part.touch()
+
+
+def test_a_killed_run_leaves_no_half_written_file(tmp_path):
+    code = (
+        "import os, sys\n"
+        "from pathlib import Path\n"
+        "from ltca.output.files import whole_file\n"
+        "with whole_file(Path(sys.argv[1])) as part:\n"
+        "    part.write_text('half')\n"
+        "    os.kill(os.getpid(), 9)\n"
+    )
+    child = subprocess.run([sys.executable, "-c", code, str(tmp_path / "x.msh")], check=False)
+    assert child.returncode == -9
+    assert not (tmp_path / "x.msh").exists()
+
+
+def test_written_files_have_ordinary_rights(tmp_path):
+    with whole_file(tmp_path / "x.msh") as part:
+        part.write_text("x")
+    (tmp_path / "plain").write_text("x")
+    assert os.stat(tmp_path / "x.msh").st_mode == os.stat(tmp_path / "plain").st_mode
 
 
 def test_json_refuses_what_is_no_number(tmp_path):

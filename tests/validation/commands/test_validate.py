@@ -31,7 +31,7 @@ def test_a_failed_row_makes_the_exit_status_one(status, small_study, tmp_path, m
     if status:
         rows += (replace(rows[0], quantity="broken figure", difference=1.0, limit=0.1),)
     study = replace(small_study, rows=rows)
-    monkeypatch.setattr(validation.study, "run_study", lambda plan, folder, step, say: study)
+    monkeypatch.setattr(validation.study, "run_validation", lambda plan, folder, step, say: study)
     assert run("paper", "--out", str(tmp_path)) == status
     out = capsys.readouterr().out
     assert ("FAILED" in out) == bool(status)

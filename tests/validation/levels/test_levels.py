@@ -73,11 +73,12 @@ def test_stored_figures_are_marked_with_their_command(monkeypatch):
 def test_stored_answers_of_the_half_space_are_still_ours():
     """Ours are stored beside theirs: a change of the code that moves them asks for the command to be run again."""
     stored = json.loads((resources.files("validation.levels") / other_codes.STORED).read_text(encoding="utf-8"))
-    from ltca.contact.hertz import contact_modulus
+    from ltca.drive.parts import Material, contact_modulus
     from ltca.laws.line_contact import LineContactLaw
     from ltca.laws.series import approach_at_load
 
-    law = LineContactLaw(11.8, contact_modulus(210e3, 0.3, 210e3, 0.3))
+    steel = Material(youngs_modulus=210e3, poisson_ratio=0.3)
+    law = LineContactLaw(11.8, contact_modulus(steel, steel))
     ours = {item["quantity"]: item["ours"] for item in stored["tamaas"]}
     approach = float(approach_at_load(law, np.array([1500.0]), 2.0)[0][0])
     assert ours["approach, uncrowned roller"] == pytest.approx(approach, rel=1e-6)
