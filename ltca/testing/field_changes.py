@@ -84,9 +84,9 @@ def sensible_change(drive: Drive, path: str) -> Any:
 
 def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...]:
     if path == "disc.profile_errors.orders":
-        return tuple([values[0] + 1, *values[1:]]) if values else (2,)
+        return (values[0] + 1, *values[1:]) if values else (2,)
     if path == "disc.profile_errors.parameter":
-        return tuple([*values[:-1], values[-1] + 0.1]) if values else ()
+        return (*values[:-1], values[-1] + 0.1) if values else ()
     count = element_count(drive, path)
     # Of each part another amount: a circle that shifts or grows as a whole could hide in a free motion.
     step = _FROM_ZERO["mm"]
