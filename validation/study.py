@@ -17,7 +17,7 @@ from ltca.drive.parts import Drive
 from ltca.output.files import write_json
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
-from validation.compare.derived_coefficients import coefficients_of, has_clearance
+from validation.compare.derived_coefficients import coefficients_of, nominal_coefficients_of
 from validation.compare.finite_element_positions import FullPosition, Settings, solve_position
 from validation.levels.closed_forms import check_closed_forms
 from validation.levels.coefficients import check_file, halved_mesh_row
@@ -202,8 +202,8 @@ def _model_rows(
     rows = [row for items in compared.values() for item in items for row in compare_position_rows(item)]
     _, stress = coefficients_of(plan.drives[first], first, folder, plane="stress", progress=say)
     rows += compare_models(plan.drives[first], first, np.array(plan.crank_angles), coefficients[first], stress)
-    if has_clearance(plan.drives[last]):
-        _, shared = coefficients_of(plan.drives[last], last, folder, keep_clearance=False, progress=say)
+    shared = nominal_coefficients_of(plan.drives[last], last, folder, progress=say)
+    if shared is not None:
         rows += shared_file_rows(compare_case(plan.drives[last], full[last], shared))
     return rows
 

@@ -22,7 +22,7 @@ from fem.coefficients.stations import RACE_ANGLES, DiscStations, patch_half_widt
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
-from fem.mesh.memory_need import require_memory, solution_memory
+from fem.mesh.memory_need import available_memory, require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, RingShape, Shape
 from ltca.drive.parts import Material
@@ -134,8 +134,19 @@ def _growth(size: float) -> float:
     return min(GROWTH * size, LARGEST_GROWTH)
 
 
-def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> None:
+def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0, processes: int = 1) -> None:
     """Check that the disc's mesh and solution will fit into memory.
+
+    Parameters
+    ----------
+    shape : DiscShape
+        The disc.
+    stations : DiscStations
+        Places of the patches.
+    size : float
+        Multiple of all element edges and of their growth.
+    processes : int
+        How many such derivations share the memory.
 
     Raises
     ------
@@ -145,7 +156,8 @@ def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 
     refinements = _refinements(stations.points, float(stations.half_width.min()), size)
     coarse = default_coarse_size(shape, size)
     unknowns = estimate_unknowns(shape, refinements, coarse_size=coarse, growth=_growth(size))
-    require_memory(unknowns, solution_memory(unknowns), "the disc for its influence coefficients")
+    what = "the disc for its influence coefficients"
+    require_memory(unknowns, solution_memory(unknowns), what, available=available_memory() / processes)
 
 
 def mesh_disc_for_stations(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> BodyMesh:

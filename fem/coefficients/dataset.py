@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from importlib.metadata import version
 from typing import TYPE_CHECKING
@@ -53,13 +54,13 @@ def derive_coefficients(
     state: PlaneState = "strain",
     core_radius: float | None = None,
     race_bore_radius: float | None = None,
-    keep_clearance: bool = False,
+    keep_clearance: bool = True,
+    processes: int = 1,
     progress: Callable[[str], None] | None = None,
 ) -> xr.Dataset:
     """Derive the influence coefficients of all bodies of a drive.
 
-    Errors of single parts and, unless kept, clearances are left out, so that one dataset serves all cases of a drive
-    that share its `Drive.shape_fingerprint`.
+    Errors of single parts are left out: one dataset serves all drives of one `Drive.shape_fingerprint`.
 
     Parameters
     ----------
@@ -76,7 +77,10 @@ def derive_coefficients(
     core_radius, race_bore_radius : float, optional
         Rigid core of the wheel pins and fixed bore of the race, mm; defaults of `DriveShapes.of_drive`.
     keep_clearance : bool
-        Derive the disc with the bearing and pin-hole clearance of this case.
+        Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
+        all clearance cases about alike, and says so.
+    processes : int
+        How many derivations share the memory of the machine.
     progress : callable, optional
         Called with the name of each step before it starts.
 
@@ -97,7 +101,7 @@ def derive_coefficients(
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
     places = DiscStations.of_disc(shapes.disc, stations)
-    require_disc_memory(shapes.disc, places, size)
+    require_disc_memory(shapes.disc, places, size, processes)
     materials, thickness = nominal.materials, nominal.disc.thickness
 
     def derive(size: float, note: str) -> tuple[DerivedDisc, DerivedRound, DerivedRound, DerivedRound]:
@@ -121,7 +125,9 @@ def derive_coefficients(
     dataset.attrs.update(
         drive=drive.name,
         case=case,
-        fingerprint=drive.shape_fingerprint(),
+        fingerprint=nominal.shape_fingerprint(),
+        shape=json.dumps(nominal.body_shape()),
+        clearances_left_out=int(not keep_clearance),
         plane=state,
         thickness=thickness,
         core_radius=shapes.wheel_pins[0].core_radius,

@@ -119,12 +119,8 @@ def patch_half_width(shape: Shape) -> float:
     return PATCH_SHARE * min(smallest_radius(curves), shape.narrowest_wall)
 
 
-def nominal_shape(drive: Drive, *, keep_clearance: bool = False) -> Drive:
-    """Return the drive without errors of single parts and, unless kept, without clearances.
-
-    One set of coefficients then serves all clearance cases of a drive (`Drive.shape_fingerprint`), whichever of
-    them it was derived for.
-    """
+def nominal_shape(drive: Drive, *, keep_clearance: bool = True) -> Drive:
+    """Return the drive without errors of single parts, which coefficients do not know, and without clearances if asked."""
     return replace(
         drive,
         clearance=drive.clearance if keep_clearance else Clearance(),

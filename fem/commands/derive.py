@@ -30,9 +30,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
     )
     parser.add_argument(
-        "--with-clearance",
+        "--without-clearance",
         action="store_true",
-        help="derive the disc with the clearances of the case; without it one file serves all clearance cases alike",
+        help="leave the clearances of the case out, so that one file serves all clearance cases about alike (up to 2 %% of "
+        "the pressures); it says so, and so does a run with it",
     )
     parser.add_argument("--out", metavar="FILE", default="coefficients.nc", help="file (default: coefficients.nc)")
 
@@ -73,7 +74,7 @@ def execute(arguments: argparse.Namespace) -> int:
         stations=arguments.stations,
         size=arguments.size,
         state=arguments.plane,
-        keep_clearance=arguments.with_clearance,
+        keep_clearance=not arguments.without_clearance,
         progress=show,
     )
     show("")
@@ -84,6 +85,11 @@ def execute(arguments: argparse.Namespace) -> int:
     print(
         f"{written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
         f"{attributes['plane']}, {time.perf_counter() - start:.1f} s"
+    )
+    left_out = ", those of the case left out" if attributes["clearances_left_out"] else ""
+    print(
+        f"clearances: bearing {attributes['bearing_clearance']:g} mm, pin hole {attributes['pin_hole_clearance']:g} mm"
+        f"{left_out}"
     )
     width = max(len(check.name) for check in checks)
     for check in checks:

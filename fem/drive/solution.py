@@ -30,6 +30,7 @@ from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import estimate_unknowns
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import ConvergenceError
 
 FloatArray = NDArray[np.float64]
@@ -182,9 +183,12 @@ def solve_drive(
     ------
     ConvergenceError
         When nothing can carry the load or an iteration does not settle.
+    DriveError
+        When the drive is not the same all along its thickness: shorter rollers, crown or relief.
     MemoryLimitError
         When the meshes would not fit into memory.
     """
+    require_plane_strain(drive, "full finite elements")
     say = progress or _silent
     watch = _Stopwatch()
     shapes = DriveShapes.of_drive(drive)

@@ -20,6 +20,7 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
@@ -178,15 +179,16 @@ class _Coupled:
 
     Parameters
     ----------
-    coefficients : InfluenceCoefficients, Path or None
-        Of the drive: read, a file of ``cyclo derive``, or (None) found in the cache or derived and kept there.
+    coefficients : InfluenceCoefficients, Path, sequence of Path or None
+        Of the drive: read, files of ``cyclo derive`` of which one belongs to it, or (None) found in the cache or derived
+        and kept there.
     hole_near_field : bool
         Whether hole walls yield like a Hertz contact.
     """
 
     batches: ClassVar[bool] = False
 
-    coefficients: InfluenceCoefficients | Path | None = field(default=None, repr=False)
+    coefficients: InfluenceCoefficients | Path | Sequence[Path] | None = field(default=None, repr=False)
     hole_near_field: bool = True
 
     @property
@@ -198,10 +200,10 @@ class _Coupled:
 
     def model(self, drive: Drive) -> CoupledCompliance:
         """Return the coupled compliance of a drive."""
-        found = self.coefficients
+        compliance: Compliance = self.compliance  # type: ignore[attr-defined]  # of the engines below
+        near_field, found = NEAR_FIELDS[compliance], self.coefficients
         if not isinstance(found, InfluenceCoefficients):
-            found = find_coefficients(drive, None if found is None else Path(found))
-        near_field: Any = self.compliance  # type: ignore[attr-defined]
+            found = find_coefficients(drive, found, near_field=near_field)
         return CoupledCompliance.of_drive(drive, found, near_field, hole_near_field=self.hole_near_field)
 
     def prepare(self, drive: Drive) -> PreparedEngine:
@@ -240,7 +242,7 @@ def engine_named(
     *,
     method: str | None = None,
     contacts: str | None = None,
-    coefficients: InfluenceCoefficients | Path | None = None,
+    coefficients: InfluenceCoefficients | Path | Sequence[Path] | None = None,
     hole_near_field: bool | None = None,
 ) -> Engine:
     """Return the engine that names and options ask for; what an engine cannot use is refused.

@@ -48,7 +48,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--coefficients",
         metavar="FILE",
         type=Path,
-        help="influence coefficients of cyclo derive; without it they are derived once and kept",
+        action="append",
+        help="influence coefficients of cyclo derive, repeatable: each case takes the file of its shape; without any they "
+        "are derived once for each shape and kept",
     )
     parser.add_argument(
         "--no-hole-near-field",
@@ -77,6 +79,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
+    _find_coefficients(cases, arguments)
     out = arguments.out or Path("out") / file.name
     analyses = _analyse(cases, angles, torque, engine, "cases")
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
@@ -116,6 +119,15 @@ def _engine(arguments: argparse.Namespace) -> Engine:
         coefficients=arguments.coefficients,
         hole_near_field=False if arguments.no_hole_near_field else None,
     )
+
+
+def _find_coefficients(cases: dict[str, Drive], arguments: argparse.Namespace) -> None:
+    """Check the files given against all cases, or derive all that is missing together: the engine finds each again."""
+    from ltca.compliance.coefficient_files import find_case_coefficients
+    from ltca.compliance.near_field import NEAR_FIELDS
+
+    if arguments.compliance in NEAR_FIELDS:
+        find_case_coefficients(cases, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])
 
 
 def _analyse(

@@ -2,24 +2,27 @@ r"""What finite elements have beyond the near field of each contact itself: the 
 
 The near field of a contact belongs to its law, plane strain with a datum (`fe`) or a half-space of finite length
 (`hybrid`). The finite-element approach of a patch holds it as well, so it is taken off here, once.
+
+What is taken off is the near field of the *finite-element body's own* load: even over the body's thickness, whatever
+the length and profile of the part that presses on it. What is left, the walls and supports of the body, then goes
+with any law near the contact: of a roller shorter than the disc, of a crowned pin. (With the law's own length in its
+place that length would cancel, and short rollers would be as stiff as long ones.)
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
 
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
+from ltca.compliance.near_field import NearField
 from ltca.contact.hertz import line_half_width
-from ltca.drive.parts import Drive, Material
+from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY
-
-NearField = Literal["fe", "hybrid"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,53 +42,80 @@ class OwnParts:
 
     @classmethod
     def of_drive(
-        cls, drive: Drive, coefficients: InfluenceCoefficients, near_field: NearField, datum: float
+        cls,
+        drive: Drive,
+        geometry: ContactGeometry,
+        coefficients: InfluenceCoefficients,
+        near_field: NearField,
+        datum: float,
     ) -> OwnParts:
         """Return the diagonal parts.
 
+        Parameters
+        ----------
+        drive : Drive
+            The drive.
+        geometry : ContactGeometry
+            Its contact geometry.
+        coefficients : InfluenceCoefficients
+            Of its bodies, rollers as long as they are (`InfluenceCoefficients.with_roller_length`).
+        near_field : {"plane-strain", "half-space"}
+            What the laws of the contacts hold.
+        datum : float
+            D, where a near field in plane strain hands over, mm.
+
+        Notes
+        -----
         With A = smooth + κ (−ln(b/2) + 1/4) the approach of a patch, the plane-strain law holds κ (ln(2D/b) + 1/4)
         of it, which leaves smooth − κ ln D. What a half-space of finite length holds of it for the same patch is
-        `finite_length_approach`; both are taken at the half-width of half the drive's load T/(e z_P) on one contact
+        `finite_length_approach`; both are taken at the half-width of half the drive's load T/(e u) on one contact
         (they differ by the end effects alone, which change little with the load). A plane-stress body part joins the
         plane-strain near field at D.
         """
-        parts, thickness = drive.materials, drive.disc.thickness
-        c = coefficients
-
-        geometry = ContactGeometry.of_drive(drive)
-        place, bearing = geometry.placement, drive.crank_bearing
+        parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
+        place = geometry.placement
         load = 0.5 * abs(drive.wheel_moment()) / (place.eccentricity * place.reduction_ratio)
 
-        def remove(body: float, material: Material, partner: Material | None, radius: float, length: float) -> float:
+        def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
             if body == 0.0:
                 return 0.0
             joined = -body * np.log(datum)
-            if near_field == "fe":
+            if near_field == "plane-strain":
                 return float(joined)
-            compliance = material.plane_strain_compliance + (partner.plane_strain_compliance if partner else 0.0)
-            half_width = float(line_half_width(load / length, radius, 1.0 / compliance))
+            half_width = float(line_half_width(load / thickness, radius, modulus))
             factor = logarithm_factor(material, thickness)
-            held = material.plane_strain_compliance * finite_length_approach(length, half_width)
+            held = material.plane_strain_compliance * finite_length_approach(thickness, half_width)
             return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
 
-        outer_radius = 1.0 / (1.0 / bearing.roller_radius - 1.0 / drive.bore_radius)
-        inner_radius = 1.0 / (1.0 / bearing.roller_radius + 1.0 / bearing.inner_race_radius)
-        hole_radius = 1.0 / (1.0 / drive.pin_shaft.pin_radius - 1.0 / drive.hole_radius)
+        thickness, length = drive.disc.thickness, bearing.roller_length
         # Where the pitch circle cuts the flank the pins carry most.
         steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
-        pin_radius = float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0])
-        length = bearing.roller_length
-        on_flank = remove(c.disc_logarithm, parts.disc, parts.wheel_pin, pin_radius, thickness)
-        of_pin = remove(c.pin_logarithm, parts.wheel_pin, parts.disc, pin_radius, thickness)
-        on_bore = remove(c.disc_logarithm, parts.disc, parts.roller, outer_radius, length)
-        in_bore = remove(c.roller_logarithm, parts.roller, parts.disc, outer_radius, length)
-        on_race = remove(c.race_logarithm, parts.inner_race, parts.roller, inner_radius, length)
-        on_inner = remove(c.roller_logarithm, parts.roller, parts.inner_race, inner_radius, length)
+        at_pin = (
+            float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
+            contact_modulus(parts.disc, parts.wheel_pin),
+        )
+        in_bore = (
+            1.0 / (1.0 / bearing.roller_radius - 1.0 / drive.bore_radius),
+            contact_modulus(parts.disc, parts.roller),
+        )
+        on_race = (
+            1.0 / (1.0 / bearing.roller_radius + 1.0 / bearing.inner_race_radius),
+            contact_modulus(parts.inner_race, parts.roller),
+        )
+        in_hole = (
+            1.0 / (1.0 / drive.pin_shaft.pin_radius - 1.0 / drive.hole_radius),
+            1.0 / parts.disc.plane_strain_compliance,
+        )
+        disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
         return cls(
-            pin=on_flank + c.pin + of_pin,
-            outer=on_bore + float(c.roller[1, 1]) + in_bore,
-            inner=on_race + float(c.roller[0, 0]) + on_inner,
-            hole=remove(c.disc_logarithm, parts.disc, None, hole_radius, thickness),
+            pin=remove(disc, parts.disc, *at_pin, thickness) + c.pin + remove(pin, parts.wheel_pin, *at_pin, thickness),
+            outer=remove(disc, parts.disc, *in_bore, thickness)
+            + float(c.roller[1, 1])
+            + remove(roller, parts.roller, *in_bore, length),
+            inner=remove(race, parts.inner_race, *on_race, thickness)
+            + float(c.roller[0, 0])
+            + remove(roller, parts.roller, *on_race, length),
+            hole=remove(disc, parts.disc, *in_hole, thickness),
         )
 
 

@@ -1,23 +1,33 @@
-"""Where influence coefficients come from: a file of the user's, or derived once for a shape and kept.
+"""Where influence coefficients come from: files of the user's, or derived once for each distinct shape and kept.
 
 `ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package
-`fem` does), so that `ltca` imports nothing to its right.
+`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` and ``processes`` (how many
+of its kind share the memory) that returns the dataset of ``docs/coefficients.md``.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib.metadata import entry_points, version
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
+from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
+from ltca.output.progress import progress
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
+PROCESSES = 2
+"""Derivations at once: one takes 1.5 GB for a disc like the paper's."""
 
 
 def cached_file(drive: Drive, plane: str = "strain") -> Path:
@@ -26,17 +36,25 @@ def cached_file(drive: Drive, plane: str = "strain") -> Path:
     return base / "cyclo" / version("cyclo-ltca") / f"coefficients-{drive.shape_fingerprint()}-{plane}.nc"
 
 
-def find_coefficients(drive: Drive, file: Path | None = None, plane: str = "strain") -> InfluenceCoefficients:
+def find_coefficients(
+    drive: Drive,
+    files: Path | Sequence[Path] | None = None,
+    plane: str = "strain",
+    *,
+    near_field: NearField = "half-space",
+) -> InfluenceCoefficients:
     """Return the coefficients of a drive: from a file, from the cache, or newly derived and kept there.
 
     Parameters
     ----------
     drive : Drive
-        The drive; its clearances, load and single-part errors do not matter.
-    file : Path, optional
-        File of ``cyclo derive``.
+        The drive; its load and single-part errors do not matter.
+    files : Path or sequence of Path, optional
+        Files of ``cyclo derive``, one of which must belong to the drive.
     plane : {"strain", "stress"}
         State of the body part when it has to be derived.
+    near_field : {"plane-strain", "half-space"}
+        What they are wanted for.
 
     Returns
     -------
@@ -46,17 +64,147 @@ def find_coefficients(drive: Drive, file: Path | None = None, plane: str = "stra
     Raises
     ------
     CycloError
-        When the file does not fit the drive or nothing is installed that derives.
+        When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
-    if file is not None:
-        return load_coefficients(file, drive)
+    if near_field == "plane-strain":
+        require_plane_strain(drive, "compliance fe")
+    if files is not None:
+        return _load_first_that_fits([files] if isinstance(files, Path) else files, drive)[1]
+    found = _kept(drive, plane)
+    if found is None:
+        _derive_missing({drive.name: drive}, plane)
+        found = load_coefficients(cached_file(drive, plane), drive)
+    return found
+
+
+def find_case_coefficients(
+    cases: Mapping[str, Drive],
+    files: Sequence[Path] = (),
+    plane: str = "strain",
+    *,
+    near_field: NearField = "half-space",
+) -> dict[str, InfluenceCoefficients]:
+    """Return the coefficients of each case, those of each distinct shape derived once.
+
+    Parameters
+    ----------
+    cases : mapping of str to Drive
+        By name.
+    files : sequence of Path
+        Files of ``cyclo derive``: each must serve a case, and each case must be served by one. Without any, those that
+        are not in the cache are derived and kept there.
+    plane : {"strain", "stress"}
+        State of the body part where it has to be derived.
+    near_field : {"plane-strain", "half-space"}
+        What they are wanted for.
+
+    Returns
+    -------
+    dict of str to InfluenceCoefficients
+        By case.
+
+    Raises
+    ------
+    CycloError
+        As `find_coefficients`; before anything is derived.
+    """
+    if near_field == "plane-strain":
+        for drive in cases.values():
+            require_plane_strain(drive, "compliance fe")
+    if files:
+        return _load_each(cases, files)
+    kept = {name: _kept(drive, plane) for name, drive in cases.items()}
+    _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None}, plane)
+    return {name: own or load_coefficients(cached_file(cases[name], plane), cases[name]) for name, own in kept.items()}
+
+
+def _load_each(cases: Mapping[str, Drive], files: Sequence[Path]) -> dict[str, InfluenceCoefficients]:
+    """Give each case the file that belongs to it; leave no case and no file over, and say where clearances are left out."""
+    found, used = {}, set()
+    for name, drive in cases.items():
+        try:
+            path, found[name] = _load_first_that_fits(files, drive)
+        except CycloError as error:
+            raise CycloError(f"case {name}: {error}") from error
+        used.add(path)
+        if found[name].shared:
+            print(f"{path}: leaves the clearances of {name} out, on purpose", file=sys.stderr)
+    idle = [str(path) for path in files if path not in used]
+    if idle:
+        raise CycloError(f"--coefficients {', '.join(idle)}: serves no case of this run; leave it out")
+    return found
+
+
+def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, InfluenceCoefficients]:
+    refusals = []
+    for path in files:
+        try:
+            return path, load_coefficients(path, drive)
+        except CycloError as error:
+            refusals.append(str(error))
+    raise CycloError("; ".join(refusals) or "no file of influence coefficients is given")
+
+
+def _kept(drive: Drive, plane: str) -> InfluenceCoefficients | None:
+    """Return the coefficients in the cache; None where there are none, or a damaged file that has to be made again."""
     path = cached_file(drive, plane)
     if not path.exists():
-        found = [entry for entry in entry_points(group=GROUP) if entry.name == DERIVATION]
-        if not found:
-            raise CycloError("no coefficients: give a file of 'cyclo derive' with --coefficients")
-        print(f"deriving influence coefficients once (kept as {path})", file=sys.stderr)
-        dataset = found[0].load()(drive, state=plane)
-        with whole_file(path) as part:
-            dataset.to_netcdf(part, engine="h5netcdf")
-    return load_coefficients(path, drive)
+        return None
+    try:
+        return load_coefficients(path, drive)
+    except CycloError:
+        return None
+
+
+def _derive_missing(cases: Mapping[str, Drive], plane: str) -> None:
+    """Derive the coefficients of cases into the cache, those of one shape once, and say so."""
+    missing: dict[Path, str] = {}
+    for name, drive in cases.items():
+        missing.setdefault(cached_file(drive, plane), name)
+    if not missing:
+        return
+    _derivation()
+    print(
+        f"deriving influence coefficients of {', '.join(missing.values())}, once for each shape (some 20 s; kept in "
+        f"{next(iter(missing)).parent})",
+        file=sys.stderr,
+    )
+    with progress("coefficients", len(missing)) as advance:
+        for path in _derive({path: cases[name] for path, name in missing.items()}, plane):
+            advance(missing[path])
+
+
+def _derive(drives: Mapping[Path, Drive], plane: str) -> Iterator[Path]:
+    """Derive coefficients into their files, two at once, and yield each file that is there."""
+    processes = min(PROCESSES, len(drives), os.cpu_count() or 1)
+    alone = dict(drives)
+    if processes > 1:
+        # Never a fork of this process, which may have threads.
+        pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"))
+        try:
+            flying = {pool.submit(_derive_file, drive, plane, path, processes): path for path, drive in drives.items()}
+            for future in as_completed(flying):
+                # What fails for want of memory (or of a process that was killed for it) may still fit alone.
+                if future.exception() is None:
+                    del alone[flying[future]]
+                    yield flying[future]
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+    for path, drive in alone.items():
+        _derive_file(drive, plane, path, 1)
+        yield path
+
+
+def _derive_file(drive: Drive, plane: str, path: Path, processes: int) -> None:
+    """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
+    dataset = _derivation()(drive, state=plane, processes=processes)
+    with whole_file(path) as part:
+        dataset.to_netcdf(part, engine="h5netcdf")
+
+
+def _derivation() -> Callable[..., Any]:
+    found = [entry for entry in entry_points(group=GROUP) if entry.name == DERIVATION]
+    if not found:
+        raise CycloError("no coefficients: give a file of 'cyclo derive' with --coefficients")
+    derive: Callable[..., Any] = found[0].load()
+    return derive

@@ -8,19 +8,27 @@ actual places is added again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.drive.parts import Drive, Material
-from ltca.errors import CycloError
-from ltca.geometry.pairs import ContactGeometry
+from ltca.drive.parts import Clearance, Drive, Material
+from ltca.errors import CycloError, DriveError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
 LAGRANGE_POINTS = 6
+
+NEEDED_VARIABLES = ("disc_approach", "pin_approach", "roller_approach", "race_approach", "station_boundary")
+NEEDED_ATTRIBUTES = ("shape", "clearances_left_out", "bearing_clearance", "pin_hole_clearance", "plane", "thickness")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,10 +70,14 @@ class InfluenceCoefficients:
 
     Attributes
     ----------
+    fingerprint : str
+        `Drive.shape_fingerprint` of the drive they serve.
+    shared : bool
+        Whether they stand for bodies that differ a little from those they were derived for: on somebody's word.
     plane : str
         "strain" or "stress": state of the body part.
     thickness : float
-        mm.
+        Of all bodies, mm.
     flank, bore : Boundary
         Stations of flank and bore.
     holes : tuple of Boundary
@@ -82,6 +94,8 @@ class InfluenceCoefficients:
         Factor κ of −ln(distance) in each body, mm/N.
     """
 
+    fingerprint: str
+    shared: bool
     plane: str
     thickness: float
     flank: Boundary
@@ -95,6 +109,34 @@ class InfluenceCoefficients:
     pin_logarithm: float
     roller_logarithm: float
     race_logarithm: float
+
+    def lent_to(self, drive: Drive) -> InfluenceCoefficients:
+        """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
+
+        Parameters
+        ----------
+        drive : Drive
+            With as many teeth and holes.
+
+        Raises
+        ------
+        DriveError
+            When the numbers of holes differ.
+        """
+        if drive.pin_shaft.number_of_pins != len(self.holes):
+            raise DriveError(
+                [
+                    f"pin_shaft.number_of_pins = {drive.pin_shaft.number_of_pins}: must be {len(self.holes)}, that of the "
+                    "drive whose influence coefficients are shared"
+                ]
+            )
+        fingerprint = drive.shape_fingerprint()
+        return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
+
+    def with_roller_length(self, length: float) -> InfluenceCoefficients:
+        """Return the coefficients with rollers of a length of their own, mm: in plane strain they yield like one over it."""
+        scale = self.thickness / length
+        return replace(self, roller=scale * self.roller, roller_logarithm=scale * self.roller_logarithm)
 
     def disc_matrix(
         self,
@@ -197,7 +239,7 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     Raises
     ------
     CycloError
-        When the file cannot be read, lacks something, or belongs to another drive.
+        When the file cannot be read, lacks something, or belongs to other bodies; it names what differs.
     """
     import xarray as xr
 
@@ -206,17 +248,43 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
             data = opened.load()
     except (OSError, ValueError) as error:
         raise CycloError(f"{path}: cannot be read as a coefficient file: {error}") from error
-    needed = ("disc_approach", "pin_approach", "roller_approach", "race_approach", "station_boundary")
-    missing = [name for name in needed if name not in data] + [
-        name for name in ("fingerprint", "plane", "thickness") if name not in data.attrs
-    ]
+    missing = [name for name in NEEDED_VARIABLES if name not in data]
+    missing += [name for name in NEEDED_ATTRIBUTES if name not in data.attrs]
     if missing:
         raise CycloError(f"{path}: is no coefficient file of this version; it lacks {', '.join(missing)}")
-    if data.attrs["fingerprint"] != drive.shape_fingerprint():
+    shared = _require_same_bodies(path, data.attrs, drive)
+    return _coefficients_of_dataset(data, drive, shared=shared)
+
+
+def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive) -> bool:
+    """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
+    own = drive.body_shape()
+    try:
+        theirs = {str(name): float(value) for name, value in json.loads(str(attributes["shape"])).items()}
+    except (ValueError, TypeError, AttributeError) as error:
+        raise CycloError(f"{path}: cannot be read as a coefficient file: attribute shape: {error}") from error
+    if theirs == own:
+        return False
+    nominal = replace(drive, clearance=Clearance()).body_shape()
+    if theirs == nominal and bool(attributes["clearances_left_out"]):
+        return True
+    names = [name for name in own if theirs.get(name) != own[name]]
+    if set(names) <= {"bore_radius", "hole_radius"}:
+        bearing, hole = (f"{float(attributes[name]):g} mm" for name in ("bearing_clearance", "pin_hole_clearance"))
         raise CycloError(
-            f"{path}: belongs to another drive ({data.attrs.get('drive', '?')}, shape {data.attrs['fingerprint']}); "
-            f"this one is {drive.name} with shape {drive.shape_fingerprint()}: derive its own (cyclo derive)"
+            f"{path}: belongs to the clearances bearing {bearing} and pin hole {hole}, not to clearance.bearing = "
+            f"{drive.clearance.bearing:g} mm and clearance.pin_hole = {drive.clearance.pin_hole:g} mm of this case: derive "
+            "its own (cyclo derive --case), or a file that leaves them out on purpose (cyclo derive --without-clearance)"
         )
+    differences = ", ".join(f"{name} {theirs.get(name, float('nan')):g} (here {own[name]:g})" for name in names)
+    raise CycloError(
+        f"{path}: belongs to another drive ({attributes.get('drive', '?')}); it differs from {drive.name} in "
+        f"{differences}: derive its own (cyclo derive)"
+    )
+
+
+def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) -> InfluenceCoefficients:
+    """Take the half-plane's logarithm off every entry of a file."""
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
     boundary = data["station_boundary"].values.astype(int)
     places = data["station_x"].values + 1j * data["station_y"].values
@@ -243,6 +311,8 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
     race = data["race_approach"].values + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
     return InfluenceCoefficients(
+        fingerprint=drive.shape_fingerprint(),
+        shared=shared,
         plane=plane,
         thickness=thickness,
         flank=stations(0),
@@ -265,9 +335,10 @@ def _self_logarithm(half_width: FloatArray) -> FloatArray:
 
 def without_coupling(drive: Drive) -> InfluenceCoefficients:
     """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
-    geometry = ContactGeometry.of_drive(drive)
-    holes = geometry.placement.hole_radii.size
+    holes = drive.pin_shaft.number_of_pins
     return InfluenceCoefficients(
+        fingerprint=drive.shape_fingerprint(),
+        shared=False,
         plane="none",
         thickness=drive.disc.thickness,
         flank=Boundary(first=0, count=LAGRANGE_POINTS),

@@ -4,8 +4,9 @@ Every approach is the sum of the contact's own law and what the loads on the bod
 
 .. math:: \delta_i(q) = w_i(F_i) + \sum_j C_{ij} F_j ,
 
-with the law of the near field w (half-space of finite length: `hybrid`; plane strain with a datum: `fe`) and the body
-part C of `ltca.compliance.coefficients`. The unknowns at a pose are the near-field approaches ε: F = f(ε) is zero where ε is
+with the law of the near field w (`ltca.compliance.near_field`: half-spaces with the lengths and profiles of the parts
+for `hybrid`, plane strain with a datum for `fe`) and the body part C of `ltca.compliance.coefficients`, in which pins
+and race are as thick as the disc and rollers as long as they are. The unknowns at a pose are the near-field approaches ε: F = f(ε) is zero where ε is
 negative, so that no contact has to be switched on or off, and Newton's method solves
 
 .. math:: R(\epsilon) = \epsilon + C f(\epsilon) - \delta(q) = 0 .
@@ -23,16 +24,17 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.beyond_near_field import NearField, OwnParts
+from ltca.compliance.beyond_near_field import OwnParts
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.near_field import NearField, NearFieldLaws
+from ltca.compliance.pressures import hole_effective_radii, pressures_of_law
 from ltca.compliance.response import ContactPressures, KindPressures, Response, Start, resultant
 from ltca.compliance.rollers import RollerState
-from ltca.drive.parts import Drive, contact_modulus
-from ltca.errors import ConvergenceError
+from ltca.contact.tracked_grid import ContactKind
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
 from ltca.laws.contact_law import ContactLaw, LoadLaw
-from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.plane_strain import PlaneContactLaw
 from ltca.laws.series import SeriesLaw, SpringLaw, approach_at_load
 
 FloatArray = NDArray[np.float64]
@@ -52,9 +54,9 @@ class CoupledCompliance:
     geometry : ContactGeometry
         The contact geometry of the drive.
     coefficients : InfluenceCoefficients
-        Body parts.
-    pin_law, outer_law, inner_law : ContactLaw
-        Near fields of wheel pins and rollers.
+        Body parts, rollers as long as they are.
+    near_field : NearFieldLaws
+        Laws of the near fields.
     hole_law : LoadLaw
         Spring of the shaft pin, with the hole wall's near field in series if it counts.
     outer_radius, inner_radius : array, shape (n_BR,)
@@ -67,9 +69,7 @@ class CoupledCompliance:
 
     geometry: ContactGeometry
     coefficients: InfluenceCoefficients
-    pin_law: ContactLaw
-    outer_law: ContactLaw
-    inner_law: ContactLaw
+    near_field: NearFieldLaws
     hole_law: LoadLaw
     outer_radius: FloatArray
     inner_radius: FloatArray
@@ -93,36 +93,37 @@ class CoupledCompliance:
             The drive.
         coefficients : InfluenceCoefficients
             Of this drive.
-        near_field : {"fe", "hybrid"}
-            Plane strain, or half-space of finite length.
+        near_field : {"plane-strain", "half-space"}
+            Plane strain, or half-spaces of finite length with the profiles of rollers and pins.
         hole_near_field : bool
             Whether the hole wall yields like a Hertz contact with a rigid pin.
+
+        Raises
+        ------
+        DriveError
+            When the coefficients are those of other bodies, or plane strain cannot say what the drive has.
         """
+        if coefficients.fingerprint != drive.shape_fingerprint():
+            raise DriveError(
+                [
+                    f"influence coefficients of the shape {coefficients.fingerprint}: must be those of {drive.name}, shape "
+                    f"{drive.shape_fingerprint()}"
+                ]
+            )
         geometry = ContactGeometry.of_drive(drive)
-        place, parts, bearing = geometry.placement, drive.materials, drive.crank_bearing
-        thickness = drive.disc.thickness
-        # A depth about which the body part takes over from the near field; only its logarithm enters, and cancels
-        # where both are in plane strain.
-        datum = max(thickness, drive.pin_wheel.pin_radius, bearing.roller_radius)
-
-        def law(modulus: float, length: float) -> ContactLaw:
-            if near_field == "fe":
-                return PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
-            return LineContactLaw(length, modulus)
-
-        hole_modulus = 1.0 / parts.disc.plane_strain_compliance
+        place = geometry.placement
+        laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
+        body = coefficients.with_roller_length(drive.crank_bearing.roller_length)
         spring = SpringLaw(stiffness=drive.pin_shaft.stiffness)
         return cls(
             geometry=geometry,
-            coefficients=coefficients,
-            pin_law=law(contact_modulus(parts.disc, parts.wheel_pin), thickness),
-            outer_law=law(contact_modulus(parts.disc, parts.roller), bearing.roller_length),
-            inner_law=law(contact_modulus(parts.inner_race, parts.roller), bearing.roller_length),
-            hole_law=SeriesLaw(spring=spring, contact=law(hole_modulus, thickness)) if hole_near_field else spring,
+            coefficients=body,
+            near_field=laws,
+            hole_law=SeriesLaw(spring=spring, contact=laws.hole) if hole_near_field else spring,
             outer_radius=1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius),
             inner_radius=1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius),
-            hole_radius=1.0 / (1.0 / place.shaft_pin_radii - 1.0 / place.hole_radii),
-            own=OwnParts.of_drive(drive, coefficients, near_field, datum),
+            hole_radius=hole_effective_radii(place),
+            own=OwnParts.of_drive(drive, geometry, body, near_field, laws.datum),
         )
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
@@ -155,15 +156,21 @@ class CoupledCompliance:
         return batch.response(batch.solve(guess))
 
     def pressures(self, response: Response) -> ContactPressures:
-        """Return pressures and half-widths from the near fields; largest pressures are those at mid-width."""
-        near = np.stack(list(response.memory))
-        pins = response.pin_load.shape[1]
-        rollers = response.rollers.outer_load.shape[1]
-        inner, _ = approach_at_load(self.inner_law, response.rollers.inner_load, self.inner_radius)
+        """Return pressures and half-widths from the near fields."""
+        laws, near = self.near_field, np.stack(list(response.memory))
+        pins, rollers = response.pin_load.shape[1], self.outer_radius.size
+        inner, _ = approach_at_load(laws.inner, response.rollers.inner_load, self.inner_radius)
+        hole, _ = approach_at_load(laws.hole, response.hole_load, self.hole_radius)
+
+        def read(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
+            return pressures_of_law(law, kind if laws.has_ends else None, approach, radius)
+
         return ContactPressures(
-            pins=_pressures(self.pin_law, near[:, :pins], response.flank.effective_radius),
-            outer=_pressures(self.outer_law, near[:, pins : pins + rollers], self.outer_radius),
-            inner=_pressures(self.inner_law, inner, self.inner_radius),
+            pins=read(laws.pin, laws.kinds.pins, near[:, :pins], response.flank.effective_radius),
+            outer=read(laws.outer, laws.kinds.outer, near[:, pins : pins + rollers], self.outer_radius),
+            inner=read(laws.inner, laws.kinds.inner, inner, self.inner_radius),
+            holes=read(laws.hole, laws.kinds.holes, hole, self.hole_radius),
+            rigid_shaft_pins=laws.rigid_shaft_pins,
         )
 
 
@@ -222,8 +229,8 @@ class _Batch:
         """Return loads and stiffnesses of the near fields."""
         m = self.model
         parts = (
-            m.pin_law.load_and_stiffness(near[:, : self.pins], self.flank.effective_radius),
-            m.outer_law.load_and_stiffness(near[:, self.outer], m.outer_radius),
+            m.near_field.pin.load_and_stiffness(near[:, : self.pins], self.flank.effective_radius),
+            m.near_field.outer.load_and_stiffness(near[:, self.outer], m.outer_radius),
             m.hole_law.load_and_stiffness(near[:, self.outer.stop :], m.hole_radius),
         )
         load, stiffness = (np.concatenate(columns, axis=1) for columns in zip(*parts, strict=True))
@@ -237,7 +244,9 @@ class _Batch:
         cross = m.coefficients.roller[0, 1]
         for _ in range(2):  # the direction of the outer load hardly turns with the roller's place
             self.inner_load = outer_load * self.cosine
-            self.inner_near, self.inner_compliance = approach_at_load(m.inner_law, self.inner_load, m.inner_radius)
+            self.inner_near, self.inner_compliance = approach_at_load(
+                m.near_field.inner, self.inner_load, m.inner_radius
+            )
             inner = self.inner_near + np.einsum("bij,bj->bi", self.race, self.inner_load) + cross * outer_load
             self.place_rollers(inner)
         self.inner_approach = inner
@@ -323,11 +332,6 @@ class _Batch:
             hole_load=load[:, outer.stop :],
             memory=memory,
         )
-
-
-def _pressures(law: ContactLaw, approach: FloatArray, radius: FloatArray) -> KindPressures:
-    mid = law.mid_pressure(approach, radius)
-    return KindPressures(mid=mid, largest=mid, half_width=law.half_width(approach, radius), end_cell=0.0)
 
 
 Motion = TypeVar("Motion", FlankMotion, PairMotion)

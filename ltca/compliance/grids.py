@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.compliance.pressures import elastic_hole_pressures
 from ltca.compliance.response import (
     ContactPressures,
     KindPressures,
@@ -119,12 +120,14 @@ class GridCompliance:
         )
 
     def pressures(self, response: Response) -> ContactPressures:
-        """Return pressures and half-widths at mid-width from the grids."""
+        """Return pressures and half-widths from the grids, those of the shaft pins from their loads."""
         flank, rollers, memory = response.flank, response.rollers, response.memory
         return ContactPressures(
             pins=_read_grids([entry.pins for entry in memory], flank.approach, self.kinds.pins),
             outer=_read_grids([entry.outer for entry in memory], rollers.outer_approach, self.kinds.outer),
             inner=_read_grids([entry.inner for entry in memory], rollers.inner_approach, self.kinds.inner),
+            holes=elastic_hole_pressures(self.kinds.holes, response.hole_load, self.geometry.placement),
+            rigid_shaft_pins=False,
         )
 
     def _press_pins(self, flank: FlankMotion, memory: NDArray[np.object_]) -> tuple[FloatArray, FloatArray]:

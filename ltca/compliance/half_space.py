@@ -8,17 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_law
 from ltca.compliance.response import (
     ContactPressures,
-    KindPressures,
     Response,
     Start,
     assemble_response,
     spring_load_and_stiffness,
 )
 from ltca.compliance.rollers import RollerLaws, balance_rollers
-from ltca.contact.end_pressure import largest_pressure_ratio
-from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.geometry.pairs import ContactGeometry, disc_displacement
 from ltca.laws.contact_law import ContactLaw
@@ -179,23 +178,15 @@ class HalfSpaceCompliance:
         return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers)
 
     def pressures(self, response: Response) -> ContactPressures:
-        """Return the pressures at mid-width from the laws."""
+        """Return the pressures from the laws."""
         flank, rollers, laws, kinds = response.flank, response.rollers, self.roller_laws, self.kinds
         return ContactPressures(
-            pins=_read_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
-            outer=_read_law(laws.outer, kinds.outer, rollers.outer_approach, laws.outer_radius),
-            inner=_read_law(laws.inner, kinds.inner, rollers.inner_approach, laws.inner_radius),
+            pins=pressures_of_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
+            outer=pressures_of_law(laws.outer, kinds.outer, rollers.outer_approach, laws.outer_radius),
+            inner=pressures_of_law(laws.inner, kinds.inner, rollers.inner_approach, laws.inner_radius),
+            holes=elastic_hole_pressures(kinds.holes, response.hole_load, self.geometry.placement),
+            rigid_shaft_pins=False,
         )
-
-
-def _read_law(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
-    mid = law.mid_pressure(approach, radius)
-    return KindPressures(
-        mid=mid,
-        largest=mid * largest_pressure_ratio(kind, approach, radius),
-        half_width=law.half_width(approach, radius),
-        end_cell=kind.end_cell,
-    )
 
 
 def batch_signature(drive: Drive) -> tuple[object, ...]:

@@ -59,11 +59,12 @@ class KindPressures:
     mid : array, shape (positions, pairs)
         Largest pressure at mid-width, MPa.
     largest : array, shape (positions, pairs)
-        Largest pressure anywhere, MPa: at unrelieved ends it is singular and depends on the end cell.
+        Largest pressure anywhere, MPa: at unrelieved ends it is singular and depends on the end cell. Not a number
+        in plane strain, which has no ends.
     half_width : array, shape (positions, pairs)
         Contact half-width at mid-width, mm.
     end_cell : float
-        Length of the end cell behind `largest`, mm.
+        Length of the end cell behind `largest`, mm; not a number where that is none.
     """
 
     mid: FloatArray
@@ -74,11 +75,25 @@ class KindPressures:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactPressures:
-    """Pressures of wheel pins and flank, rollers in the bore (outer) and on the inner race (inner)."""
+    """Pressures of all contacts.
+
+    Attributes
+    ----------
+    pins : KindPressures
+        Wheel pins and flank.
+    outer, inner : KindPressures
+        Rollers in the bore and on the inner race.
+    holes : KindPressures
+        Shaft pins and holes (`ltca.compliance.pressures`).
+    rigid_shaft_pins : bool
+        Whether those are the pressures of rigid shaft pins: E* of the disc alone.
+    """
 
     pins: KindPressures
     outer: KindPressures
     inner: KindPressures
+    holes: KindPressures
+    rigid_shaft_pins: bool
 
 
 class ComplianceModel(Protocol):

@@ -80,11 +80,12 @@ class ContactKind:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactKinds:
-    """The kinds of half-space contacts of a drive: flank and pins, rollers on the inner race and in the bore."""
+    """The kinds of half-space contacts of a drive: flank and pins, rollers on the inner race and in the bore, holes."""
 
     pins: ContactKind
     inner: ContactKind
     outer: ContactKind
+    holes: ContactKind
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> ContactKinds:
@@ -118,6 +119,13 @@ class ContactKinds:
                 length=bearing.roller_length,
                 contact_modulus=contact_modulus(parts.disc, parts.roller),
                 generator=roller,
+                symmetric=True,
+                cells=cells,
+            ),
+            holes=ContactKind(
+                length=drive.disc.thickness,
+                contact_modulus=contact_modulus(parts.disc, parts.shaft_pin),
+                generator=None,
                 symmetric=True,
                 cells=cells,
             ),

@@ -324,26 +324,44 @@ class Drive:
         """Return a hash of everything that defines the drive in this case (hex, 16 digits)."""
         return _hash(asdict(self))
 
-    def shape_fingerprint(self) -> str:
-        """Return a hash of shapes and materials alone: without name, load, clearances and errors of single parts.
+    def body_shape(self) -> dict[str, float]:
+        """Return every number that plane finite-element bodies of the drive are made of: what their compliance belongs to.
 
-        Influence coefficients of the bodies belong to it: clearances of some hundredths of a millimetre do not
-        change them noticeably.
+        Bore and holes are as wide as they are, clearances included. Errors of single parts never enter. What no plane body
+        has is left out: load, name, lengths and profiles along the length, numbers of rollers and discs, and all of the
+        shaft pins but their number and circle, which are those of the holes.
+
+        Returns
+        -------
+        dict of str to float
+            By field, or by the name of what several fields make: mm, MPa, counts.
         """
-        shape = asdict(self)
-        for part in ("name", "load", "clearance"):
-            del shape[part]
-        deviations = {
-            "crank": ("eccentricity_error", "axis_offset"),
-            "pin_wheel": ("pin_errors", "axis_offset"),
-            "disc": ("hole_errors", "profile_errors", "runout"),
-            "pin_shaft": ("pin_errors",),
-            "crank_bearing": ("roller_errors",),
+        wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
+        shape = {
+            "crank.eccentricity": self.crank.eccentricity,
+            "pin_wheel.number_of_pins": float(wheel.number_of_pins),
+            "pin_wheel.pin_radius": wheel.pin_radius,
+            "generating_circle_radius": wheel.pin_circle_radius + disc.shifting_offset,
+            "generating_pin_radius": wheel.pin_radius + disc.equidistant_offset,
+            "disc.number_of_teeth": float(disc.number_of_teeth),
+            "disc.thickness": disc.thickness,
+            "crank_bearing.inner_race_radius": bearing.inner_race_radius,
+            "crank_bearing.roller_radius": bearing.roller_radius,
+            "bore_radius": self.bore_radius,
+            "pin_shaft.number_of_pins": float(shaft.number_of_pins),
+            "pin_shaft.pin_circle_radius": shaft.pin_circle_radius,
+            "hole_radius": self.hole_radius,
         }
-        for part, names in deviations.items():
-            for name in names:
-                del shape[part][name]
-        return _hash(shape)
+        for part in ("disc", "wheel_pin", "roller", "inner_race"):
+            material: Material = getattr(self.materials, part)
+            shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
+            shape[f"materials.{part}.poisson_ratio"] = material.poisson_ratio
+        # Sums of radii and clearances must not differ by their rounding.
+        return {name: float(f"{value:.12g}") for name, value in shape.items()}
+
+    def shape_fingerprint(self) -> str:
+        """Return a hash of `body_shape` (hex, 16 digits): influence coefficients of the bodies belong to it."""
+        return _hash(self.body_shape())
 
 
 def _hash(definition: dict[str, Any]) -> str:

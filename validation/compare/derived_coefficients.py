@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,15 +13,32 @@ from fem.coefficients.dataset import derive_coefficients
 from fem.coefficients.file import read_coefficients, write_coefficients
 from fem.errors import MeshError
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Clearance, Drive
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def has_clearance(drive: Drive) -> bool:
-    """Return whether the disc of this case differs from the nominal one."""
-    return drive.clearance.bearing > 0.0 or drive.clearance.pin_hole > 0.0
+def nominal_coefficients_of(
+    drive: Drive, case: str, folder: Path, *, progress: Callable[[str], None] | None = None
+) -> InfluenceCoefficients | None:
+    """Return the coefficients that all clearance cases could share, lent to this one; None when it has no clearance.
+
+    Parameters
+    ----------
+    drive : Drive
+        In the case.
+    case : str
+        Its name, for the record.
+    folder : Path
+        Where files are kept.
+    progress : callable, optional
+        Called with each step.
+    """
+    if drive.clearance == Clearance():
+        return None
+    _, nominal = coefficients_of(replace(drive, clearance=Clearance()), case, folder, progress=progress)
+    return nominal.lent_to(drive)
 
 
 def coefficients_of(
@@ -30,7 +48,6 @@ def coefficients_of(
     *,
     plane: PlaneState = "strain",
     size: float = 1.0,
-    keep_clearance: bool = True,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[xr.Dataset, InfluenceCoefficients]:
     """Return the coefficients of a case's disc, from its file if there is one that fits.
@@ -47,8 +64,6 @@ def coefficients_of(
         State of the bodies.
     size : float
         Multiple of the element edges.
-    keep_clearance : bool
-        Whether the disc has the bearing and pin-hole clearance of the case; else it is the one all cases share.
     progress : callable, optional
         Called with each step.
 
@@ -62,16 +77,14 @@ def coefficients_of(
     CycloError
         When meshing fails or the file cannot be written.
     """
-    kept = keep_clearance and has_clearance(drive)
-    bearing, hole = (drive.clearance.bearing, drive.clearance.pin_hole) if kept else (0.0, 0.0)
-    path = folder / f"{drive.shape_fingerprint()}_{bearing:g}_{hole:g}_{plane}_{size:g}.nc"
+    path = folder / f"{drive.shape_fingerprint()}_{plane}_{size:g}.nc"
     try:
         dataset = read_coefficients(path)
         fits = dataset.attrs.get("version") == version("cyclo-ltca")
     except MeshError:
         fits = False
     if not fits:
-        derived = derive_coefficients(drive, case=case, size=size, state=plane, keep_clearance=kept, progress=progress)
+        derived = derive_coefficients(drive, case=case, size=size, state=plane, progress=progress)
         write_coefficients(derived, path)
         dataset = read_coefficients(path)
     return dataset, load_coefficients(path, drive)

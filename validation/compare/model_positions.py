@@ -8,11 +8,8 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Compliance, Engine, HalfSpace, engine_named
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
-from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.plane_strain import PlaneContactLaw
-from ltca.laws.series import SeriesLaw, approach_at_load
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 FloatArray = NDArray[np.float64]
@@ -61,7 +58,7 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
     """Return an analysis position by position."""
     full, response, pressures = analysis.full, analysis.full.response, analysis.pressures
     displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * full.crank_angle)
-    hole_pressure, hole_width = _hole_contacts(analysis)
+    hole_pressure, hole_width = _hole_contacts(pressures)
     columns: dict[Kind, tuple[FloatArray, FloatArray, FloatArray]] = {
         "pin": (response.pin_load, pressures.pins.mid, pressures.pins.half_width),
         "roller_outer": (response.rollers.outer_load, pressures.outer.mid, pressures.outer.half_width),
@@ -85,14 +82,9 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
     ]
 
 
-def _hole_contacts(analysis: LoadedAnalysis) -> tuple[FloatArray, FloatArray]:
-    """Return pressures and half-widths of shaft pins: the near field of the model at the load found."""
-    load = analysis.full.response.hole_load
-    model = analysis.model
-    if not (isinstance(model, CoupledCompliance) and isinstance(model.hole_law, SeriesLaw)):
-        return np.full(load.shape, np.nan), np.full(load.shape, np.nan)
-    law, radius = model.hole_law.contact, np.broadcast_to(model.hole_radius, load.shape)
-    if not isinstance(law, PlaneContactLaw | LineContactLaw):
-        raise TypeError(f"the near field of a hole is a {type(law).__name__}, which knows no pressure")
-    approach, _ = approach_at_load(law, load, radius)
-    return law.mid_pressure(approach, radius), law.half_width(approach, radius)
+def _hole_contacts(pressures: ContactPressures) -> tuple[FloatArray, FloatArray]:
+    """Return pressures and half-widths of rigid shaft pins, as full FE has them; no numbers where the pins are elastic."""
+    holes = pressures.holes
+    if not pressures.rigid_shaft_pins:
+        return np.full(holes.mid.shape, np.nan), np.full(holes.mid.shape, np.nan)
+    return holes.mid, holes.half_width

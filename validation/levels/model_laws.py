@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +12,7 @@ from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
 from ltca.laws.series import approach_at_load
 from validation.compare.comparison import ARCSECONDS, compare_positions
@@ -94,6 +94,7 @@ def widen(drive: Drive, coefficients: InfluenceCoefficients, width: float) -> tu
     )
     scaled = replace(
         coefficients,
+        fingerprint=wide.shape_fingerprint(),
         thickness=width * coefficients.thickness,
         disc=coefficients.disc / width,
         pin=coefficients.pin / width,
@@ -110,7 +111,7 @@ def widen(drive: Drive, coefficients: InfluenceCoefficients, width: float) -> tu
 def pair_approaches(
     drive: Drive,
     coefficients: InfluenceCoefficients,
-    near_field: Literal["fe", "hybrid"],
+    near_field: NearField,
     crank_angle: float,
     load: FloatArray,
 ) -> FloatArray:
@@ -131,7 +132,7 @@ def pair_approaches(
     )
     pins = flank.parameter.shape[1]
     body = np.einsum("bii->bi", matrix)[0, :pins] + model.own.pin
-    near, _ = approach_at_load(model.pin_law, load, flank.effective_radius[0])
+    near, _ = approach_at_load(model.near_field.pin, load, flank.effective_radius[0])
     return np.asarray(near + body * load)
 
 
@@ -144,8 +145,8 @@ def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: Influ
     gaps = []
     for width in WIDTHS:
         wide, scaled = widen(drive, coefficients, width)
-        plane = pair_approaches(wide, scaled, "fe", angle, width * load)[loaded]
-        finite = pair_approaches(wide, scaled, "hybrid", angle, width * load)[loaded]
+        plane = pair_approaches(wide, scaled, "plane-strain", angle, width * load)[loaded]
+        finite = pair_approaches(wide, scaled, "half-space", angle, width * load)[loaded]
         gaps.append(finite / plane - 1.0)
     worst = [float(gap[np.argmax(np.abs(gap))]) for gap in gaps]
     rows = [

@@ -210,7 +210,7 @@ def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
     positions : list of ComparedPosition
         Of one case with clearance, with the coefficients of the disc without any.
     """
-    cause = "cyclo run derives one file for all clearance cases, whose disc has none: what that costs; informs only"
+    cause = "what one file without clearances for all cases costs (cyclo derive --without-clearance); informs only"
     rows = []
     for position in positions:
         difference = position.differences["fe"]

@@ -1,0 +1,70 @@
+"""Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their loads.
+
+A shaft pin is smaller than its hole by about the eccentricity: a conforming line contact over the thickness of the
+disc, Hertz's as long as its half-width is small against the pin. Who yields there is what the model's load law says:
+
+- The pin on a spring alone (half-space models, and the others without the near field of the hole): the spring says
+  nothing of the contact, so the pressure is that of the real materials, E* of disc and shaft pin.
+- A rigid pin against the yielding wall (``fe`` and ``hybrid``, as in full FE): E* of the disc alone. For a pin of the
+  disc's material that is √2 of the other at the same load, on the safe side.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import KindPressures
+from ltca.contact.end_pressure import largest_pressure_ratio
+from ltca.contact.tracked_grid import ContactKind
+from ltca.geometry.placement import Placement
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.series import approach_at_load
+
+FloatArray = NDArray[np.float64]
+
+
+def pressures_of_law(
+    law: ContactLaw, ends: ContactKind | None, approach: FloatArray, effective_radius: FloatArray
+) -> KindPressures:
+    """Return pressures and half-widths of contacts at their approaches.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        Of the contacts.
+    ends : ContactKind or None
+        What pressures at the ends are read from; None in plane strain, which has no ends.
+    approach : array, shape (positions, pairs)
+        Of the contacts themselves, mm.
+    effective_radius : array
+        mm; broadcast to that shape.
+    """
+    mid, half_width = law.mid_pressure(approach, effective_radius), law.half_width(approach, effective_radius)
+    if ends is None:
+        return KindPressures(mid=mid, largest=np.full(mid.shape, np.nan), half_width=half_width, end_cell=np.nan)
+    largest = mid * largest_pressure_ratio(ends, approach, effective_radius)
+    return KindPressures(mid=mid, largest=largest, half_width=half_width, end_cell=ends.end_cell)
+
+
+def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement) -> KindPressures:
+    """Return pressures and half-widths of elastic shaft pins in their holes, half-spaces of finite length.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        Of the holes, E* of disc and shaft pin.
+    load : array, shape (positions, holes)
+        N.
+    place : Placement
+        For the radii.
+    """
+    law, radius = LineContactLaw(kind.length, kind.contact_modulus), hole_effective_radii(place)
+    approach, _ = approach_at_load(law, load, radius)
+    return pressures_of_law(law, kind, approach, radius)
+
+
+def hole_effective_radii(place: Placement) -> FloatArray:
+    """Return the effective radii of shaft pins in their holes, mm: 1/(1/r_PS − 1/r_PSH)."""
+    return np.asarray(1.0 / (1.0 / place.shaft_pin_radii - 1.0 / place.hole_radii))

@@ -1,0 +1,58 @@
+"""What plane strain cannot say about a drive: whatever varies along the length of its rollers and pins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ltca.drive.parts import Drive, LengthProfile
+from ltca.errors import DriveError
+
+ROUNDING = 1e-9
+"""Lengths that differ by less than this part of the thickness are one length."""
+
+
+def require_plane_strain(drive: Drive, model: str) -> None:
+    """Refuse a drive that is not the same all along its thickness.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    model : str
+        What it is refused by, for the message.
+
+    Raises
+    ------
+    DriveError
+        One sentence for each field: rollers shorter than the disc, crown and relief of rollers and pins.
+    """
+    problems = list(_find_problems(drive, model))
+    if problems:
+        raise DriveError(problems)
+
+
+def _find_problems(drive: Drive, model: str) -> Iterator[str]:
+    wheel, bearing, thickness = drive.pin_wheel, drive.crank_bearing, drive.disc.thickness
+    way_out = "--compliance hybrid can"
+    if abs(bearing.roller_length - thickness) > ROUNDING * thickness:
+        yield (
+            f"crank_bearing.roller_length = {bearing.roller_length:g} mm: must be {thickness:g} mm, the thickness of the "
+            f"disc, for {model}: plane strain cannot say otherwise, {way_out}"
+        )
+    for path, profile in (
+        ("crank_bearing.roller_profile", bearing.roller_profile),
+        ("pin_wheel.pin_profile", wheel.pin_profile),
+    ):
+        for name, value in _departures(profile):
+            yield f"{path}.{name} = {value}: must be 0 for {model}: plane strain cannot say otherwise, {way_out}"
+
+
+def _departures(profile: LengthProfile) -> Iterator[tuple[str, str]]:
+    """Yield the fields that make a profile depart from the cylinder: a relief takes both its length and its depth."""
+    if profile.crown_drop > 0.0:
+        yield "crown_drop", f"{profile.crown_drop:g} mm"
+    if profile.logarithmic_factor > 0.0:
+        yield "logarithmic_factor", f"{profile.logarithmic_factor:g}"
+    if profile.end_relief_length > 0.0 and profile.end_relief_depth > 0.0:
+        yield "end_relief_length", f"{profile.end_relief_length:g} mm"
+        yield "end_relief_depth", f"{profile.end_relief_depth:g} mm"
