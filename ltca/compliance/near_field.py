@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import require_plane_strain
+from ltca.errors import DriveError
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import PlaneContactLaw
@@ -62,8 +63,10 @@ class NearFieldLaws:
         Raises
         ------
         DriveError
-            In plane strain, when the drive is not the same all along its thickness.
+            For another kind; in plane strain, when the drive is not the same all along its thickness.
         """
+        if kind not in get_args(NearField):
+            raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
         parts, thickness = drive.materials, drive.disc.thickness
         wall = 1.0 / parts.disc.plane_strain_compliance
         at_hole = wall if rigid_shaft_pins else contact_modulus(parts.disc, parts.shaft_pin)

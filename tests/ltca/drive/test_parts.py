@@ -6,7 +6,9 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
+from ltca.drive.fields import element_count, field_kinds, read_field
 from ltca.drive.parts import LengthProfile, Material, contact_modulus
+from ltca.reading.changes import with_fields
 
 
 def test_paper_drive(paper_cases):
@@ -52,3 +54,52 @@ def test_length_profile_of_a_cylinder():
         LengthProfile(end_relief_length=1.0, end_relief_depth=1e-3),
     ):
         assert not profile.is_cylinder
+
+
+# What plane finite-element bodies are made of: flank, bore, holes and thickness of the disc; pins, rollers, race; materials.
+OF_THE_BODIES = """
+crank.eccentricity pin_wheel.number_of_pins pin_wheel.pin_circle_radius pin_wheel.pin_radius disc.number_of_teeth
+disc.thickness disc.equidistant_offset disc.shifting_offset crank_bearing.inner_race_radius
+crank_bearing.outer_race_radius crank_bearing.roller_radius pin_shaft.number_of_pins pin_shaft.pin_circle_radius
+pin_shaft.hole_radius clearance.bearing clearance.pin_hole
+materials.disc.youngs_modulus materials.disc.poisson_ratio materials.wheel_pin.youngs_modulus
+materials.wheel_pin.poisson_ratio materials.roller.youngs_modulus materials.roller.poisson_ratio
+materials.inner_race.youngs_modulus materials.inner_race.poisson_ratio
+""".split()
+
+
+def changed(drive, path):
+    """The drive with another value of one field, whether or not it makes a sound drive."""
+    value, kind = read_field(drive, path), field_kinds()[path]
+    if kind.is_array:
+        new = (1,) if path.endswith("orders") else (1e-3,) * (element_count(drive, path) or 1)
+    elif path == "name":
+        new = "other"
+    elif path == "load.direction":
+        new = "cw"
+    elif isinstance(value, int):
+        new = value + 1
+    elif path == "disc.torque_share":
+        new = 0.5
+    else:
+        new = value * 1.01 + (0.0 if value else 1e-3)
+    return with_fields(drive, {path: new}, check=False)
+
+
+@pytest.mark.parametrize("path", sorted(field_kinds()))
+def test_shape_fingerprint_is_that_of_the_bodies(path, paper_cases):
+    """Every field that makes the bodies, materials and clearances too, and no other: a needless derivation takes 20 s."""
+    drive = paper_cases["CS-6"]
+    other = changed(drive, path)
+    assert read_field(other, path) != read_field(drive, path)
+    assert (other.shape_fingerprint() != drive.shape_fingerprint()) == (path in OF_THE_BODIES)
+    assert other.fingerprint() != drive.fingerprint()
+
+
+def test_shape_fingerprint_of_one_bore_made_in_two_ways(vary):
+    """Race and half the clearance: the bodies know the bore alone, and not the rounding of its sum."""
+    wide = vary(crank_bearing={"outer_race_radius": 29.515})
+    clear = vary(clearance={"bearing": 0.03})
+    assert wide.bore_radius == pytest.approx(clear.bore_radius, abs=1e-12)
+    assert wide.shape_fingerprint() == clear.shape_fingerprint()
+    assert clear.shape_fingerprint() != vary().shape_fingerprint()

@@ -1,0 +1,138 @@
+"""Influence coefficients of bodies in closed form: a coefficient file without finite elements.
+
+Disc, wheel pins and race yield like half-planes whose depth is the datum, rollers like whole cylinders squeezed between
+two loads (K. L. Johnson, *Contact Mechanics* (1985), section 5.6). Contacts of one boundary feel each other like those of
+a half-plane, different boundaries not at all. What a model makes of such a file can be worked out by hand.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.contact.hertz import cylinder_approach, half_plane_approach
+from ltca.drive.parts import Drive, Material
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+PER_LOBE, BORE, PER_HOLE, RACE_ANGLES = 8, 12, 8, 24
+CROSS_SHARE = 0.1
+"""What the load at one end of a roller adds at the other, as a part of the half-plane's unit."""
+
+
+def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -> xr.Dataset:
+    """Return the content of a coefficient file of a drive in closed form.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive; errors of single parts do not matter.
+    half_width : float
+        Half-width of all patches, mm, small against their distances.
+    depth : float
+        Datum depth of disc, pins and race, mm.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables and attributes that a run needs of ``docs/coefficients.md``.
+    """
+    import xarray as xr
+
+    thickness, parts = drive.disc.thickness, drive.materials
+    boundaries = _station_places(drive)
+    boundary = np.repeat(np.arange(len(boundaries)), [len(places) for places in boundaries])
+    places = np.concatenate(boundaries)
+    same = boundary[:, None] == boundary[None, :]
+    disc = np.where(same, _half_plane(places, parts.disc, thickness, half_width, depth), 0.0)
+    angle = 2.0 * np.pi * np.arange(RACE_ANGLES) / RACE_ANGLES
+    on_race = drive.crank_bearing.inner_race_radius * np.exp(1j * angle)
+    race = _half_plane(on_race, parts.inner_race, thickness, half_width, depth)[0]
+    pin = _half_plane(np.zeros(1), parts.wheel_pin, thickness, half_width, depth)[0, 0]
+    unit = _unit(parts.roller, thickness)
+    squeezed = cylinder_approach(
+        1.0 / thickness,
+        half_width,
+        drive.crank_bearing.roller_radius,
+        parts.roller.youngs_modulus,
+        parts.roller.poisson_ratio,
+    )
+    across = CROSS_SHARE * unit
+    own = float(squeezed) - 0.25 * unit - across
+    return xr.Dataset(
+        {
+            "station_boundary": ("station", boundary),
+            "station_x": ("station", places.real),
+            "station_y": ("station", places.imag),
+            "station_half_width": ("station", np.full(places.shape, half_width)),
+            "disc_approach": (("station", "station_loaded"), disc),
+            "pin_approach": ((), pin),
+            "pin_half_width": ((), half_width),
+            "roller_approach": (("roller_end", "roller_end_loaded"), [[own, across], [across, own]]),
+            "roller_half_width": ("roller_end", [half_width, half_width]),
+            "race_angle": ("race_angle", angle),
+            "race_approach": ("race_angle", race),
+            "race_half_width": ((), half_width),
+        },
+        attrs={
+            "drive": drive.name,
+            "plane": "strain",
+            "thickness": thickness,
+            "fingerprint": drive.shape_fingerprint(),
+            "shape": json.dumps(drive.body_shape()),
+            "bearing_clearance": drive.clearance.bearing,
+            "pin_hole_clearance": drive.clearance.pin_hole,
+            "clearances_left_out": 0,
+        },
+    )
+
+
+def _unit(material: Material, thickness: float) -> float:
+    """2(1 − ν²)/(πEt), what the near field of a half-plane is a multiple of, mm/N."""
+    return 2.0 * (1.0 - material.poisson_ratio**2) / (np.pi * material.youngs_modulus * thickness)
+
+
+def _half_plane(
+    places: ComplexArray | FloatArray, material: Material, thickness: float, half_width: float, depth: float
+) -> FloatArray:
+    """Approach between patches of a half-plane whose datum lies deep below them, by a newton, mm.
+
+    The mean over a patch of its own displacement is a quarter of the unit less than that of its middle, which Johnson's
+    form gives; one far away sinks by −ln(distance) of the unit, wider patches by the square of their width less.
+    """
+    unit = _unit(material, thickness)
+    middle = half_plane_approach(
+        1.0 / thickness, half_width, depth, material.youngs_modulus, material.poisson_ratio
+    )
+    own = float(middle) - 0.25 * unit
+    distance = np.abs(places[:, None] - places[None, :])
+    apart = distance > 0.0
+    safe = np.where(apart, distance, half_width)
+    # Both have the same part that does not depend on the distance: own is unit (−ln(b/2) + 1/4 + part).
+    part = own / unit + np.log(0.5 * half_width) - 0.25
+    far = unit * (part - np.log(safe) + half_width**2 / (4.0 * safe**2))
+    return np.where(apart, far, own)
+
+
+def _station_places(drive: Drive) -> list[ComplexArray]:
+    """Return the stations of flank, bore and holes, uniform in their parameters, in the frame of the disc, mm."""
+    place = Placement.of_drive(drive)
+
+    def circle(count: int) -> ComplexArray:
+        return np.exp(2j * np.pi * np.arange(count) / count)
+
+    lobes = drive.disc.number_of_teeth
+    flank = FlankProfile.of_drive(drive).flank(2.0 * np.pi * np.arange(PER_LOBE * lobes) / (PER_LOBE * lobes))
+    holes = [
+        centre + radius * circle(PER_HOLE) for centre, radius in zip(place.hole_centres, place.hole_radii, strict=True)
+    ]
+    return [flank, place.bore_radius * circle(BORE), *holes]

@@ -1,0 +1,131 @@
+"""What the coupled models make of bodies in closed form: Johnson's half-planes and cylinders, whatever the patches.
+
+Each pair has the load it has in an equilibrium of the whole drive, its approach is read from the response.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.compliance.beyond_near_field import finite_length_approach
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.contact.hertz import cylinder_approach, half_plane_approach, line_half_width, strip_approach
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.testing.closed_form_bodies import CROSS_SHARE
+
+ANGLES = np.array([0.0, 0.5])
+STEEL = (206_000.0, 0.3)
+PLANE = 206_000.0 / 0.91
+"""E/(1 − ν²)."""
+DEPTH = 60.0
+ROLLER = 5.0
+
+
+def widened(drive, width, roller_share=1.0):
+    """The same drive `width` times as thick under that much more load, its rollers a part as long."""
+    thickness = width * drive.disc.thickness
+    load = drive.load
+    return replace(
+        drive,
+        disc=replace(drive.disc, thickness=thickness),
+        crank_bearing=replace(drive.crank_bearing, roller_length=roller_share * thickness),
+        pin_shaft=replace(drive.pin_shaft, stiffness=width * drive.pin_shaft.stiffness),
+        load=replace(load, torque=width * load.torque, light_torque=width * load.light_torque),
+    )
+
+
+def pair_approaches(model, drive):
+    """Loads, approaches and effective radii of the well-loaded pairs of each kind: what the pair itself adds up to.
+
+    A roller's two loads push it from both ends: each end yields to the other's load as well.
+    """
+    response = solve_equilibrium(model, ANGLES, drive.wheel_moment()).response
+    rollers, scale = response.rollers, 1.0 / (np.pi * PLANE * drive.crank_bearing.roller_length)
+    across = 2.0 * CROSS_SHARE * scale
+    kinds = {
+        "pin": (response.pin_load, response.flank.approach, response.flank.effective_radius),
+        "outer": (rollers.outer_load, rollers.outer_approach + across * rollers.inner_load, model.outer_radius),
+        "inner": (rollers.inner_load, rollers.inner_approach + across * rollers.outer_load, model.inner_radius),
+    }
+    found = {}
+    for kind, (load, approach, radius) in kinds.items():
+        loaded = load > 0.05 * load.max()
+        found[kind] = (load[loaded], approach[loaded], np.broadcast_to(radius, load.shape)[loaded])
+    return found
+
+
+def closed_forms(kind, load, radius, drive):
+    """Approach of the pair in plane strain: two half-planes, or a half-plane and a squeezed cylinder."""
+    line = load / drive.disc.thickness
+    width = line_half_width(line, radius, 0.5 * PLANE)
+    plane = half_plane_approach(line, width, DEPTH, *STEEL)
+    return plane + (plane if kind == "pin" else cylinder_approach(line, width, ROLLER, *STEEL))
+
+
+@pytest.mark.parametrize("half_width", [0.05, 0.2])
+def test_plane_strain_is_johnsons_whatever_the_patches(half_width, paper_cases, closed_form):
+    """The patch of the file, its own logarithm and self-energy, must leave no trace in the approach of a contact."""
+    drive = paper_cases["CS-6"]
+    model = CoupledCompliance.of_drive(drive, closed_form(drive, half_width=half_width, depth=DEPTH), "plane-strain")
+    for kind, (load, approach, radius) in pair_approaches(model, drive).items():
+        # the inner contact's law is inverted to 1e-9, and the balance holds to that
+        np.testing.assert_allclose(approach, closed_forms(kind, load, radius, drive), rtol=1e-7, err_msg=kind)
+
+
+def test_half_spaces_tend_to_plane_strain_with_the_width(paper_cases, closed_form):
+    """What is taken off is what the law holds: approaches differ by end effects alone, less the wider the drive.
+
+    A 2 % smaller subtraction or one without the self-energy of the patch (a quarter of some 7 units) shifts them by 3 %.
+    """
+    worst = []
+    for width in (1.0, 16.0, 256.0):
+        drive = widened(paper_cases["CS-1"], width)
+        model = CoupledCompliance.of_drive(drive, closed_form(drive, depth=DEPTH), "half-space")
+        pairs = pair_approaches(model, drive).items()
+        worst.append(
+            max(
+                float(np.max(np.abs(approach / closed_forms(kind, load, radius, drive) - 1.0)))
+                for kind, (load, approach, radius) in pairs
+            )
+        )
+    # 0.65, 0.36 and 0.20 % as they fade like one over the logarithm of the width
+    assert worst[0] < 1e-2
+    assert worst[2] < 3e-3
+    assert worst[2] < 0.7 * worst[1] < 0.5 * worst[0]
+
+
+def test_short_rollers_press_like_short_rollers(paper_cases, closed_form):
+    """Two thirds as long on a wide disc: the roller yields like one of its own length, the disc by what the shorter load
+    adds to that over its whole thickness (Lundberg's strips, both averaged alike)."""
+    drive = widened(paper_cases["CS-1"], 256.0, roller_share=2.0 / 3.0)
+    model = CoupledCompliance.of_drive(drive, closed_form(drive, depth=DEPTH), "half-space")
+    load, approach, radius = pair_approaches(model, drive)["outer"]
+    thickness, length = drive.disc.thickness, drive.crank_bearing.roller_length
+    short, whole = (line_half_width(load / size, radius, 0.5 * PLANE) for size in (length, thickness))
+    expected = (
+        cylinder_approach(load / length, short, ROLLER, *STEEL)
+        + half_plane_approach(load / thickness, whole, DEPTH, *STEEL)
+        + strip_approach(load / length, short, length, PLANE)[1]
+        - strip_approach(load / thickness, whole, thickness, PLANE)[1]
+    )
+    # Lundberg's means are those of an even load: 3 % of what half-spaces hold, of which a third is left here
+    np.testing.assert_allclose(approach, expected, rtol=0.015)
+    even = closed_forms("outer", load, radius, drive)
+    assert np.all(approach > 1.2 * even)
+
+
+@pytest.mark.parametrize(("length", "nearest"), [(10.0, 0.97), (1000.0, 0.993)])
+def test_what_a_half_space_holds_is_less_than_under_an_even_load(length, nearest):
+    """Lundberg's mean over an even strip bounds the approach of a straight cylinder, and they meet as it gets long.
+
+    By 2.0 and 0.4 %, a share that fades like the square of one over the logarithm of length by width.
+    """
+    half_width = 0.1
+    line = 1.0 / length
+    mean = float(strip_approach(line, half_width, length, 1.0)[1])
+    separation = half_width**2 / (8.0 * np.pi * half_width**2 / (4.0 * line))
+    ratio = finite_length_approach(length, half_width) / (mean - separation)
+    assert nearest < ratio < 1.0

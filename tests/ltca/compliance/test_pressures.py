@@ -1,0 +1,141 @@
+"""Pressures of all models: shaft pins in holes against Hertz, ends by one rule, none in plane strain."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficients import without_coupling
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.reading.changes import with_fields
+
+ANGLES = np.array([0.5, 2.0])
+STEEL, ALUMINIUM = (206_000.0, 0.3), (70_000.0, 0.33)
+SOFT_PINS = {"materials.shaft_pin.youngs_modulus": ALUMINIUM[0], "materials.shaft_pin.poisson_ratio": ALUMINIUM[1]}
+
+
+def compliance(material):
+    return (1.0 - material[1] ** 2) / material[0]
+
+
+def hertz(drive, load, total_compliance):
+    """Peak pressure and half-width of Hertz's line contact (Johnson 4.43, 4.45), 20 in 28 mm for the paper's drive."""
+    line = load / drive.disc.thickness
+    gap = drive.hole_radius - drive.pin_shaft.pin_radius
+    radius = drive.hole_radius * drive.pin_shaft.pin_radius / gap
+    return np.sqrt(line / (np.pi * radius * total_compliance)), np.sqrt(4.0 * line * radius * total_compliance / np.pi)
+
+
+@pytest.fixture(scope="module")
+def drive(paper_cases):
+    return paper_cases["CS-6"]
+
+
+@pytest.mark.parametrize("pins", ["steel", "aluminium"])
+def test_holes_of_half_spaces_press_elastic_pins(pins, drive):
+    """The spring carries the load; the pressure is that of the materials, lower by what goes to the ends."""
+    soft = pins == "aluminium"
+    own = with_fields(drive, SOFT_PINS) if soft else drive
+    pressures = (result := analyse(own, ANGLES)).pressures
+    load = result.full.response.hole_load
+    peak, width = hertz(drive, load, compliance(STEEL) + compliance(ALUMINIUM if soft else STEEL))
+    loaded = load > 0.05 * load.max()
+    assert not pressures.rigid_shaft_pins
+    # The ends of a straight contact take load off its middle: by 0.45/ln(4L/b) or so of it (see below), which is 12 %
+    # here, and pressure and half-width go like its root.
+    for found, expected in ((pressures.holes.mid, peak), (pressures.holes.half_width, width)):
+        ratio = found[loaded] / expected[loaded]
+        assert np.all((ratio > 0.92) & (ratio < 0.96))
+    assert np.all(pressures.holes.mid[load == 0.0] == 0.0)
+    assert np.all(pressures.holes.largest[loaded] > 1.5 * pressures.holes.mid[loaded])
+    assert pressures.holes.end_cell == 0.01 * drive.disc.thickness
+    np.testing.assert_array_equal(load, analyse(drive, ANGLES).full.response.hole_load)
+
+
+def test_wide_holes_press_like_hertz(drive):
+    """What the ends take off the middle fades like one over the logarithm of length by width: slowly, but to nothing."""
+    faded = []
+    for width in (1e2, 1e4):
+        wide = replace(
+            drive,
+            disc=replace(drive.disc, thickness=width * drive.disc.thickness),
+            crank_bearing=replace(drive.crank_bearing, roller_length=width * drive.disc.thickness),
+            pin_shaft=replace(drive.pin_shaft, stiffness=width * drive.pin_shaft.stiffness),
+            load=replace(drive.load, torque=width * drive.load.torque),
+        )
+        result = analyse(wide, ANGLES)
+        load = result.full.response.hole_load
+        peak, half_width = hertz(wide, load, 2.0 * compliance(STEEL))
+        loaded = load > 0.05 * load.max()
+        logarithm = np.log(4.0 * wide.disc.thickness / half_width[loaded])
+        for found, expected in ((result.pressures.holes.mid, peak), (result.pressures.holes.half_width, half_width)):
+            faded.append((1.0 - found[loaded] / expected[loaded]) * logarithm)
+    # of the root; a wrong radius, modulus or length would grow with the logarithm
+    assert np.all((np.array(faded) > 0.17) & (np.array(faded) < 0.27))
+
+
+def test_holes_of_plane_strain_press_rigid_pins(drive, closed_form):
+    """Hertz to the last digit, with the modulus of the disc alone; the spring's pin is elastic again without that wall."""
+    coefficients = closed_form(drive)
+    rigid = analyse(drive, ANGLES, engine=PlaneStrain(coefficients=coefficients))
+    load = rigid.full.response.hole_load
+    peak, width = hertz(drive, load, compliance(STEEL))
+    assert rigid.pressures.rigid_shaft_pins
+    np.testing.assert_allclose(rigid.pressures.holes.mid, peak, rtol=1e-8)
+    np.testing.assert_allclose(rigid.pressures.holes.half_width, width, rtol=1e-8)
+    elastic = analyse(drive, ANGLES, engine=PlaneStrain(coefficients=coefficients, hole_near_field=False))
+    assert not elastic.pressures.rigid_shaft_pins
+    peak, _ = hertz(drive, elastic.full.response.hole_load, 2.0 * compliance(STEEL))
+    np.testing.assert_allclose(elastic.pressures.holes.mid, peak, rtol=1e-8)
+
+
+def test_plane_strain_has_no_ends(drive, closed_form):
+    """Pressures at mid-width were given as those anywhere, of an end cell of no length."""
+    pressures = analyse(drive, ANGLES, engine=PlaneStrain(coefficients=closed_form(drive))).pressures
+    for kind in (pressures.pins, pressures.outer, pressures.inner, pressures.holes):
+        assert np.all(np.isnan(kind.largest))
+        assert np.isnan(kind.end_cell)
+        assert np.all(np.isfinite(kind.mid))
+
+
+def test_hybrid_has_the_ends_of_half_spaces(drive, closed_form):
+    """The same rule as on tables: without a body part the same pressures everywhere, with one about the same ratio."""
+    plain = analyse(drive, ANGLES).pressures
+    bare = Hybrid(coefficients=without_coupling(drive), hole_near_field=False)
+    same = analyse(drive, ANGLES, engine=bare).pressures
+    real = analyse(drive, ANGLES, engine=Hybrid(coefficients=closed_form(drive))).pressures
+    for kind in ("pins", "outer", "inner", "holes"):
+        one, other, third = (getattr(pressures, kind) for pressures in (plain, same, real))
+        for field in ("mid", "largest", "half_width"):
+            # a balance to 1e-9 of the load, and pressures that start like the root of the approach
+            atol = 1e-5 * np.max(getattr(one, field))
+            np.testing.assert_allclose(getattr(other, field), getattr(one, field), atol=atol, err_msg=kind)
+        assert other.end_cell == one.end_cell == third.end_cell > 0.0
+        loaded = third.mid > 0.3 * third.mid.max()
+        assert np.all(third.largest[loaded] > 1.5 * third.mid[loaded])
+    assert same.rigid_shaft_pins == plain.rigid_shaft_pins is False
+    assert real.rigid_shaft_pins
+
+
+def test_grids_press_holes_like_tables(drive):
+    tables, grids = (analyse(drive, ANGLES[:1], engine=HalfSpace(method=method)) for method in ("tables", "direct"))
+    # tables and grids share the load by 0.1 % and better, of which pressures have the root
+    np.testing.assert_allclose(grids.pressures.holes.mid, tables.pressures.holes.mid, rtol=2e-3)
+    assert grids.pressures.holes.end_cell == tables.pressures.holes.end_cell
+
+
+def test_holes_in_batches(drive):
+    """Row by row what each drive has alone, radii of its own included."""
+    drives = [drive, with_fields(drive, {"pin_shaft.pin_radius": 9.9, "clearance.pin_hole": 0.0})]
+    batch = HalfSpaceCompliance.of_drives(drives, ANGLES.size)
+    moments = np.repeat([own.wheel_moment() for own in drives], ANGLES.size)
+    found = batch.pressures(solve_equilibrium(batch, np.tile(ANGLES, 2), moments).response).holes
+    alone = [analyse(own, ANGLES).pressures.holes for own in drives]
+    for field in ("mid", "largest", "half_width"):
+        expected = np.concatenate([getattr(holes, field) for holes in alone])
+        np.testing.assert_allclose(getattr(found, field), expected, atol=1e-5 * expected.max())
