@@ -110,9 +110,7 @@ def _half_plane(
     form gives; one far away sinks by −ln(distance) of the unit, wider patches by the square of their width less.
     """
     unit = _unit(material, thickness)
-    middle = half_plane_approach(
-        1.0 / thickness, half_width, depth, material.youngs_modulus, material.poisson_ratio
-    )
+    middle = half_plane_approach(1.0 / thickness, half_width, depth, material.youngs_modulus, material.poisson_ratio)
     own = float(middle) - 0.25 * unit
     distance = np.abs(places[:, None] - places[None, :])
     apart = distance > 0.0

@@ -19,7 +19,9 @@ from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleShape, DriveShapes, RingShape
+from ltca.drive.fields import element_count, field_kinds, read_field
 from ltca.drive.parts import Material
+from ltca.reading.changes import with_fields
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 THICKNESS = 11.8
@@ -35,7 +37,7 @@ def own_near_field(half_width):
 
 @pytest.fixture(scope="module")
 def disc_shape(paper_cases):
-    return DriveShapes.of_drive(nominal_shape(paper_cases["CS-6"])).disc
+    return DriveShapes.of_drive(nominal_shape(paper_cases["CS-6"], keep_clearance=False)).disc
 
 
 @pytest.fixture(scope="module")
@@ -246,7 +248,7 @@ def test_mesh_halved(disc_shape, stations, disc):
 @pytest.mark.slow
 def test_clearance_changes_little(paper_cases, disc_shape, stations, disc):
     """0.03 mm in the holes thin the ligaments by 0.4 %; CS-6 has the largest clearances of the paper."""
-    drive = nominal_shape(paper_cases["CS-6"], keep_clearance=True)
+    drive = nominal_shape(paper_cases["CS-6"])
     shape = DriveShapes.of_drive(drive).disc
     assert shape.holes[0].radius == pytest.approx(disc_shape.holes[0].radius + 0.03)
     wide = derive_disc(shape, DiscStations.of_disc(shape, 0.25), STEEL, thickness=THICKNESS, size=SIZE)
@@ -257,10 +259,35 @@ def test_clearance_changes_little(paper_cases, disc_shape, stations, disc):
 
 
 def test_cases_share_their_nominal_shape(paper_cases):
-    shapes = {nominal_shape(drive).shape_fingerprint() for drive in paper_cases.values()}
+    shapes = {nominal_shape(drive, keep_clearance=False).shape_fingerprint() for drive in paper_cases.values()}
     assert len(shapes) == 1
-    assert nominal_shape(paper_cases["CS-6"]).bore_radius == 29.5
-    assert nominal_shape(paper_cases["CS-6"], keep_clearance=True).bore_radius == pytest.approx(29.515)
+    assert nominal_shape(paper_cases["CS-6"], keep_clearance=False).bore_radius == 29.5
+    assert nominal_shape(paper_cases["CS-6"]).bore_radius == pytest.approx(29.515)
+
+
+def bodies(drive):
+    """All that a derivation takes of a drive."""
+    nominal = nominal_shape(drive)
+    shapes, parts = DriveShapes.of_drive(nominal), nominal.materials
+    round_bodies = (shapes.wheel_pins[0], shapes.rollers[0], shapes.inner_race)
+    materials = (parts.disc, parts.wheel_pin, parts.roller, parts.inner_race)
+    return repr((shapes.disc, round_bodies, materials, nominal.disc.thickness))
+
+
+@pytest.mark.parametrize("path", sorted(field_kinds()))
+def test_fingerprint_follows_the_bodies(path, paper_cases):
+    """A field that changes a body changes the fingerprint of the shape, and no other does."""
+    drive = paper_cases["CS-6"]
+    value, kind = read_field(drive, path), field_kinds()[path]
+    if kind.is_array:
+        new = (1,) if path.endswith("orders") else (1e-3,) * (element_count(drive, path) or 1)
+    elif isinstance(value, str):
+        new = "cw" if path == "load.direction" else "other"
+    else:
+        one = -1 if path == "disc.number_of_teeth" else 1  # as many teeth as pins make no drive
+        new = value + one if isinstance(value, int) else 0.99 * value + (0.0 if value else 1e-3)
+    other = with_fields(drive, {path: new}, check=False)
+    assert (bodies(other) != bodies(drive)) == (other.shape_fingerprint() != drive.shape_fingerprint())
 
 
 def test_random_drives_have_stations(random_drives):

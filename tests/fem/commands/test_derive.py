@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import subprocess
 import sys
@@ -17,6 +18,9 @@ from fem.coefficients.stations import DiscStations, nominal_shape
 from fem.commands import derive
 from fem.errors import MeshError
 from fem.shapes import DriveShapes
+from ltca.analysis.engines import PlaneStrain
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficient_files import find_case_coefficients
 from ltca.errors import CycloError
 from ltca.reading.drive_file import load_drive
 
@@ -35,7 +39,7 @@ def run(*words: str) -> int:
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """File, printed text and exit status of a coarse run for CS-6."""
+    """File, printed text and exit status of a coarse run for CS-6, its clearances left out on purpose."""
     path = tmp_path_factory.mktemp("derive") / "new" / "coefficients.nc"
     command = [
         sys.executable,
@@ -43,7 +47,7 @@ def made(tmp_path_factory):
         "import sys; from fem.commands import derive; import argparse; "
         "p = argparse.ArgumentParser(); derive.configure(p); sys.exit(derive.execute(p.parse_args()))",
     ]
-    words = ["paper", "--case", "CS-6", *COARSE, "--out", str(path)]
+    words = ["paper", "--case", "CS-6", *COARSE, "--without-clearance", "--out", str(path)]
     done = subprocess.run([*command, *words], capture_output=True, text=True, check=False, env=dict(os.environ))
     return path, done
 
@@ -58,6 +62,7 @@ def test_file_is_made_and_checked(made):
     assert done.returncode == 0, done.stdout + done.stderr
     assert "FAILED" not in done.stdout
     assert done.stdout.count(" ok\n") == len(check_coefficients(read_coefficients(path)))
+    assert "clearances: bearing 0 mm, pin hole 0 mm, those of the case left out" in done.stdout
     # No terminal: no progress; no half file beside the whole one.
     assert done.stderr == ""
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
@@ -89,7 +94,9 @@ def test_file_follows_its_format(dataset):
         "race_bore_radius": 10.0,
         "bearing_clearance": 0.0,
         "pin_hole_clearance": 0.0,
+        "clearances_left_out": 1,
         "fingerprint": drive.shape_fingerprint(),
+        "shape": json.dumps(drive.body_shape()),
     }
     assert {name: dataset.attrs[name] for name in expected} == expected
     for name in ("datum", "unknowns_disc", "mesh_size", "convergence_estimate", "symmetry", "version", "gmsh"):
@@ -98,10 +105,22 @@ def test_file_follows_its_format(dataset):
 
 @pytest.mark.slow
 def test_same_numbers_again_whichever_case(dataset):
-    """Clearances are left out, gmsh is seeded: another case of the drive gives the same numbers, bit by bit."""
+    """Clearances left out, gmsh seeded: the case without any gives the same numbers, bit by bit."""
     again = derive_coefficients(load_drive("paper").cases["CS-1"], stations=0.25, size=1.5)
     np.testing.assert_array_equal(again["disc_approach"], dataset["disc_approach"])
     np.testing.assert_array_equal(again["race_approach"], dataset["race_approach"])
+    assert again.attrs["clearances_left_out"] == 0
+
+
+@pytest.mark.slow
+def test_a_run_takes_the_file_for_its_own_case_and_as_shared(made):
+    """What is written is what a run reads: for the case without clearances its own, for another said to be shared."""
+    cases = load_drive("paper").cases
+    found = find_case_coefficients({name: cases[name] for name in ("CS-1", "CS-6")}, [made[0]])
+    assert [found[name].shared for name in ("CS-1", "CS-6")] == [False, True]
+    pressed = analyse(cases["CS-6"], np.array([0.5]), engine=PlaneStrain(coefficients=found["CS-6"]))
+    # by the default file of its own 2848.8 N; this one is coarse, and shared
+    assert pressed.full.response.pin_load.max() == pytest.approx(2848.8, rel=0.01)
 
 
 def spoiled(dataset, name):
@@ -152,6 +171,19 @@ def test_every_check_can_fail(dataset, name):
     assert all(before.values())
     after = {check.name: check.passed for check in check_coefficients(spoiled(dataset, name))}
     assert not after[name]
+
+
+@pytest.mark.parametrize(("words", "kept"), [((), True), (("--without-clearance",), False)])
+def test_clearances_of_the_case_are_kept_unless_told(words, kept, dataset, tmp_path, monkeypatch):
+    asked = []
+
+    def derive(drive, **options):
+        asked.append((drive.clearance.bearing, options["keep_clearance"]))
+        return dataset
+
+    monkeypatch.setattr("fem.coefficients.dataset.derive_coefficients", derive)
+    assert run("paper", "--case", "CS-6", *words, "--out", str(tmp_path / "c.nc")) == 0
+    assert asked == [(0.03, kept)]
 
 
 def test_failed_check_gives_status_one(dataset, tmp_path, monkeypatch, capsys):

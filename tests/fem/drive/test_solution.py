@@ -9,7 +9,8 @@ from fem.drive.fields import recover_fields
 from fem.drive.solution import solve_drive, solve_load
 from fem.drive.solution_files import bearing_components, summarise
 from fem.errors import MemoryLimitError
-from ltca.errors import ConvergenceError
+from ltca.errors import ConvergenceError, DriveError
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
 # Crank torque over eccentricity, T_out/(u e).
@@ -146,6 +147,25 @@ def test_reverse_drive_mirrors_forward():
     # Different triangles on both sides of the mirror at two elements for each half-width.
     assert np.max(np.abs(first.pin_load - mirrored)) < 3e-3 * first.pin_load.max()
     assert first.bearing_force == pytest.approx(np.conj(second.bearing_force), rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("fields", "named"),
+    [
+        ({"crank_bearing.roller_length": 8.0}, r"crank_bearing.roller_length = 8 mm: must be 11.8 mm"),
+        ({"crank_bearing.roller_profile.crown_drop": 0.01}, r"crank_bearing.roller_profile.crown_drop = 0.01 mm"),
+        ({"pin_wheel.pin_profile.logarithmic_factor": 1.0}, r"pin_wheel.pin_profile.logarithmic_factor = 1: must be 0"),
+    ],
+)
+def test_what_varies_along_the_length_is_refused_before_any_work(fields, named, monkeypatch):
+    """It was ignored: 8 mm rollers read what 11.8 mm ones do, crowned ones what straight ones do."""
+
+    def never(*words, **options):
+        raise AssertionError("work was begun")
+
+    monkeypatch.setattr("fem.drive.solution.expect_contacts", never)
+    with pytest.raises(DriveError, match=f"{named}.* full finite elements: .*--compliance hybrid"):
+        solve_drive(with_fields(drive(), fields), 0.5)
 
 
 def test_too_fine_is_refused_with_the_number():

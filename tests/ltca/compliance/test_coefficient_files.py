@@ -119,7 +119,7 @@ def test_files_of_other_clearances_are_used_only_if_they_say_so(paper_cases, tmp
     # left out are the clearances, nothing else; and a file with clearances of its own is shared by nobody
     with pytest.raises(CycloError, match="belongs to another drive"):
         load_coefficients(on_purpose, with_fields(clear, {"crank.eccentricity": 3.9}))
-    with pytest.raises(CycloError, match="bearing 0.03 mm and pin hole 0.03 mm"):
+    with pytest.raises(CycloError, match=r"bearing 0.03 mm and pin hole 0.03 mm"):
         load_coefficients(write(clear, tmp_path / "own.nc", clearances_left_out=1), nominal)
 
 
@@ -153,7 +153,7 @@ def test_what_plane_strain_cannot_say_is_refused_before_any_work(paper_cases, de
         lambda: find_case_coefficients({"CS-1": paper_cases["CS-1"], "short": short}, near_field="plane-strain"),
         lambda: analyse(short, np.array([0.5]), engine=PlaneStrain()),
     ):
-        with pytest.raises(DriveError, match="crank_bearing.roller_length = 8 mm"):
+        with pytest.raises(DriveError, match=r"crank_bearing.roller_length = 8 mm"):
             find()
     assert derived == []
     analyse(short, np.array([0.5]), engine=Hybrid())

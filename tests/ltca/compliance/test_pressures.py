@@ -46,8 +46,8 @@ def test_holes_of_half_spaces_press_elastic_pins(pins, drive):
     peak, width = hertz(drive, load, compliance(STEEL) + compliance(ALUMINIUM if soft else STEEL))
     loaded = load > 0.05 * load.max()
     assert not pressures.rigid_shaft_pins
-    # The ends of a straight contact take load off its middle: by 0.45/ln(4L/b) or so of it (see below), which is 12 %
-    # here, and pressure and half-width go like its root.
+    # The ends of a straight contact take load off its middle, here 7 to 14 % of it (the law of the fading is below);
+    # pressure and half-width go like its root.
     for found, expected in ((pressures.holes.mid, peak), (pressures.holes.half_width, width)):
         ratio = found[loaded] / expected[loaded]
         assert np.all((ratio > 0.92) & (ratio < 0.96))
@@ -58,7 +58,11 @@ def test_holes_of_half_spaces_press_elastic_pins(pins, drive):
 
 
 def test_wide_holes_press_like_hertz(drive):
-    """What the ends take off the middle fades like one over the logarithm of length by width: slowly, but to nothing."""
+    """What the ends take off the middle fades, slowly, like one over the logarithm of length by width.
+
+    On a slender straight contact the middle carries (1 − ln 2)/ln less than the mean, like the charge on a needle; pressure
+    and half-width go like the root of that: 0.15/ln in the limit.
+    """
     faded = []
     for width in (1e2, 1e4):
         wide = replace(
@@ -75,8 +79,9 @@ def test_wide_holes_press_like_hertz(drive):
         logarithm = np.log(4.0 * wide.disc.thickness / half_width[loaded])
         for found, expected in ((result.pressures.holes.mid, peak), (result.pressures.holes.half_width, half_width)):
             faded.append((1.0 - found[loaded] / expected[loaded]) * logarithm)
-    # of the root; a wrong radius, modulus or length would grow with the logarithm
-    assert np.all((np.array(faded) > 0.17) & (np.array(faded) < 0.27))
+    # 0.21 to 0.22, then 0.19; a wrong radius, modulus or length would make it grow with the logarithm
+    assert np.all((np.array(faded) > 0.15) & (np.array(faded) < 0.25))
+    assert np.max(faded[2:]) < np.min(faded[:2])
 
 
 def test_holes_of_plane_strain_press_rigid_pins(drive, closed_form):

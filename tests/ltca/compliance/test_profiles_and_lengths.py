@@ -111,7 +111,9 @@ def test_shorter_rollers_press_harder_on_a_body_part(paper_cases, closed_form):
     # 1.2145, less than a per cent away by what goes to the ends
     np.testing.assert_allclose(rise, np.sqrt(11.8 / 8.0), rtol=0.01)
     # and they yield more: by about as much as on half-spaces, where nothing else is
-    plain, softer = (analyse(with_fields(drive, {"crank_bearing.roller_length": length}), ANGLES) for length in (11.8, 8.0))
+    plain, softer = (
+        analyse(with_fields(drive, {"crank_bearing.roller_length": length}), ANGLES) for length in (11.8, 8.0)
+    )
     more = short.full.pose[0, 3] - long.full.pose[0, 3]
     assert more == pytest.approx(softer.full.pose[0, 3] - plain.full.pose[0, 3], rel=0.15)
     assert more < 0.0

@@ -57,15 +57,32 @@ def test_length_profile_of_a_cylinder():
 
 
 # What plane finite-element bodies are made of: flank, bore, holes and thickness of the disc; pins, rollers, race; materials.
-OF_THE_BODIES = """
-crank.eccentricity pin_wheel.number_of_pins pin_wheel.pin_circle_radius pin_wheel.pin_radius disc.number_of_teeth
-disc.thickness disc.equidistant_offset disc.shifting_offset crank_bearing.inner_race_radius
-crank_bearing.outer_race_radius crank_bearing.roller_radius pin_shaft.number_of_pins pin_shaft.pin_circle_radius
-pin_shaft.hole_radius clearance.bearing clearance.pin_hole
-materials.disc.youngs_modulus materials.disc.poisson_ratio materials.wheel_pin.youngs_modulus
-materials.wheel_pin.poisson_ratio materials.roller.youngs_modulus materials.roller.poisson_ratio
-materials.inner_race.youngs_modulus materials.inner_race.poisson_ratio
-""".split()
+OF_THE_BODIES = [
+    "crank.eccentricity",
+    "pin_wheel.number_of_pins",
+    "pin_wheel.pin_circle_radius",
+    "pin_wheel.pin_radius",
+    "disc.number_of_teeth",
+    "disc.thickness",
+    "disc.equidistant_offset",
+    "disc.shifting_offset",
+    "crank_bearing.inner_race_radius",
+    "crank_bearing.outer_race_radius",
+    "crank_bearing.roller_radius",
+    "pin_shaft.number_of_pins",
+    "pin_shaft.pin_circle_radius",
+    "pin_shaft.hole_radius",
+    "clearance.bearing",
+    "clearance.pin_hole",
+    "materials.disc.youngs_modulus",
+    "materials.disc.poisson_ratio",
+    "materials.wheel_pin.youngs_modulus",
+    "materials.wheel_pin.poisson_ratio",
+    "materials.roller.youngs_modulus",
+    "materials.roller.poisson_ratio",
+    "materials.inner_race.youngs_modulus",
+    "materials.inner_race.poisson_ratio",
+]
 
 
 def changed(drive, path):
