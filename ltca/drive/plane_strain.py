@@ -1,4 +1,4 @@
-"""What plane strain cannot say about a drive: whatever varies along the length of its rollers and pins."""
+"""What two dimensions cannot say about a drive: whatever varies along the length of its rollers and pins."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ def require_plane_strain(drive: Drive, model: str) -> None:
 
 def _find_problems(drive: Drive, model: str) -> Iterator[str]:
     wheel, bearing, thickness = drive.pin_wheel, drive.crank_bearing, drive.disc.thickness
-    way_out = "--compliance hybrid can"
+    place = f"in two dimensions ({model}); use --compliance hybrid"
     if abs(bearing.roller_length - thickness) > ROUNDING * thickness:
         yield (
             f"crank_bearing.roller_length = {bearing.roller_length:g} mm: must be {thickness:g} mm, the thickness of the "
-            f"disc, for {model}: plane strain cannot say otherwise, {way_out}"
+            f"disc, {place}"
         )
     for path, profile in (
         ("crank_bearing.roller_profile", bearing.roller_profile),
         ("pin_wheel.pin_profile", wheel.pin_profile),
     ):
         for name, value in _departures(profile):
-            yield f"{path}.{name} = {value}: must be 0 for {model}: plane strain cannot say otherwise, {way_out}"
+            yield f"{path}.{name} = {value}: must be 0 {place}"
 
 
 def _departures(profile: LengthProfile) -> Iterator[tuple[str, str]]:

@@ -164,7 +164,9 @@ def test_what_varies_along_the_length_is_refused_before_any_work(fields, named, 
         raise AssertionError("work was begun")
 
     monkeypatch.setattr("fem.drive.solution.expect_contacts", never)
-    with pytest.raises(DriveError, match=f"{named}.* full finite elements: .*--compliance hybrid"):
+    with pytest.raises(
+        DriveError, match=f"{named}.* in two dimensions .full finite elements.; use --compliance hybrid"
+    ):
         solve_drive(with_fields(drive(), fields), 0.5)
 
 
