@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.near_field import NearField
-from ltca.contact.hertz import line_half_width
+from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.line_contact import LineContactLaw
@@ -95,15 +95,15 @@ class OwnParts:
             contact_modulus(parts.disc, parts.wheel_pin),
         )
         in_bore = (
-            1.0 / (1.0 / bearing.roller_radius - 1.0 / drive.bore_radius),
+            effective_radius(bearing.roller_radius, -drive.bore_radius),
             contact_modulus(parts.disc, parts.roller),
         )
         on_race = (
-            1.0 / (1.0 / bearing.roller_radius + 1.0 / bearing.inner_race_radius),
+            effective_radius(bearing.roller_radius, bearing.inner_race_radius),
             contact_modulus(parts.inner_race, parts.roller),
         )
         in_hole = (
-            1.0 / (1.0 / drive.pin_shaft.pin_radius - 1.0 / drive.hole_radius),
+            effective_radius(drive.pin_shaft.pin_radius, -drive.hole_radius),
             1.0 / parts.disc.plane_strain_compliance,
         )
         disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from ltca.compliance.beyond_near_field import OwnParts
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NearField, NearFieldLaws
-from ltca.compliance.pressures import hole_effective_radii, pressures_of_law
+from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import ContactPressures, KindPressures, Response, Start, resultant
 from ltca.compliance.rollers import RollerState
 from ltca.contact.tracked_grid import ContactKind
@@ -121,9 +121,9 @@ class CoupledCompliance:
             coefficients=body,
             near_field=laws,
             hole_law=SeriesLaw(spring=spring, contact=laws.hole) if hole_near_field else spring,
-            outer_radius=1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius),
-            inner_radius=1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius),
-            hole_radius=hole_effective_radii(place),
+            outer_radius=place.outer_effective_radii,
+            inner_radius=place.inner_effective_radii,
+            hole_radius=place.hole_effective_radii,
             own=OwnParts.of_drive(drive, geometry, body, near_field, laws.datum),
         )
 

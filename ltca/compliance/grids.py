@@ -99,8 +99,8 @@ class GridCompliance:
         return cls(
             geometry=geometry,
             kinds=kinds,
-            inner_radius=1.0 / (1.0 / place.roller_radii + 1.0 / place.inner_race_radius),
-            outer_radius=1.0 / (1.0 / place.roller_radii - 1.0 / place.bore_radius),
+            inner_radius=place.inner_effective_radii,
+            outer_radius=place.outer_effective_radii,
             hole_stiffness=drive.pin_shaft.stiffness,
         )
 

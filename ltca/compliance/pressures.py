@@ -60,11 +60,6 @@ def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement
     place : Placement
         For the radii.
     """
-    law, radius = LineContactLaw(kind.length, kind.contact_modulus), hole_effective_radii(place)
+    law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
     approach, _ = approach_at_load(law, load, radius)
     return pressures_of_law(law, kind, approach, radius)
-
-
-def hole_effective_radii(place: Placement) -> FloatArray:
-    """Return the effective radii of shaft pins in their holes, mm: 1/(1/r_PS − 1/r_PSH)."""
-    return np.asarray(1.0 / (1.0 / place.shaft_pin_radii - 1.0 / place.hole_radii))

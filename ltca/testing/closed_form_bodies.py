@@ -126,7 +126,7 @@ def _station_places(drive: Drive) -> list[ComplexArray]:
     place = Placement.of_drive(drive)
 
     def circle(count: int) -> ComplexArray:
-        return np.exp(2j * np.pi * np.arange(count) / count)
+        return np.asarray(np.exp(2j * np.pi * np.arange(count) / count))
 
     lobes = drive.disc.number_of_teeth
     flank = FlankProfile.of_drive(drive).flank(2.0 * np.pi * np.arange(PER_LOBE * lobes) / (PER_LOBE * lobes))
