@@ -52,9 +52,12 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
         "MPa",
         "largest pressure of roller and inner race anywhere, end cell in attrs",
     ),
+    "pin_shaft_pressure_mid": ("hole", "MPa", "largest pressure of shaft pin and hole at mid-width"),
+    "pin_shaft_pressure_max": ("hole", "MPa", "largest pressure of shaft pin and hole anywhere, end cell in attrs"),
     "pin_half_width": ("pin", "mm", "contact half-width of wheel pin and flank at mid-width"),
     "roller_half_width_outer": ("roller", "mm", "contact half-width of roller and bore at mid-width"),
     "roller_half_width_inner": ("roller", "mm", "contact half-width of roller and inner race at mid-width"),
+    "pin_shaft_half_width": ("hole", "mm", "contact half-width of shaft pin and hole at mid-width"),
     "pin_contact_parameter": ("pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"),
     "bearing_radial": ("crank", "N", "bearing force on the disc along the eccentricity"),
     "bearing_tangential": ("crank", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
@@ -90,9 +93,12 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "pin_pressure_max": pressures.pins.largest,
         "roller_pressure_max_outer": pressures.outer.largest,
         "roller_pressure_max_inner": pressures.inner.largest,
+        "pin_shaft_pressure_mid": pressures.holes.mid,
+        "pin_shaft_pressure_max": pressures.holes.largest,
         "pin_half_width": pressures.pins.half_width,
         "roller_half_width_outer": pressures.outer.half_width,
         "roller_half_width_inner": pressures.inner.half_width,
+        "pin_shaft_half_width": pressures.holes.half_width,
         "pin_contact_parameter": np.mod(contacts.flank.parameter, 2.0 * np.pi),
         "bearing_radial": analysis.bearing_radial,
         "bearing_tangential": analysis.bearing_tangential,
@@ -229,6 +235,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         ("pin_pressure_max", first.pressures.pins),
         ("roller_pressure_max_outer", first.pressures.outer),
         ("roller_pressure_max_inner", first.pressures.inner),
+        ("pin_shaft_pressure_max", first.pressures.holes),
     ):
         dataset[name].attrs["end_cell_mm"] = pressures.end_cell
     return dataset

@@ -212,6 +212,8 @@ ROWS = (
     ("largest roller pressure, mid-width", "max_roller_pressure_mid_MPa", "MPa", "{:.1f}"),
     ("  anywhere (end cell a hundredth)", "max_roller_pressure_max_MPa", "MPa", "{:.1f}"),
     ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
+    ("largest pin-shaft pressure, mid-width", "max_pin_shaft_pressure_mid_MPa", "MPa", "{:.1f}"),
+    ("  anywhere (end cell a hundredth)", "max_pin_shaft_pressure_max_MPa", "MPa", "{:.1f}"),
     ("pin-shaft loaded range", "pin_shaft_loaded_range_deg", "°", "{:.1f}"),
     ("loaded wheel pins, mean", "mean_loaded_pins", "", "{:.2f}"),
     ("loaded rollers, mean", "mean_loaded_rollers", "", "{:.2f}"),
