@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -101,6 +102,17 @@ def test_the_check_of_units_itself_can_fail():
     assert bracketed_units(ast.parse(lines)) == list(told)
     kept = '"""In [0, 2π), the section [tolerances], items[k], see [1] and `Norm[T]`."""'
     assert bracketed_units(ast.parse(kept)) == []
+
+
+def test_examples_of_all_packages_are_run():
+    """pytest collects the examples in docstrings: of every package, and every package has some."""
+    options = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["pytest"]["ini_options"]
+    assert "--doctest-modules" in options["addopts"]
+    for package in ("ltca", "fem", "validation"):
+        assert package in options["testpaths"]
+        paths = [path for path in MODULES if path.is_relative_to(ROOT / package)]
+        texts = [text for path in paths for text in docstrings(ast.parse(path.read_text(encoding="utf-8")))]
+        assert any(">>> " in text for text in texts), package
 
 
 def test_the_check_itself_can_fail():

@@ -27,6 +27,8 @@ SMALLEST_LOAD_SHARE = 0.05
 # A contact open by less than this share of the largest approach may close in the real solution: refine it too.
 OPEN_MARGIN = 0.25
 APPROACH_LOGARITHM = 8.0
+# Places of the coordinates in a pose.
+X, Y, DISC_ROTATION, WHEEL_ANGLE = range(4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,26 +141,26 @@ class _RigidDrive:
 
     def flank_parameters(self, pose: FloatArray) -> FloatArray:
         centre = self.disc_centre(pose)
-        in_disc = (self.wheel_pins(pose[3]) - centre) * np.exp(-1j * pose[2])
+        in_disc = (self.wheel_pins(pose[WHEEL_ANGLE]) - centre) * np.exp(-1j * pose[DISC_ROTATION])
         count = len(self.placement.wheel_pin_radii)
         start = self.crank_angle / self.placement.reduction_ratio + 2.0 * np.pi * np.arange(count) / count
         return self.profile.nearest_parameter(in_disc, start)
 
     def disc_centre(self, pose: FloatArray) -> complex:
-        return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[0], pose[1])
+        return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[X], pose[Y])
 
     def roller_rays(self) -> ComplexArray:
         return np.asarray(np.exp(1j * self.placement.roller_angles(np.asarray(self.crank_angle))))
 
     def hole_rays(self, pose: FloatArray) -> ComplexArray:
         """Vectors from hole centres to shaft-pin centres."""
-        centres = self.disc_centre(pose) + self.placement.hole_centres * np.exp(1j * pose[2])
+        centres = self.disc_centre(pose) + self.placement.hole_centres * np.exp(1j * pose[DISC_ROTATION])
         return np.asarray(self.placement.shaft_pin_centres - centres)
 
     def approaches(self, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return approaches (pins, rollers, holes in a row) and their gradients, shape (contacts, 4)."""
-        place, centre, turn = self.placement, self.disc_centre(pose), np.exp(1j * pose[2])
-        pins = self.wheel_pins(pose[3])
+        place, centre, turn = self.placement, self.disc_centre(pose), np.exp(1j * pose[DISC_ROTATION])
+        pins = self.wheel_pins(pose[WHEEL_ANGLE])
         theta = self.flank_parameters(pose)
         in_disc = (pins - centre) / turn
         n = self.profile.normal(theta) * turn
@@ -168,7 +170,7 @@ class _RigidDrive:
         )
         d = self.roller_rays()
         play = place.bore_radius - place.inner_race_radius - 2.0 * place.roller_radii
-        bearing = -(pose[0] * d.real + pose[1] * d.imag) - play
+        bearing = -(pose[X] * d.real + pose[Y] * d.imag) - play
         zero = np.zeros(len(d))
         bearing_gradient = np.column_stack([-d.real, -d.imag, zero, zero])
         ray = self.hole_rays(pose)
@@ -193,7 +195,7 @@ def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple
     damping = 1e-3 * float(stiffness.max())
 
     def potential(pose: FloatArray, approach: FloatArray) -> float:
-        return float(0.5 * np.sum(stiffness * np.maximum(approach, 0.0) ** 2) - moment * pose[3])
+        return float(0.5 * np.sum(stiffness * np.maximum(approach, 0.0) ** 2) - moment * pose[WHEEL_ANGLE])
 
     approach, gradient = rigid.approaches(pose)
     value = potential(pose, approach)
@@ -274,7 +276,7 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
     nearly = np.split(approach > -OPEN_MARGIN * approach.max(), ends)
 
     theta = rigid.flank_parameters(pose)
-    n = profile.normal(theta) * np.exp(1j * pose[2])
+    n = profile.normal(theta) * np.exp(1j * pose[DISC_ROTATION])
     rays, hole_rays = rigid.roller_rays(), rigid.hole_rays(pose)
     radius, hole_radius = placement.roller_radii, placement.hole_radii
     hole_effective = placement.shaft_pin_radii * hole_radius / (hole_radius - placement.shaft_pin_radii)
@@ -292,14 +294,14 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
             modulus=modulus,
         )
 
-    turn_back = np.exp(-1j * pose[2])
+    turn_back = np.exp(-1j * pose[DISC_ROTATION])
     hole_direction = hole_rays / np.abs(hole_rays)
     return ExpectedContacts(
         crank_angle=float(crank_angle),
-        disc_x=float(pose[0]),
-        disc_y=float(pose[1]),
-        disc_rotation=float(pose[2]),
-        wheel_angle=float(pose[3]),
+        disc_x=float(pose[X]),
+        disc_y=float(pose[Y]),
+        disc_rotation=float(pose[DISC_ROTATION]),
+        wheel_angle=float(pose[WHEEL_ANGLE]),
         pins=group(0, profile.effective_radius(theta, placement.wheel_pin_radii), pin_modulus, thickness, -n),
         flank_points=profile.flank(theta),
         rollers_outer=group(1, outer_effective, outer_modulus, roller_length, rays),

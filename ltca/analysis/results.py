@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -77,7 +77,7 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
     """Quantities of one case, of one disc on one crank: (position,) or (position, pair)."""
     full, light = analysis.full, analysis.light
     contacts, pressures = full.response, analysis.pressures
-    displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * full.crank_angle)
+    displacement = disc_displacement(full.pose) * np.exp(-1j * full.crank_angle)
     return {
         "pin_load": contacts.pin_load,
         "roller_load": contacts.rollers.outer_load,

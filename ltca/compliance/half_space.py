@@ -18,7 +18,7 @@ from ltca.compliance.response import (
 )
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
-from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.pairs import ContactGeometry, disc_displacement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
@@ -93,6 +93,16 @@ class HalfSpaceCompliance:
         inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
         # Batches differ little from each other: on a ladder they share the tables of profiled parts.
         rungs = _rungs if place.is_batch else np.asarray
+
+        def roller_law(race: Material, effective_radii: FloatArray) -> ContactLaw:
+            return law_for_profile(
+                bearing.roller_profile,
+                length=bearing.roller_length,
+                radius=bearing.roller_radius,
+                contact_modulus=contact_modulus(race, parts.roller),
+                effective_radii=rungs(effective_radii),
+            )
+
         return cls(
             geometry=geometry,
             pin_law=law_for_profile(
@@ -103,20 +113,8 @@ class HalfSpaceCompliance:
                 effective_radii=rungs(pin_radii),
             ),
             roller_laws=RollerLaws(
-                inner=law_for_profile(
-                    bearing.roller_profile,
-                    length=bearing.roller_length,
-                    radius=bearing.roller_radius,
-                    contact_modulus=contact_modulus(parts.inner_race, parts.roller),
-                    effective_radii=rungs(inner_radius),
-                ),
-                outer=law_for_profile(
-                    bearing.roller_profile,
-                    length=bearing.roller_length,
-                    radius=bearing.roller_radius,
-                    contact_modulus=contact_modulus(parts.disc, parts.roller),
-                    effective_radii=rungs(outer_radius),
-                ),
+                inner=roller_law(parts.inner_race, inner_radius),
+                outer=roller_law(parts.disc, outer_radius),
                 inner_radius=inner_radius,
                 outer_radius=outer_radius,
             ),

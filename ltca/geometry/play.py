@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE, ContactGeometry, X, Y, disc_displacement
 
 FloatArray = NDArray[np.float64]
 
@@ -55,12 +55,12 @@ def rigid_play(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray
 def _gaps(geometry: ContactGeometry, angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Approaches of all pairs at one pose and their gradients: pins, holes, rollers."""
     flank, holes, rays = geometry.flank(angle, pose), geometry.holes(angle, pose), geometry.rollers(angle)
-    place = pose[:, 0] + 1j * pose[:, 1]
+    place = disc_displacement(pose)
     # A roller on the inner race presses on the bore with |s n − d| less the bore play.
     arm = rays.outermost * rays.direction - place[:, None]
     length = np.abs(arm)
     rollers = np.zeros((*length.shape, 4))
-    rollers[..., 0], rollers[..., 1] = -(arm / length).real, -(arm / length).imag
+    rollers[..., X], rollers[..., Y] = -(arm / length).real, -(arm / length).imag
     approach = np.concatenate([flank.approach, holes.approach, length - rays.bore_play], axis=1)[0]
     return approach, np.concatenate([flank.gradient, holes.gradient, rollers], axis=1)[0]
 
@@ -68,11 +68,11 @@ def _gaps(geometry: ContactGeometry, angle: FloatArray, pose: FloatArray) -> tup
 def _farthest(geometry: ContactGeometry, angle: float, sense: int) -> FloatArray:
     place = geometry.placement
     lever = np.array([1.0, 1.0, 1.0, 1.0])
-    lever[2:] = float(place.eccentricity) * place.reduction_ratio
+    lever[ROTATIONS] = float(place.eccentricity) * place.reduction_ratio
     pose = np.zeros((1, 4))
     at = np.array([angle])
     history: list[float] = []
-    radius = TRUST * lever[3]
+    radius = TRUST * lever[WHEEL_ANGLE]
     for _ in range(60):
         approach, gradient = _gaps(geometry, at, pose)
         # Turning on is paid with the worst interference, so that a start that interferes finds its way out.

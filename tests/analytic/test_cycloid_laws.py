@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ltca.geometry.first_contact import carrying_pins
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
 
 
 @pytest.fixture(scope="module")
@@ -48,9 +48,13 @@ def test_lever_arms_of_the_pairs_are_those_through_the_pitch_point(unmodified):
     angles = np.linspace(0.0, 6.0, 31)
     motion = ContactGeometry.of_drive(unmodified).flank(angles, np.zeros((31, 4)))
     # the outward normal of the disc at a root points away from the pitch point: only the size has to agree
-    np.testing.assert_allclose(np.abs(motion.gradient[..., 3]), np.abs(lever_arms(unmodified, angles)), atol=1e-10)
+    np.testing.assert_allclose(
+        np.abs(motion.gradient[..., WHEEL_ANGLE]), np.abs(lever_arms(unmodified, angles)), atol=1e-10
+    )
     # disc and wheel levers differ by e/(e z_P) of it: e z_C about the disc centre for e z_P about the wheel's
-    np.testing.assert_allclose(motion.gradient[..., 2] / 13.0, -motion.gradient[..., 3] / 14.0, atol=1e-11)
+    np.testing.assert_allclose(
+        motion.gradient[..., DISC_ROTATION] / 13.0, -motion.gradient[..., WHEEL_ANGLE] / 14.0, atol=1e-11
+    )
 
 
 def test_sum_of_squared_lever_arms_of_loaded_pins(unmodified):
@@ -60,7 +64,7 @@ def test_sum_of_squared_lever_arms_of_loaded_pins(unmodified):
     """
     angles = np.linspace(0.0, 2.0 * np.pi / 13.0, 64, endpoint=False)
     geometry = ContactGeometry.of_drive(unmodified)
-    lever = geometry.flank(angles, np.zeros((64, 4))).gradient[..., 3]
+    lever = geometry.flank(angles, np.zeros((64, 4))).gradient[..., WHEEL_ANGLE]
     loaded = carrying_pins(geometry, angles)
     total = np.where(loaded, lever**2, 0.0).sum(axis=1)
     # forward and backward pins swap at −φ, so the mean is half of a smooth periodic sum: round-off
@@ -72,7 +76,7 @@ def test_largest_pin_load_of_linear_springs(unmodified):
     """F = k l α, T = k α Σ l²: the largest load averages 0.992 × 4T/(e z_P²) over the mesh of the paper's drive."""
     angles = np.linspace(0.0, 2.0 * np.pi / 13.0, 2000, endpoint=False)
     geometry = ContactGeometry.of_drive(unmodified)
-    lever = -geometry.flank(angles, np.zeros((2000, 4))).gradient[..., 3]
+    lever = -geometry.flank(angles, np.zeros((2000, 4))).gradient[..., WHEEL_ANGLE]
     carried = np.where(carrying_pins(geometry, angles), lever, 0.0)
     largest = carried.max(axis=1) / (carried**2).sum(axis=1)
     # the figure is printed with three digits

@@ -8,6 +8,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 
 def stored_energy(model, response):
@@ -25,7 +26,7 @@ def test_stored_energy_is_the_work_of_the_torque(paper_cases, case):
     model = HalfSpaceCompliance.of_drive(paper_cases[case])
     moments = -np.geomspace(3_000.0, 400_000.0, 241)
     found = solve_equilibrium(model, np.full(241, 0.8), moments)
-    energy, wheel = stored_energy(model, found.response), found.pose[:, 3]
+    energy, wheel = stored_energy(model, found.response), found.pose[:, WHEEL_ANGLE]
     work = np.sum(0.5 * (moments[1:] + moments[:-1]) * np.diff(wheel))
     # trapezoids: (2 %)²/12 of a curve that bends at entering contacts, 1e-4; the energy left out with the change
     # of ρ along the flank is smaller still
@@ -49,7 +50,7 @@ def test_crank_torque_is_the_slope_of_the_potential(paper_cases, case):
 
     def potential(angle):
         found = solve_equilibrium(model, angle, moment)
-        return stored_energy(model, found.response) - moment * (angle / u + found.pose[:, 3])
+        return stored_energy(model, found.response) - moment * (angle / u + found.pose[:, WHEEL_ANGLE])
 
     slope = (potential(angles + h) - potential(angles - h)) / (2.0 * h)
     state = solve_equilibrium(model, angles, moment).response.rollers
@@ -80,9 +81,9 @@ def test_pin_shaft_loads_follow_the_displacement_of_the_disc(paper_cases):
     angles = np.linspace(0.0, 6.2, 50)
     for drive in paper_cases.values():
         full = analyse(drive, angles).full
-        displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * angles)
+        displacement = disc_displacement(full.pose) * np.exp(-1j * angles)
         ahead = 2.0 * np.pi * np.arange(8) / 8 - angles[:, None]
-        turn = 56.0 * full.pose[:, 2, None]
+        turn = 56.0 * full.pose[:, DISC_ROTATION, None]
         approach = displacement.real[:, None] - turn * np.sin(ahead) - drive.clearance.pin_hole
         # next order: what the hole centre moves across the eccentricity, squared over twice the play e; and the
         # turn squared times the arm

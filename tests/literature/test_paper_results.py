@@ -29,6 +29,7 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
+from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
 CASES = ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]
@@ -150,7 +151,7 @@ def test_light_transmission_error_has_the_period_of_the_flank(analyses):
     """
     amplitude = {}
     for case, analysis in analyses.items():
-        error = analysis.light.pose[:, 3] * 180.0 / np.pi * 3600.0
+        error = analysis.light.pose[:, WHEEL_ANGLE] * 180.0 / np.pi * 3600.0
         amplitude[case] = 2.0 / error.size * np.abs(np.fft.rfft(error - error.mean()))
     for case in ("CS-1", "CS-2"):
         assert np.argmax(amplitude[case]) == 13

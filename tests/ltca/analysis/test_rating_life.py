@@ -8,6 +8,7 @@ from scipy.integrate import quad
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.rating_life import MOVING, RACE_WEIBULL, RollerBearing, edge_factors, power_mean, rating_life
+from ltca.geometry.pairs import DISC_ROTATION
 
 # ISO 281:2007, Table 7: f_c of radial roller bearings by D_we cos α/D_pw.
 TABLE_7 = {
@@ -93,7 +94,7 @@ def test_the_race_that_stands_sees_one_point_loaded(paper_cases):
     rollers = found.full.response.rollers
     push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
     in_crank = np.angle(push * np.exp(-1j * angles))
-    in_disc = np.unwrap(np.angle(push * np.exp(-1j * found.full.pose[:, 2])))
+    in_disc = np.unwrap(np.angle(push * np.exp(-1j * found.full.pose[:, DISC_ROTATION])))
     assert np.ptp(in_crank) < np.radians(10.0)  # turns with the crank
     assert in_disc[-1] - in_disc[0] > np.radians(340.0)  # goes round in the disc
 

@@ -12,6 +12,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset, check_common_shape
 from ltca.analysis.summary import summarise
 from ltca.errors import DriveError
+from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
 # issue 2, to the letter
@@ -236,7 +237,7 @@ def test_light_torque_is_that_of_the_drive(vary):
     drive = vary(load={"light_torque": 20_000.0})
     analysis = analyse(drive, ANGLES)
     alone = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), ANGLES, -20_000.0)
-    np.testing.assert_allclose(analysis.light.pose[:, 3], alone.pose[:, 3], atol=1e-11)
+    np.testing.assert_allclose(analysis.light.pose[:, WHEEL_ANGLE], alone.pose[:, WHEEL_ANGLE], atol=1e-11)
 
 
 def test_cases_of_different_shape_are_refused(vary):

@@ -8,6 +8,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.pressure_safety import pressure_safety
 from ltca.analysis.transmission_error_orders import Order, fit_orders, known_orders
+from ltca.geometry.pairs import WHEEL_ANGLE
 
 
 def test_orders_put_in_come_out():
@@ -47,7 +48,7 @@ def test_clearances_bring_the_holes_and_a_single_pin_its_own_order(paper_cases, 
     angle = 2.0 * np.pi * np.arange(turns * 64) / 64
 
     def spectrum(drive):
-        return fit_orders(angle, analyse(drive, angle).full.pose[:, 3], known_orders(drive, harmonics=2))
+        return fit_orders(angle, analyse(drive, angle).full.pose[:, WHEEL_ANGLE], known_orders(drive, harmonics=2))
 
     close, loose = spectrum(paper_cases["CS-1"]), spectrum(paper_cases["CS-6"])
     assert loose.of(8.0) > 2.5 * close.of(8.0)

@@ -9,6 +9,7 @@ import pytest
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
+from ltca.geometry.pairs import WHEEL_ANGLE
 
 
 @dataclass(frozen=True)
@@ -116,8 +117,8 @@ def test_wheel_feels_pins_alone(drives):
         model = HalfSpaceCompliance.of_drive(drive)
         angles, poses, _ = pressed_poses(drive, 6, 4)
         response = model.respond(angles, poses)
-        moment = (response.pin_load * response.flank.gradient[..., 3]).sum(axis=1)
-        np.testing.assert_allclose(response.force[:, 3], moment, rtol=1e-12)
+        moment = (response.pin_load * response.flank.gradient[..., WHEEL_ANGLE]).sum(axis=1)
+        np.testing.assert_allclose(response.force[:, WHEEL_ANGLE], moment, rtol=1e-12)
 
 
 def test_start_does_not_matter(drives):

@@ -11,6 +11,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import lever_arms, solve_equilibrium
 from ltca.errors import ConvergenceError
 from ltca.geometry.first_contact import unloaded_transmission_error
+from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,7 @@ def test_start_pose_does_not_matter(models, paper_cases, case):
         other = solve_equilibrium(models[case], angles, moment, start)
         # tolerance 1e-9 of the load over a tangential stiffness above 1e5 N/mm: 1e-10 mm
         np.testing.assert_allclose(other.pose[:, :2], plain.pose[:, :2], atol=1e-9)
-        np.testing.assert_allclose(other.pose[:, 2:], plain.pose[:, 2:], atol=1e-11)
+        np.testing.assert_allclose(other.pose[:, ROTATIONS], plain.pose[:, ROTATIONS], atol=1e-11)
         np.testing.assert_allclose(other.response.pin_load, plain.response.pin_load, atol=1e-4)
 
 
@@ -94,8 +95,8 @@ def test_light_torque_tends_to_the_geometry(models, paper_cases):
     away = []
     for torque in (1e4, 1e3, 1e2, 1e1):
         found = solve_equilibrium(model, angles, -torque)
-        away.append(np.max(np.abs(found.pose[:, 3] - geometric)))
-        assert np.all(found.pose[:, 3] < geometric)  # the load always winds it up further
+        away.append(np.max(np.abs(found.pose[:, WHEEL_ANGLE] - geometric)))
+        assert np.all(found.pose[:, WHEEL_ANGLE] < geometric)  # the load always winds it up further
     # line contacts yield a little less than in proportion to the load, ln(1/F) slower: 7 … 10 for a tenth
     ratio = np.array(away[:-1]) / away[1:]
     assert np.all((ratio > 6.0) & (ratio < 10.5))
@@ -105,8 +106,8 @@ def test_light_torque_tends_to_the_geometry(models, paper_cases):
 def test_moment_of_every_position_is_its_own(models):
     angles = np.array([0.3, 0.3, 0.3])
     found = solve_equilibrium(models["CS-3"], angles, np.array([-1e5, 2e5, -3e5]))
-    np.testing.assert_array_equal(np.sign(found.pose[:, 3]), [-1.0, 1.0, -1.0])
-    moments = found.response.force[:, 3]
+    np.testing.assert_array_equal(np.sign(found.pose[:, WHEEL_ANGLE]), [-1.0, 1.0, -1.0])
+    moments = found.response.force[:, WHEEL_ANGLE]
     np.testing.assert_allclose(moments, [-1e5, 2e5, -3e5], rtol=1e-8)
 
 

@@ -11,7 +11,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import DISC_ROTATION, ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies.tolerance_study import tolerance_study
@@ -178,7 +178,7 @@ def test_runout_along_the_bore_offset(paper_cases):
     geometry, plain = ContactGeometry.of_drive(moved), ContactGeometry.of_drive(drive)
     angles, pose = np.array([0.3, 2.0]), np.array([[0.01, 0.0, 2e-4, 1e-4], [0.0, -0.01, -1e-4, 0.0]])
     shifted = pose.copy()
-    step = amount * np.exp(1j * (angle + pose[:, 2]))
+    step = amount * np.exp(1j * (angle + pose[:, DISC_ROTATION]))
     shifted[:, 0] += step.real
     shifted[:, 1] += step.imag
     np.testing.assert_allclose(geometry.flank(angles, pose).approach, plain.flank(angles, shifted).approach, atol=1e-13)

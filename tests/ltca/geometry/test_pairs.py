@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry, X, Y, disc_displacement
 
 POSE_SIZE = 0.03  # mm: as far as clearances and loads carry the disc
 
@@ -136,20 +136,20 @@ def test_flank_force_acts_along_the_common_normal(drives):
         geometry = ContactGeometry.of_drive(drive)
         angles, poses = random_poses(drive, 3, 9)
         motion = geometry.flank(angles, poses)
-        normal = motion.gradient[..., 0] + 1j * motion.gradient[..., 1]
+        normal = motion.gradient[..., X] + 1j * motion.gradient[..., Y]
         np.testing.assert_allclose(np.abs(normal), 1.0, rtol=1e-13)
         # moving the disc toward the pin closes the gap: the normal points out of the disc
-        own = geometry.profile.normal(motion.parameter) * np.exp(1j * poses[:, 2, None])
+        own = geometry.profile.normal(motion.parameter) * np.exp(1j * poses[:, DISC_ROTATION, None])
         np.testing.assert_allclose(normal, own, atol=1e-13)
-        disc = drive.crank.eccentricity * np.exp(1j * angles) + poses[:, 0] + 1j * poses[:, 1]
+        disc = drive.crank.eccentricity * np.exp(1j * angles) + disc_displacement(poses)
         pins = geometry.placement.wheel_pin_centres * np.exp(
-            1j * (angles / drive.pin_wheel.number_of_pins + poses[:, 3])[:, None]
+            1j * (angles / drive.pin_wheel.number_of_pins + poses[:, WHEEL_ANGLE])[:, None]
         )
         about_disc = ((pins - disc[:, None]).conjugate() * normal).imag
         about_wheel = (pins.conjugate() * normal).imag
         tolerance = 1e-12 * drive.pin_wheel.pin_circle_radius
-        np.testing.assert_allclose(motion.gradient[..., 2], about_disc, atol=tolerance)
-        np.testing.assert_allclose(motion.gradient[..., 3], -about_wheel, atol=tolerance)
+        np.testing.assert_allclose(motion.gradient[..., DISC_ROTATION], about_disc, atol=tolerance)
+        np.testing.assert_allclose(motion.gradient[..., WHEEL_ANGLE], -about_wheel, atol=tolerance)
 
 
 def test_start_of_the_contact_parameter_does_not_matter(drives):
@@ -168,7 +168,7 @@ def test_part_errors_change_the_approach_by_their_closed_form(vary):
     size = 1e-4
     angles, poses = np.array([0.3, 2.0, 4.4]), np.array([[1e-2, -5e-3, 1e-4, -2e-4]] * 3)
     plain = ContactGeometry.of_drive(vary()).flank(angles, poses)
-    normal = plain.gradient[..., 0] + 1j * plain.gradient[..., 1]
+    normal = plain.gradient[..., X] + 1j * plain.gradient[..., Y]
     pin = 4
     ray = np.exp(1j * (angles / 14 - 2e-4 + 2.0 * np.pi * pin / 14))
     expected = {
@@ -230,7 +230,7 @@ def test_touching_distance_of_rollers(drives):
         geometry = ContactGeometry.of_drive(drive)
         angles, poses = random_poses(drive, 3, 12)
         rays = geometry.rollers(angles)
-        displacement = poses[:, 0] + 1j * poses[:, 1]
+        displacement = disc_displacement(poses)
         centre = rays.touching_distance(displacement) * rays.direction
         reach = np.abs(centre - displacement[:, None]) + geometry.placement.roller_radii
         np.testing.assert_allclose(reach, geometry.placement.bore_radius, rtol=1e-14)
