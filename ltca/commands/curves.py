@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,6 +66,8 @@ def _solve(
     arguments: argparse.Namespace,
     out: Path,
 ) -> dict[str, Any]:
+    from dataclasses import replace
+
     import numpy as np
 
     from ltca.analysis.loaded_analysis import analyse

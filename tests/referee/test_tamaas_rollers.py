@@ -62,8 +62,11 @@ def centre_peak(pressure):
 
 @pytest.mark.parametrize(
     ("length", "load", "counts"),
-    [(11.8, 1500.0, (96, 512)), (2.0, 1500.0, (96, 256)), (0.3, 400.0, (192, 128))],
-    ids=["long", "short", "shorter than wide"],
+    [
+        pytest.param(11.8, 1500.0, (96, 512), id="long", marks=pytest.mark.slow),
+        pytest.param(2.0, 1500.0, (96, 256), id="short"),
+        pytest.param(0.3, 400.0, (192, 128), id="shorter than wide"),
+    ],
 )
 def test_centre_pressure_and_approach_of_uncrowned_rollers(length, load, counts):
     radius = 2.0
@@ -77,6 +80,7 @@ def test_centre_pressure_and_approach_of_uncrowned_rollers(length, load, counts)
     assert approach == pytest.approx(referee_approach, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_logarithmic_relief_benchmark():
     """D = L = 20 mm, 40 kN on a flat, ISO/TS 16281 profile, E = 210 GPa: 2710 MPa by Hertz, about 2760 MPa really."""
     profile = LogarithmicRelief(length=20.0, diameter=20.0)

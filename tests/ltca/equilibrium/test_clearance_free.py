@@ -27,7 +27,13 @@ def _differences(drive, angle, torque):
     return linear, np.array([np.max(np.abs(one - other)) / np.max(other) for one, other in pairs])
 
 
-@pytest.mark.parametrize("drive", [PAPER["CS-1"], WITHOUT_OFFSETS], ids=["paper", "no offsets"])
+@pytest.mark.parametrize(
+    "drive",
+    [
+        pytest.param(PAPER["CS-1"], id="paper"),
+        pytest.param(WITHOUT_OFFSETS, id="no offsets", marks=pytest.mark.slow),
+    ],
+)
 def test_agreement_is_limited_by_linearisation_alone(drive):
     # Displacements of 20 µm on levers of 4 mm (pin holes) turn normals by 5 mrad: differences of half a per cent at
     # full load are of that order, and vanish with the load. Ten cells leave 1e-5 of the load.

@@ -118,12 +118,16 @@ def test_radii_between_the_nodes():
         load, _ = law.load_and_stiffness(4e-3, radius)
         single, _ = law_at(LOGARITHMIC, radius).load_and_stiffness(4e-3, radius)
         assert float(load) == pytest.approx(float(single), rel=2e-4)
+    for radius in (0.9, 9.0):
+        with pytest.raises(CycloError, match="effective radii"):
+            law.load_and_stiffness(4e-3, radius)
 
 
 def test_radii_outside_the_table_are_refused():
-    law = ProfiledLineContactLaw.for_radii(LOGARITHMIC, MODULUS, 1.0, 6.0)
-    with pytest.raises(CycloError, match="effective radii"):
-        law.load_and_stiffness(1e-3, 9.0)
+    law = law_at(LOGARITHMIC)
+    for radius in (1.9, 2.1):
+        with pytest.raises(CycloError, match="effective radii"):
+            law.load_and_stiffness(1e-3, radius)
     with pytest.raises(ValueError, match="smallest_radius"):
         profiled_table(LOGARITHMIC, 3.0, 2.0)
 

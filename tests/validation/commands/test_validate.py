@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+import validation.report.costs
 import validation.study
 from ltca.errors import CycloError
 from validation.commands import validate
@@ -32,6 +33,9 @@ def test_a_failed_row_makes_the_exit_status_one(status, small_study, tmp_path, m
         rows += (replace(rows[0], quantity="broken figure", difference=1.0, limit=0.1),)
     study = replace(small_study, rows=rows)
     monkeypatch.setattr(validation.study, "run_validation", lambda plan, folder, step, say: study)
+    # Times are printed, not tested: a short turn tells as much.
+    monkeypatch.setattr(validation.report.costs, "POSITIONS", 2)
+    monkeypatch.setattr(validation.report.costs, "REPEATS", 1)
     assert run("paper", "--out", str(tmp_path)) == status
     out = capsys.readouterr().out
     assert ("FAILED" in out) == bool(status)

@@ -1,0 +1,207 @@
+"""Which tests run which lines: a map made test file by test file, kept until a source or the test file changes.
+
+A line that runs while a fixture of a module or session is made counts for every test that uses the fixture. Each test file
+has a process of its own, so what a package remembers between calls (tables, grids) is made anew in each.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections import defaultdict
+from collections.abc import Generator, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutation.formulas import PACKAGES, Mutant
+
+
+def processor_seconds() -> float:
+    """Return the processor time of this process and its children."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+class LineWatch:
+    """Plugin of pytest that tells `coverage` which test is running."""
+
+    def __init__(self, watch: Any) -> None:
+        self.watch = watch
+        self.current = ""
+        self.tests: dict[str, tuple[float, str]] = {}
+        self.uses: dict[str, list[str]] = defaultdict(list)
+
+    @staticmethod
+    def fixture_name(definition: pytest.FixtureDef[Any]) -> str:
+        """Return the context of a fixture."""
+        return f"fixture {definition.baseid}::{definition.argname}"
+
+    def _switch(self, context: str) -> str:
+        before, self.current = self.current, context
+        self.watch.switch_context(context)
+        return before
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, object, object]:
+        """Time a test and note its fixtures."""
+        for definitions in getattr(item, "_fixtureinfo", None).name2fixturedefs.values():  # type: ignore[union-attr]
+            for definition in definitions:
+                if definition.scope != "function":
+                    self.uses[self.fixture_name(definition)].append(item.nodeid)
+        self._switch(item.nodeid)
+        began = processor_seconds()
+        try:
+            return (yield)
+        finally:
+            _, outcome = self.tests.get(item.nodeid, (0.0, "passed"))
+            self.tests[item.nodeid] = (processor_seconds() - began, outcome)
+            self._switch("")
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Generator[None, object, object]:
+        """Let a shared fixture have a context of its own."""
+        if fixturedef.scope == "function":
+            return (yield)
+        before = self._switch(self.fixture_name(fixturedef))
+        try:
+            return (yield)
+        finally:
+            self._switch(before)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note what does not pass as it is."""
+        if report.outcome != "passed":
+            self.tests[report.nodeid] = (0.0, report.outcome)
+
+
+def map_file(tree: Path, path: str, *, slow: bool) -> dict[str, Any]:
+    """Run one file of tests and return its part of the map; to be called in a fork.
+
+    Returns
+    -------
+    dict
+        ``tests``: seconds and outcome by name; ``lines``: for each source file and line, numbers of tests in that order.
+    """
+    import coverage
+
+    watch = coverage.Coverage(data_file=None, source=[str(tree / name) for name in PACKAGES], messages=False)
+    watch.start()
+    plugin = LineWatch(watch)
+    words = [path, "-q", "-p", "no:cacheprovider", "--no-header", *([] if slow else ["-m", "not slow"])]
+    pytest.main(words, plugins=[plugin])
+    watch.stop()
+    names = list(plugin.tests)
+    numbers = {name: number for number, name in enumerate(names)}
+    data = watch.get_data()
+    lines: dict[str, dict[int, list[int]]] = {}
+    for measured in data.measured_files():
+        own: dict[int, list[int]] = {}
+        for line, contexts in data.contexts_by_lineno(measured).items():
+            users = {user for context in contexts for user in plugin.uses.get(context, [context])}
+            found = sorted(numbers[user] for user in users if user in numbers)
+            if found:
+                own[line] = found
+        if own:
+            lines[str(Path(measured).relative_to(tree))] = own
+    return {"tests": plugin.tests, "lines": lines}
+
+
+def test_files(tree: Path) -> list[str]:
+    """Return the files that hold tests: those of `tests` and the packages' own doctests."""
+    found = [str(path.relative_to(tree)) for path in sorted((tree / "tests").rglob("test_*.py"))]
+    for package in PACKAGES:
+        sources = sorted((tree / package).rglob("*.py"))
+        found += [str(path.relative_to(tree)) for path in sources if ">>> " in path.read_text(encoding="utf-8")]
+    return found
+
+
+def fingerprints(tree: Path, path: str, ran: Iterable[str]) -> dict[str, str]:
+    """Return what a part of the map depends on: the test file, what its folder shares, the sources it ran."""
+    folders = list(Path(path).parents)
+    shared = [str(folder / "conftest.py") for folder in folders if (tree / folder / "conftest.py").exists()]
+    return {
+        name: hashlib.sha256((tree / name).read_bytes()).hexdigest() if (tree / name).exists() else ""
+        for name in sorted({path, *shared, *ran})
+    }
+
+
+@dataclass
+class CoverageMap:
+    """The whole map.
+
+    Attributes
+    ----------
+    seconds : dict
+        Processor time of every test that passes.
+    lines : dict
+        Names of tests by source file and line.
+    """
+
+    seconds: dict[str, float] = field(default_factory=dict)
+    lines: dict[str, dict[int, set[str]]] = field(default_factory=lambda: defaultdict(lambda: defaultdict(set)))
+
+    @classmethod
+    def of_parts(cls, parts: Iterable[dict[str, Any]]) -> CoverageMap:
+        """Join the parts of the test files; what does not pass unbroken is left out."""
+        found = cls()
+        for part in parts:
+            names = list(part["tests"])
+            for name, (seconds, outcome) in part["tests"].items():
+                if outcome == "passed":
+                    found.seconds[name] = seconds
+            for path, lines in part["lines"].items():
+                for line, numbers in lines.items():
+                    found.lines[path][int(line)] |= {names[number] for number in numbers} & found.seconds.keys()
+        return found
+
+    def tests_of(self, mutant: Mutant, tree: Path) -> list[str]:
+        """Return the tests that can see a mutant, those most likely to first: its own file's, then quick ones."""
+        chosen = self._on_lines(mutant.path, range(mutant.line, mutant.end_line + 1))
+        if not chosen and mutant.scope != (0, 0):  # the default of an argument: the function's own lines
+            chosen = self._on_lines(mutant.path, range(mutant.scope[0], mutant.scope[1] + 1))
+        if mutant.scope == (0, 0):  # runs at import, before any test
+            chosen = self._users_of(mutant, tree)
+        mirrored = f"test_{Path(mutant.path).stem}.py"
+        return sorted(chosen, key=lambda name: (mirrored not in name, self.seconds[name], name))
+
+    def _on_lines(self, path: str, lines: Iterable[int]) -> set[str]:
+        own = self.lines.get(path, {})
+        return {name for line in lines for name in own.get(line, ())}
+
+    def _users_of(self, mutant: Mutant, tree: Path) -> set[str]:
+        """Return tests of the lines that name what a statement at import binds; of the whole file where that is nothing."""
+        words = re.findall(r"\w+", mutant.name)
+        chosen: set[str] = set()
+        if words:
+            pattern = re.compile(r"\b(" + "|".join(words) + r")\b")
+            for path, lines in self.lines.items():
+                text = (tree / path).read_text(encoding="utf-8").splitlines()
+                chosen |= self._on_lines(path, [line for line in lines if pattern.search(text[line - 1])])
+        return chosen or self._on_lines(mutant.path, self.lines.get(mutant.path, {}))
+
+
+def read_part(folder: Path, tree: Path, path: str, *, slow: bool) -> dict[str, Any] | None:
+    """Return a kept part of the map that still holds."""
+    try:
+        part: dict[str, Any] = json.loads(_place(folder, path).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    holds = part["made_of"] == fingerprints(tree, path, part["lines"]) and (part["slow"] or not slow)
+    return part if holds else None
+
+
+def write_part(folder: Path, tree: Path, path: str, part: dict[str, Any], *, slow: bool) -> dict[str, Any]:
+    """Keep a part of the map and return it with what it was made of."""
+    folder.mkdir(parents=True, exist_ok=True)
+    whole = {"made_of": fingerprints(tree, path, part["lines"]), "slow": slow, **part}
+    _place(folder, path).write_text(json.dumps(whole), encoding="utf-8")
+    return whole
+
+
+def _place(folder: Path, path: str) -> Path:
+    return folder / f"{path.replace('/', '.')}.json"
