@@ -223,6 +223,17 @@ def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple
     )
 
 
+def _refuse_wheel_axis(drive: Drive) -> None:
+    offset = drive.pin_wheel.axis_offset
+    if offset.place != 0.0:
+        raise DriveError(
+            [
+                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
+                "the wheel about the axis of the pin shaft (the LTCA takes it)"
+            ]
+        )
+
+
 def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = None) -> ExpectedContacts:
     """Guess places, loads and half-widths of all contacts at a crank angle.
 
@@ -248,14 +259,7 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
         When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both.
     """
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
-    if placement.wheel_axis != 0.0:
-        offset = drive.pin_wheel.axis_offset
-        raise DriveError(
-            [
-                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
-                "the wheel about the axis of the pin shaft (the LTCA takes it)"
-            ]
-        )
+    _refuse_wheel_axis(drive)
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length

@@ -126,12 +126,7 @@ def grade_contacts(
     bore, race, radius = place.bore_radius, place.inner_race_radius, place.roller_radii
     turn_back = np.exp(-1j * rotation)
 
-    rigid = (gaps.pins, gaps.rollers, gaps.holes)
-    left = (
-        rigid
-        if open_gaps is None
-        else tuple(np.where(np.isnan(known), plain, known) for known, plain in zip(open_gaps, rigid, strict=True))
-    )
+    pin_gaps, roller_gaps, hole_gaps = _gaps_left(gaps, open_gaps)
 
     def group(
         load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
@@ -148,6 +143,9 @@ def grade_contacts(
 
     hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
     flank_effective = profile.effective_radius(gaps.flank_parameters, place.wheel_pin_radii)
+    outer_effective, inner_effective = radius * bore / (bore - radius), radius * race / (race + radius)
+    outer_modulus = contact_modulus(materials.disc, materials.roller)
+    inner_modulus = contact_modulus(materials.inner_race, materials.roller)
     pins, rollers, holes = loads
     hole_modulus = 1.0 / materials.disc.plane_strain_compliance
     if elastic_shaft_pins:
@@ -159,28 +157,24 @@ def grade_contacts(
         disc_rotation=float(rotation),
         wheel_angle=float(wheel_angle),
         pins=group(
-            pins, left[0], flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
+            pins, pin_gaps, flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
         ),
         flank_points=profile.flank(gaps.flank_parameters),
-        rollers_outer=group(
-            rollers,
-            left[1],
-            radius * bore / (bore - radius),
-            contact_modulus(materials.disc, materials.roller),
-            rays,
-        ),
-        rollers_inner=group(
-            rollers,
-            left[1],
-            radius * race / (race + radius),
-            contact_modulus(materials.inner_race, materials.roller),
-            -rays,
-        ),
+        rollers_outer=group(rollers, roller_gaps, outer_effective, outer_modulus, rays),
+        rollers_inner=group(rollers, roller_gaps, inner_effective, inner_modulus, -rays),
         bore_points=_bore_points(displacement, place, rays) * turn_back,
         race_points=race * rays,
-        holes=group(holes, left[2], hole_effective, hole_modulus, gaps.hole_directions),
+        holes=group(holes, hole_gaps, hole_effective, hole_modulus, gaps.hole_directions),
         hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
     )
+
+
+def _gaps_left(gaps: RigidGaps, known: tuple[FloatArray, FloatArray, FloatArray] | None) -> tuple[FloatArray, ...]:
+    """Return the gaps of pins, rollers and holes: those known of the deformed bodies, else those of the rigid ones."""
+    rigid = (gaps.pins, gaps.rollers, gaps.holes)
+    if known is None:
+        return rigid
+    return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 
 def _bore_points(displacement: complex, place: Placement, rays: ComplexArray) -> ComplexArray:
