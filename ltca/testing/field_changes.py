@@ -7,10 +7,17 @@ come up in a `DriveError`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ltca.drive.fields import element_count, field_kinds, read_field
 from ltca.drive.parts import Drive
+from ltca.reading.changes import with_fields
+
+FloatArray = NDArray[np.float64]
 
 # Fields whose change must be a small one, or the drive stops being a drive: mm, as a part of the value.
 _CLOSE = {
@@ -33,6 +40,25 @@ _COUNTS = {
 }
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _OTHER_WORD = {"load.direction": {"ccw": "cw", "cw": "ccw"}}
+_RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
+ROUND_OFF = 1e-6
+"""An answer moves when a number of it changes by more than this part: a thousand times the tolerance of equilibrium."""
+
+_NAME = {"name": "names a drive and its files, nothing else"}
+_EVERYWHERE: Mapping[str, str] = _NAME
+_RIGID_PIN = {
+    f"materials.shaft_pin.{name}": "the shaft pin is rigid on its spring where the hole's wall yields by itself"
+    for name in ("youngs_modulus", "poisson_ratio")
+}
+EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
+    "tables": _EVERYWHERE,
+    "direct": _NAME | {"load.light_torque": "direct is walked at full load alone"},
+    "paper": _NAME | {"load.light_torque": "the paper's iteration is walked at full load alone"},
+    "hybrid": _NAME | _RIGID_PIN,
+    "fe": _NAME | _RIGID_PIN,
+    "full FE": _NAME | _RIGID_PIN | {"load.light_torque": "a full solution is one of full load"},
+}
+"""Fields that may leave the answer of a model alone, each with its reason."""
 
 
 def leaf_fields() -> tuple[str, ...]:
@@ -91,3 +117,60 @@ def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...
     # Of each part another amount: a circle that shifts or grows as a whole could hide in a free motion.
     step = _FROM_ZERO["mm"]
     return tuple(value + step * (1.0 if number % 2 else -0.6) for number, value in enumerate(values[: count or 0]))
+
+
+def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
+    """Return a drive in which a field counts, and its change.
+
+    Counts take what belongs to them along (teeth follow pins, errors of single parts go), and of an end relief the
+    other of length and depth is given, without which neither has a meaning.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive to start from.
+    path : str
+        One of `leaf_fields`.
+
+    Returns
+    -------
+    base : Drive
+        To compare with.
+    change : dict of str to value
+        For `ltca.reading.changes.with_fields`.
+    """
+    parent, _, name = path.rpartition(".")
+    if parent.endswith(("pin_profile", "roller_profile")):
+        # Tables of profiled parts are dear where radii differ: diameters are as drawn.
+        drive = with_fields(drive, {field: () for field in field_kinds() if field.endswith("_errors.diameter")})
+    if name in _RELIEF:
+        other = next(field for field in _RELIEF if field != name)
+        return with_fields(drive, {f"{parent}.{other}": _RELIEF[other]}), {path: _RELIEF[name]}
+    if path == "disc.thickness":  # rollers no longer than the disc; in plane strain as long as it is
+        return drive, {path: 1.1 * read_field(drive, path)} | (
+            {"crank_bearing.roller_length": 1.1 * read_field(drive, "crank_bearing.roller_length")}
+        )
+    if path in _COUNTS:
+        cleared = {
+            field: () for field, kind in field_kinds().items() if kind.is_array and "profile_errors" not in field
+        }
+        base = with_fields(drive, cleared)
+        change = {path: sensible_change(base, path)}
+        partner = {
+            "pin_wheel.number_of_pins": "disc.number_of_teeth",
+            "disc.number_of_teeth": "pin_wheel.number_of_pins",
+        }
+        if path in partner:
+            change[partner[path]] = sensible_change(base, partner[path])
+        return base, change
+    return drive, {path: sensible_change(drive, path)}
+
+
+def moves(before: FloatArray, after: FloatArray) -> bool:
+    """Return whether an answer differs from another by more than `ROUND_OFF` in any number, or in their count."""
+    if before.shape != after.shape or not np.array_equal(np.isnan(before), np.isnan(after)):
+        return True
+    known = ~np.isnan(before)
+    first, second = before[known], after[known]
+    size = np.maximum(np.maximum(np.abs(first), np.abs(second)), 1e-9)
+    return bool(np.any(np.abs(first - second) > ROUND_OFF * size))

@@ -1,0 +1,153 @@
+"""The contract: every leaf field of a drive moves the answer of every model, or is refused by its name.
+
+Nothing is ignored. Each field of a small drive with every deviation in it is changed as a person could have changed
+it; then some number of the answer has to differ, or a `DriveError` has to name the field. What may leave an answer
+alone stands in `EXCEPTIONS`, with its reason. Full finite elements and the commands as programs walk the same list in
+``benchmarks/contract.py``, which takes minutes; here they are walked by what their solution is a function of.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import Hybrid, PlaneStrain
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import VARIABLES, build_dataset
+from ltca.analysis.summary import summarise
+from ltca.compliance.coefficients import load_coefficients
+from ltca.compliance.grids import GridCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.paper_method import solve_paper_equilibrium
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import closed_form_coefficients
+from ltca.testing.field_changes import EXCEPTIONS, change_of, leaf_fields, moves
+
+BASE = load_drive(Path(__file__).parent / "drive.toml").cases["nominal"]
+ANGLES = np.array([0.5, 1.9])
+# What plane strain cannot say, and what the finite elements refuse, has to be left out of the base to be changed.
+PLAIN = with_fields(BASE, {"crank_bearing.roller_length": BASE.disc.thickness})
+FULL_FE = with_fields(PLAIN, {"pin_wheel.axis_offset.x": 0.0, "pin_wheel.axis_offset.y": 0.0})
+
+
+def numbers(analysis):
+    """Everything a run reports of a case, in one row."""
+    data = build_dataset("contract", {"case": analysis})
+    skipped = {"iterations", "equilibrium_residual"}
+    values = [data[name].values.ravel() for name in VARIABLES if name not in skipped]
+    summary = [value for name, value in summarise(analysis).items() if value is not None and "residual" not in name]
+    return np.concatenate([*values, data["torque"].values, summary])
+
+
+def tables(drive):
+    return numbers(analyse(drive, ANGLES))
+
+
+def direct(drive):
+    """Grids inside every iteration; few cells, for the sake of time: which fields count does not depend on them."""
+    near = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), ANGLES[:1], drive.wheel_moment())
+    model = GridCompliance.of_drive(drive, cells=4)
+    found = solve_equilibrium(model, ANGLES[:1], drive.wheel_moment(), near.pose)
+    pressures = model.pressures(found.response)
+    kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    return np.concatenate(
+        [found.pose.ravel(), *(kind.mid.ravel() for kind in kinds), *(k.largest.ravel() for k in kinds)]
+    )
+
+
+def paper(drive):
+    model = HalfSpaceCompliance.of_drive(drive)
+    near = solve_equilibrium(model, ANGLES, 0.95 * drive.wheel_moment())
+    found = solve_paper_equilibrium(model, ANGLES, drive.wheel_moment(), near.pose)
+    pressures = model.pressures(found.response)
+    kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    return np.concatenate(
+        [found.pose.ravel(), *(kind.mid.ravel() for kind in kinds), *(k.largest.ravel() for k in kinds)]
+    )
+
+
+@pytest.fixture(scope="module")
+def coefficients(tmp_path_factory):
+    """Coefficients of a drive's own bodies in closed form, made once for each distinct shape."""
+    folder, known = tmp_path_factory.mktemp("coefficients"), {}
+
+    def of(drive):
+        shape = drive.shape_fingerprint()
+        if shape not in known:
+            path = folder / f"{shape}.nc"
+            closed_form_coefficients(drive, half_width=0.02, depth=20.0).to_netcdf(path, engine="h5netcdf")
+            known[shape] = load_coefficients(path, drive)
+        return known[shape]
+
+    return of
+
+
+@pytest.fixture(scope="module")
+def models(coefficients):
+    return {
+        "tables": (BASE, tables),
+        "direct": (BASE, direct),
+        "paper": (BASE, paper),
+        "hybrid": (
+            BASE,
+            lambda drive: numbers(analyse(drive, ANGLES, engine=Hybrid(coefficients=coefficients(drive)))),
+        ),
+        "fe": (
+            PLAIN,
+            lambda drive: numbers(analyse(drive, ANGLES, engine=PlaneStrain(coefficients=coefficients(drive)))),
+        ),
+    }
+
+
+@pytest.fixture(scope="module")
+def answers():
+    return {}
+
+
+def walk():
+    """Every field of every model; what needs tables of its own, and grids, is slow."""
+    for model in ("tables", "paper", "hybrid", "fe", "direct"):
+        for path in leaf_fields():
+            dear = model == "direct" or "_profile." in path
+            yield pytest.param(model, path, id=f"{model}-{path}", marks=[pytest.mark.slow] if dear else [])
+
+
+@pytest.mark.parametrize(("model", "path"), walk())
+def test_every_field_is_used_or_refused(model, path, models, answers):
+    base, answer = models[model]
+    base, change = change_of(base, path)
+    refused = ""
+    try:
+        after = answer(with_fields(base, change))
+    except DriveError as error:
+        refused = str(error)
+    if refused:
+        assert path in refused, f"{path} is refused without its name: {refused}"
+        return
+    key = (model, repr(base))
+    if key not in answers:
+        answers[key] = answer(base)
+    if path in EXCEPTIONS[model]:
+        assert not moves(answers[key], after), f"{path} is listed as an exception of {model} but moves the answer"
+    else:
+        assert moves(answers[key], after), f"{path} is ignored by {model}"
+
+
+def test_the_walk_sees_what_is_ignored(answers):
+    """A model that drops a field in silence is found."""
+    path = "crank.axis_offset.x"
+    base, change = change_of(BASE, path)
+    deaf = with_fields(with_fields(base, change), {path: 0.002})
+    assert not moves(tables(base), tables(deaf))
+    assert moves(tables(base), tables(with_fields(base, change)))
+
+
+def test_every_exception_is_a_field_with_a_reason():
+    for model, exceptions in EXCEPTIONS.items():
+        assert set(exceptions) <= set(leaf_fields()), model
+        assert all(len(reason) > 10 for reason in exceptions.values()), model
