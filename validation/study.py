@@ -14,6 +14,7 @@ import numpy as np
 
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import require_plane_strain
 from ltca.output.files import write_json
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
@@ -103,12 +104,14 @@ def plan_study(
     Raises
     ------
     DriveError
-        When a case is not in the file.
+        When a case is not in the file, or is nothing that full FE can say.
     """
     names = list(file.cases)
     if not cases:
         cases = list(dict.fromkeys([names[0], names[(len(names) - 1) // 2], names[-1]]))
     drives = file.select(cases)
+    for drive in drives.values():
+        require_plane_strain(drive, "validation by full finite elements")
     if not crank_angles:
         count = QUICK_ANGLES if level == "quick" else FULL_ANGLES
         teeth = next(iter(drives.values())).disc.number_of_teeth

@@ -116,7 +116,7 @@ def _engine(arguments: argparse.Namespace) -> Engine:
         arguments.compliance,
         method=arguments.method,
         contacts=arguments.contacts,
-        coefficients=arguments.coefficients,
+        coefficients=tuple(arguments.coefficients) if arguments.coefficients else None,
         hole_near_field=False if arguments.no_hole_near_field else None,
     )
 

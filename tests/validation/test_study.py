@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
 import validation.study as study
+from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+from validation.compare.finite_element_positions import Settings
 from validation.rows import Row
 
 ROWS = [
@@ -46,3 +51,10 @@ def test_damaged_answers_are_not_used(damage, tmp_path):
     study._write_rows(path, ROWS)
     path.write_text(damage, encoding="utf-8")
     assert study._read_rows(path) == []
+
+
+def test_what_full_fe_cannot_say_is_refused_before_any_work():
+    file = load_drive("paper")
+    short = with_fields(file.cases["CS-1"], {"crank_bearing.roller_length": 8.0})
+    with pytest.raises(DriveError, match=r"crank_bearing.roller_length = 8 mm: must be 11.8 mm"):
+        study.plan_study(replace(file, cases={"short": short}), None, None, "quick", Settings())
