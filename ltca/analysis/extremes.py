@@ -346,9 +346,7 @@ def _turned(pose: FloatArray, angle: FloatArray) -> FloatArray:
     return np.column_stack([place.real, place.imag, pose[:, 2:]])
 
 
-def _solve(
-    analysis: LoadedAnalysis, full: _Stage, light: _Stage, angles: FloatArray, light_angles: FloatArray
-) -> None:
+def _solve(analysis: LoadedAnalysis, full: _Stage, light: _Stage, angles: FloatArray, light_angles: FloatArray) -> None:
     """Balance new positions of both torques in one batch and give them to their stages."""
     joined = np.concatenate([angles, light_angles])
     moment = np.repeat([full.moment, light.moment], [angles.size, light_angles.size])
