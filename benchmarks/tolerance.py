@@ -21,8 +21,8 @@ import time
 from pathlib import Path
 
 from ltca.reading.drive_file import load_drive
-from ltca.studies.execution.engine import Engine, solve_batches
 from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study
 from ltca.studies.tolerance_study import tolerance_study
@@ -36,14 +36,14 @@ def cpu_seconds() -> float:
     )
 
 
-def measure(study: Study, engine: Engine, folder: StudyFolder) -> tuple[float, float]:
+def measure(study: Study, where: Workers, folder: StudyFolder) -> tuple[float, float]:
     """Run the study and return its positions per second, whole and steady."""
-    workers = max(engine.workers, 1)
+    workers = max(where.processes, 1)
     began, load = time.perf_counter(), os.getloadavg()[0]
     cpu = cpu_seconds()
     left, first, steady, solved = folder.prepare(study, resume=False), 0.0, 0, 0
-    for number, result in enumerate(solve_batches(study, left, engine)):
-        folder.store(result)
+    for number, result in enumerate(solve_batches(study, left, where)):
+        folder.store(study, result)
         solved += len(result.messages)
         if number == workers - 1:
             first = time.perf_counter()
@@ -53,9 +53,9 @@ def measure(study: Study, engine: Engine, folder: StudyFolder) -> tuple[float, f
     positions = study.positions
     whole, rate = solved * positions / (ended - began), steady * positions / (ended - first)
     used = 1e6 * (cpu_seconds() - cpu) / (solved * positions)
-    name = engine.scheduler or f"{engine.workers} worker{'s' if engine.workers > 1 else ''}"
+    name = where.scheduler or f"{where.processes} worker{'s' if where.processes > 1 else ''}"
     print(f"  {name:<24}{whole:>10.0f}{rate:>10.0f}{used:>12.0f}{load:>10.1f} → {os.getloadavg()[0]:.1f}")
-    run_study(study, folder, engine, resume=True)
+    run_study(study, folder, where, resume=True)
     return whole, rate
 
 
@@ -72,12 +72,12 @@ def main() -> None:
     print(f"{study.name}: {arguments.samples} samples × {arguments.positions} positions, {os.cpu_count()} cores")
     print(f"  {'':<24}{'whole':>10}{'steady':>10}{'CPU µs':>12}{'machine load':>16}")
     print(f"  {'':<24}{'pos./s':>10}{'pos./s':>10}{'a position':>12}")
-    engines = [Engine(workers=1), Engine(workers=2)]
+    places = [Workers(), Workers(processes=2)]
     if arguments.scheduler:
-        engines.append(Engine(scheduler=arguments.scheduler))
-    with tempfile.TemporaryDirectory() as place:
-        folders = [StudyFolder(path=Path(place) / str(number)) for number in range(len(engines))]
-        rates = [measure(study, engine, folder) for engine, folder in zip(engines, folders, strict=True)]
+        places.append(Workers(scheduler=arguments.scheduler))
+    with tempfile.TemporaryDirectory() as folder:
+        folders = [StudyFolder(path=Path(folder) / str(number)) for number in range(len(places))]
+        rates = [measure(study, where, part) for where, part in zip(places, folders, strict=True)]
         print(f"  two workers by one: {rates[1][0] / rates[0][0]:.2f} whole, {rates[1][1] / rates[0][1]:.2f} steady")
         failed = folders[0].failures(study)
         print(f"  failed samples: {len(failed)}")

@@ -7,9 +7,9 @@ positions as often as wanted. Names given as text become engines in `engine_name
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Protocol, get_args
+from typing import Any, ClassVar, Literal, Protocol, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +61,15 @@ class Engine(Protocol):
     @property
     def options(self) -> dict[str, str]:
         """What distinguishes results of this engine, for attributes of files."""
+        ...
+
+    @property
+    def batches(self) -> bool:
+        """Whether `build` takes several drives."""
+        ...
+
+    def with_coefficients(self, drive: Drive) -> Engine:
+        """Return the engine with what it has to read or derive for a drive already in it."""
         ...
 
     def prepare(self, drive: Drive) -> PreparedEngine:
@@ -158,6 +167,10 @@ class HalfSpace:
         """Compliance, method and contacts."""
         return {"compliance": self.compliance, "method": self.method, "contacts": str(self.contacts)}
 
+    def with_coefficients(self, drive: Drive) -> HalfSpace:
+        """Return the engine itself: half-spaces need none."""
+        return self
+
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         tables = HalfSpaceCompliance.of_drive(drive)
@@ -198,12 +211,18 @@ class _Coupled:
         near = "yes" if self.hole_near_field else "no"
         return {"compliance": compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
 
+    def with_coefficients(self, drive: Drive) -> Self:
+        """Return the engine with the coefficients of a drive in it: read from file or cache, or derived."""
+        found = self.coefficients
+        if isinstance(found, InfluenceCoefficients):
+            return self
+        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
+        return replace(self, coefficients=find_coefficients(drive, found, near_field=near_field))
+
     def model(self, drive: Drive) -> CoupledCompliance:
         """Return the coupled compliance of a drive."""
-        compliance: Compliance = self.compliance  # type: ignore[attr-defined]  # of the engines below
-        near_field, found = NEAR_FIELDS[compliance], self.coefficients
-        if not isinstance(found, InfluenceCoefficients):
-            found = find_coefficients(drive, found, near_field=near_field)
+        found: Any = self.with_coefficients(drive).coefficients
+        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
         return CoupledCompliance.of_drive(drive, found, near_field, hole_near_field=self.hole_near_field)
 
     def prepare(self, drive: Drive) -> PreparedEngine:

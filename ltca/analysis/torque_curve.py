@@ -1,19 +1,19 @@
 """Torque against wind-up over both directions, and what is read from it: backlash, lost motion, torsional stiffness.
 
 The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; what remains
-between the branches at vanishing torque is the play of all clearances together.
+between the branches at vanishing torque is the play of all clearances together. Torques are those of the whole drive:
+its discs share them alike, and turn the wheel together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.engines import Engine
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.geometry.pairs import WHEEL_ANGLE
@@ -37,7 +37,7 @@ class TorqueCurve:
     crank_angle : array, shape (angles,)
         φ_C, rad.
     torque : array, shape (points,)
-        Moment on the wheel, ccw positive, ascending through negative to positive, N·mm.
+        Moment on the wheel of all discs together, ccw positive, ascending through negative to positive, N·mm.
     wheel_angle : array, shape (angles, points)
         Wheel angle, rad.
     backlash : array, shape (angles,)
@@ -45,7 +45,7 @@ class TorqueCurve:
     lost_motion : array, shape (angles,)
         Between ±3 % of the rated torque, rad.
     stiffness : array, shape (angles, 2)
-        From half the rated torque to all of it, clockwise and counter-clockwise moment, N·mm/rad.
+        Of the whole drive, from half the rated torque to all of it, clockwise and counter-clockwise, N·mm/rad.
     """
 
     crank_angle: FloatArray
@@ -61,20 +61,20 @@ def torque_curve(
     crank_angle: FloatArray,
     *,
     points: int = 40,
-    build: Callable[[Drive], ComplianceModel] = HalfSpaceCompliance.of_drive,
+    engine: Engine | None = None,
 ) -> TorqueCurve:
     """Load the wheel both ways at held crank angles.
 
     Parameters
     ----------
     drive : Drive
-        The drive; its torque (the share of the analysed disc) is the rated one.
+        The drive; its torque is the rated one.
     crank_angle : array, shape (angles,)
         φ_C, rad.
     points : int
         Torques of each direction, evenly spaced in their square root (dense where the curve bends).
-    build : callable
-        Compliance model of the drive.
+    engine : Engine, optional
+        How bodies yield; half-spaces by default.
 
     Returns
     -------
@@ -86,13 +86,17 @@ def torque_curve(
         When a position does not balance.
     """
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    rated = abs(drive.wheel_moment())
+    rated, share = drive.load.torque, drive.disc.torque_share
     parts = np.unique(
         np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, LOST_MOTION, STIFF_FROM]])
     )
     torque = rated * np.concatenate([-parts[::-1], parts])
-    model = build(drive)
-    found = solve_equilibrium(model, np.repeat(angles, torque.size), np.tile(torque, angles.size))
+    held, moment = np.repeat(angles, torque.size), np.tile(share * torque, angles.size)
+    tables = HalfSpaceCompliance.of_drive(drive)
+    found = solve_equilibrium(tables, held, moment)
+    model = tables if engine is None else engine.prepare(drive).model
+    if not isinstance(model, HalfSpaceCompliance):
+        found = solve_equilibrium(model, held, moment, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
 
     def at(part: float) -> FloatArray:

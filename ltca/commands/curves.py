@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ltca.commands.compliance_arguments import add_compliance_arguments
 
 if TYPE_CHECKING:
+    from ltca.analysis.engines import Engine
+    from ltca.analysis.pressure_safety import PressureSafety
+    from ltca.analysis.rating_life import RatingLife
+    from ltca.analysis.torque_curve import TorqueCurve
+    from ltca.analysis.transmission_error_orders import Spectrum
     from ltca.drive.parts import Drive
+    from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
 POSITIONS_PER_TURN = 192
@@ -18,23 +26,101 @@ HARMONICS = 7
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", metavar="NAME", help="case; default the first")
+    parser.add_argument("--case", action="append", metavar="NAME", help="case, repeatable; default all")
     parser.add_argument("--turns", metavar="N", type=int, help="crank turns behind the orders; default z_P")
     parser.add_argument(
         "--pressure-limit", metavar="P", default="1500", help="permissible flank pressure in MPa; default 1500"
     )
     parser.add_argument("--speed", metavar="N", type=float, help="crank speed in turns a minute, for the life in hours")
     parser.add_argument("--load-rating", metavar="C", help="dynamic load rating of the crank bearing in N; by ISO 281")
+    add_compliance_arguments(parser)
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>_curves")
     parser.add_argument("--no-figures", action="store_true", help="write curves.json only")
 
 
+class Limits(NamedTuple):
+    """What the results are held against.
+
+    Attributes
+    ----------
+    pressure : float
+        Permissible flank pressure, MPa.
+    load_rating : float or None
+        Of the crank bearing, N; by ISO 281 otherwise.
+    speed : float or None
+        Of the crank, turns a minute.
+    """
+
+    pressure: float
+    load_rating: float | None
+    speed: float | None
+
+
+class CaseCurves(NamedTuple):
+    """What one case gives.
+
+    Attributes
+    ----------
+    curve : TorqueCurve
+        Of the whole drive.
+    turns : int
+        Crank turns behind everything below.
+    crank_angle : array, shape (positions,)
+        Their positions, rad.
+    spectrum : Spectrum
+        Orders of the transmission error.
+    life : RatingLife
+        Of a crank bearing.
+    hours : float or None
+        At the speed, where there is one.
+    pressure : array, shape (positions, pins)
+        At mid-width, MPa.
+    safety : PressureSafety
+        Over all positions.
+    """
+
+    curve: TorqueCurve
+    turns: int
+    crank_angle: FloatArray
+    spectrum: Spectrum
+    life: RatingLife
+    hours: float | None
+    pressure: FloatArray
+    safety: PressureSafety
+
+
 def execute(arguments: argparse.Namespace) -> int:
-    """Solve, write curves.json and the figures, print what they say."""
+    """Solve every case, write curves.json and the figures, print what they say."""
+    from ltca.commands.compliance_arguments import compliance_of
+    from ltca.output.files import write_json
+    from ltca.output.progress import progress
+    from ltca.reading.drive_file import load_drive
+
+    limits, engine = _limits(arguments), compliance_of(arguments)
+    file = load_drive(arguments.drive)
+    cases = file.select(arguments.case)
+    out = arguments.out or Path("out") / f"{file.name}_curves"
+    contents, figures = {}, []
+    with progress("cases", len(cases)) as advance:
+        for name, drive in cases.items():
+            title = f"{file.name} {name}"
+            found = _solve(drive, _turns(arguments.turns, drive), limits, engine)
+            contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
+            _print(found, title, drive, engine, limits)
+            if not arguments.no_figures:
+                figures += _draw(found, title, out / "figures", f"_{name}" if len(cases) > 1 else "")
+            advance(name)
+    if figures:
+        print(f"figures: {out / 'figures'} ({len(figures)} as SVG and PNG)")
+    (first, *others) = contents.values()
+    write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
+    print(f"results: {out / 'curves.json'}")
+    return 0
+
+
+def _limits(arguments: argparse.Namespace) -> Limits:
     from ltca.drive.units import parse_quantity
     from ltca.errors import DriveError
-    from ltca.output.files import write_json
-    from ltca.reading.drive_file import load_drive
 
     limit = parse_quantity(arguments.pressure_limit, "MPa", "--pressure-limit")
     if limit <= 0.0:
@@ -44,105 +130,117 @@ def execute(arguments: argparse.Namespace) -> int:
         raise DriveError([f"--load-rating = {rating:g}: must be greater than 0 N"])
     if arguments.speed is not None and not arguments.speed > 0.0:
         raise DriveError([f"--speed = {arguments.speed:g}: must be greater than 0 turns a minute"])
-    file = load_drive(arguments.drive)
-    case = arguments.case or next(iter(file.cases))
-    drive = file.select([case])[case]
-    turns = drive.pin_wheel.number_of_pins if arguments.turns is None else arguments.turns
+    return Limits(pressure=limit, load_rating=rating, speed=arguments.speed)
+
+
+def _turns(asked: int | None, drive: Drive) -> int:
+    from ltca.errors import DriveError
+
+    turns = drive.pin_wheel.number_of_pins if asked is None else asked
     if not 1 <= turns <= 1000:
         raise DriveError([f"--turns = {turns}: must be from 1 to 1000"])
-    out = arguments.out or Path("out") / f"{file.name}_curves"
-    content = _solve(drive, f"{file.name} {case}", turns, limit, rating, arguments, out)
-    write_json(out / "curves.json", content)
-    print(f"results: {out / 'curves.json'}")
-    return 0
+    return turns
 
 
-def _solve(
-    drive: Drive,
-    title: str,
-    turns: int,
-    limit: float,
-    rating: float | None,
-    arguments: argparse.Namespace,
-    out: Path,
-) -> dict[str, Any]:
-    from dataclasses import replace
-
+def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurves:
     import numpy as np
 
-    from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis import loaded_analysis
     from ltca.analysis.pressure_safety import pressure_safety
     from ltca.analysis.rating_life import RollerBearing, rating_life
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders, known_orders
-    from ltca.drive.units import ARCMIN, ARCSEC
-    from ltca.figures import curve_figures as figures
+    from ltca.errors import DriveError
+    from ltca.geometry.pairs import WHEEL_ANGLE
 
+    engine = engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
-    curve = torque_curve(drive, mesh * np.arange(ANGLES) / ANGLES)
+    curve = torque_curve(drive, mesh * np.arange(ANGLES) / ANGLES, engine=engine)
     angle = 2.0 * np.pi * np.arange(turns * POSITIONS_PER_TURN) / POSITIONS_PER_TURN
-    analysis = analyse(drive, angle)
+    analysis = loaded_analysis.analyse(drive, angle, engine=engine)
     try:
-        spectrum = fit_orders(angle, analysis.full.pose[:, 3], known_orders(drive, harmonics=HARMONICS))
+        spectrum = fit_orders(angle, analysis.full.pose[:, WHEEL_ANGLE], known_orders(drive, harmonics=HARMONICS))
     except ValueError as error:
-        from ltca.errors import DriveError
-
         raise DriveError([f"--turns = {turns}: {error}"]) from error
-    pressure = analysis.pressures.pins.mid
-    safety = pressure_safety(pressure, limit)
-    part = drive.crank_bearing
-    bearing = RollerBearing(
-        rollers=part.number_of_rollers,
-        roller_diameter=2.0 * part.roller_radius,
-        roller_length=part.roller_length,
-        pitch_diameter=part.inner_race_radius + part.outer_race_radius,
-    )
-    rollers = analysis.full.response.rollers
+    part, rollers = drive.crank_bearing, analysis.full.response.rollers
     life = rating_life(
-        bearing,
+        RollerBearing(
+            rollers=part.number_of_rollers,
+            roller_diameter=2.0 * part.roller_radius,
+            roller_length=part.roller_length,
+            pitch_diameter=part.inner_race_radius + part.outer_race_radius,
+        ),
         rollers.inner_load,
         rollers.outer_load,
         relieved=not part.roller_profile.is_cylinder,
-        dynamic_load_rating=rating,
+        dynamic_load_rating=limits.load_rating,
     )
-    # The crank turns against the disc, which does not turn: every turn of the crank is one of the bearing.
-    hours = None if arguments.speed is None else life.life * 1e6 / (60.0 * arguments.speed)
+    return CaseCurves(
+        curve=curve,
+        turns=turns,
+        crank_angle=angle,
+        spectrum=spectrum,
+        life=life,
+        # The crank turns against the disc, which does not turn: every turn of the crank is one of the bearing.
+        hours=None if limits.speed is None else life.life * 1e6 / (60.0 * limits.speed),
+        pressure=analysis.pressures.pins.mid,
+        safety=pressure_safety(analysis.pressures.pins.mid, limits.pressure),
+    )
 
-    def per_arcmin(stiffness: Any) -> Any:
-        return stiffness / ARCMIN / 1e3
 
-    print(f"{title}: torque curve at {ANGLES} crank angles over one mesh")
+def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: Limits) -> None:
+    import numpy as np
+
+    from ltca.drive.units import ARCMIN, ARCSEC
+
+    curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
+    discs = "" if drive.disc.torque_share == 1.0 else f", a disc carries {drive.disc.torque_share:g} of the torque"
+    over = f"over {found.turns} turns, {found.crank_angle.size} positions"
+    print(f"{title}, {engine.compliance}: torque curve at {ANGLES} crank angles over one mesh{discs}")
     print(f"  backlash at the wheel, disc floating      {_range(curve.backlash * ARCMIN)}′")
     print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
-    print(f"  torsional stiffness, 50 … 100 %           {_range(per_arcmin(curve.stiffness))} N m/′")
-    print(f"orders of the transmission error over {turns} turns, {angle.size} positions")
-    order = np.argsort(-spectrum.amplitude)
-    for number in order[:8]:
+    print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
+    print(f"orders of the transmission error {over}")
+    for number in np.argsort(-spectrum.amplitude)[:8]:
         entry = spectrum.orders[number]
         print(f"  {entry.value:>9.4f}  {entry.name:<32}{spectrum.amplitude[number] * ARCSEC:>9.4f}″")
     print(f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″")
     print("rating life of the crank bearing (load stands still to the inner race)")
     print(f"  C {life.dynamic_load_rating:.0f} N, P {life.equivalent_load:.0f} N, L10r {life.life:.1f} million turns")
-    if hours is not None:
-        print(f"  {hours:.0f} h at {arguments.speed:g} turns a minute")
-    print(f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limit:g} MPa")
-    if not arguments.no_figures:
-        folder = out / "figures"
-        first = safety.position - safety.position % POSITIONS_PER_TURN
-        turn = slice(first, first + POSITIONS_PER_TURN)
-        paths = [
-            figures.draw_torque_curve(curve, title, folder / "torque_curve"),
-            figures.draw_spectrum(spectrum, title, folder / "transmission_error_orders"),
-            # The turn that holds the largest pressure of all: what is drawn is what is printed.
-            figures.draw_pressure(
-                angle[turn], pressure[turn], replace(safety, position=safety.position - turn.start), title,
-                folder / "flank_pressure",
-            ),
-        ]  # fmt: skip
-        print(f"figures: {folder} ({len(paths)} as SVG and PNG)")
+    if found.hours is not None:
+        print(f"  {found.hours:.0f} h at {limits.speed:g} turns a minute")
+    print(
+        f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limits.pressure:g} MPa, largest {over}"
+    )
+
+
+def _range(values: Any) -> str:
+    return f"{values.min():.4g} … {values.max():.4g}"
+
+
+def _draw(found: CaseCurves, title: str, folder: Path, ending: str) -> list[Path]:
+    from dataclasses import replace
+
+    from ltca.figures import curve_figures as figures
+
+    # The turn that holds the largest pressure of all: what is drawn is what is printed.
+    first = found.safety.position - found.safety.position % POSITIONS_PER_TURN
+    turn = slice(first, first + POSITIONS_PER_TURN)
+    shown = replace(found.safety, position=found.safety.position - first)
+    return [
+        figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),
+        figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}"),
+        figures.draw_pressure(
+            found.crank_angle[turn], found.pressure[turn], shown, title, folder / f"flank_pressure{ending}"
+        ),
+    ]
+
+
+def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
+    curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
     return {
-        "drive": title,
         "torque_curve": {
+            "torque_share": drive.disc.torque_share,
             "crank_angle_rad": curve.crank_angle.tolist(),
             "torque_N_mm": curve.torque.tolist(),
             "wheel_angle_rad": curve.wheel_angle.tolist(),
@@ -151,7 +249,8 @@ def _solve(
             "stiffness_N_mm_per_rad": curve.stiffness.tolist(),
         },
         "transmission_error_orders": {
-            "turns": turns,
+            "turns": found.turns,
+            "positions": found.crank_angle.size,
             "orders": [
                 {"order": entry.value, "name": entry.name, "amplitude_rad": float(size), "phase_rad": float(phase)}
                 for entry, size, phase in zip(spectrum.orders, spectrum.amplitude, spectrum.phase, strict=True)
@@ -160,21 +259,17 @@ def _solve(
         },
         "bearing_life": {
             "million_turns": life.life,
-            "hours": hours,
+            "hours": found.hours,
             "dynamic_load_rating_N": life.dynamic_load_rating,
             "equivalent_load_N": life.equivalent_load,
             "inner_roller_load_N": life.inner_load,
             "outer_roller_load_N": life.outer_load,
         },
         "pressure_safety": {
-            "limit_MPa": limit,
+            "limit_MPa": safety.limit,
             "largest_MPa": safety.largest,
             "safety": safety.safety,
             "load_factor": safety.load_factor,
             "pin": safety.pin,
         },
     }
-
-
-def _range(values: Any) -> str:
-    return f"{values.min():.4g} … {values.max():.4g}"

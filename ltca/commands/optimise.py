@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from ltca.commands.compliance_arguments import add_compliance_arguments
 
 if TYPE_CHECKING:
-    from ltca.studies.optimiser import Optimum
+    from ltca.analysis.engines import Engine
+    from ltca.studies.fine_solution import FineSolution
+    from ltca.studies.optimiser import Optimum, Problem
 
 SUMMARY = "vary fields of a drive for the least of one quantity, or the Pareto front of two"
 
@@ -27,21 +31,57 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--subject", metavar="LIMIT", action="append", default=[], help="'quantity <= value unit', repeatable"
     )
-    parser.add_argument("--positions", metavar="M", type=int, default=28, help="crank angles 2πk/M; default 28")
+    parser.add_argument(
+        "--positions", metavar="M", type=int, default=28, help="crank angles 2πk/M of every candidate; default 28"
+    )
     parser.add_argument("--generations", metavar="G", type=int, default=40, help="of the search; default 40")
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="of the random numbers; default 0")
+    add_compliance_arguments(parser)
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>_optimum")
     parser.add_argument("--no-figures", action="store_true", help="write the drive and the candidates only")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Search, write the drive found and all candidates, draw and print them."""
-    from ltca.errors import DriveError
-    from ltca.output.files import whole_file
+    """Search, solve what was found and where it started finely, write, draw and print all of it."""
+    from ltca.commands.compliance_arguments import compliance_of
+    from ltca.output.files import whole_file, write_json
     from ltca.output.progress import progress
-    from ltca.reading.drive_file import load_drive
     from ltca.reading.writing import drive_text
-    from ltca.studies.optimiser import Problem, batch_analysis, optimise, parse_limit, parse_variable
+    from ltca.studies.fine_solution import solve_finely
+    from ltca.studies.optimiser import batch_analysis, optimise
+
+    engine = compliance_of(arguments)
+    name, problem = _problem(arguments)
+    out = arguments.out or Path("out") / f"{name}_optimum"
+    _tell_beforehand(problem, engine, arguments)
+    with progress("candidates", 0) as bar:
+        optimum = optimise(
+            problem,
+            batch_analysis(problem, arguments.positions, engine),
+            seed=arguments.seed,
+            generations=arguments.generations,
+            told=lambda candidates: bar("solved", candidates),
+        )
+    best = optimum.drive(optimum.best)
+    fine = [solve_finely(drive, problem.quantities, engine) for drive in (problem.drive, best)]
+    with whole_file(out / "optimum.toml") as part:
+        part.write_text(drive_text(best), encoding="utf-8")
+    _write_candidates(optimum, out / "candidates.parquet")
+    write_json(out / "optimum.json", _outcome(optimum, fine, engine, arguments.positions))
+    _print(optimum, fine, arguments.positions)
+    print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
+    if not arguments.no_figures:
+        from ltca.figures.optimum_figures import write_optimum_figure
+
+        print(f"figure: {write_optimum_figure(optimum, arguments.positions, out)}")
+    return 0
+
+
+def _problem(arguments: argparse.Namespace) -> tuple[str, Problem]:
+    """Name of the drive file, and what is asked of its case."""
+    from ltca.errors import DriveError
+    from ltca.reading.drive_file import load_drive
+    from ltca.studies.optimiser import Problem, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
     for name, value, bound in (
@@ -57,31 +97,40 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     case = arguments.case or next(iter(file.cases))
     drive = file.select([case])[case]
-    problem = Problem(
+    return file.name, Problem(
         drive=drive,
         variables=tuple(parse_variable(text, drive) for text in arguments.vary),
         aims=aims,
         limits=tuple(parse_limit(text) for text in arguments.subject),
     )
-    out = arguments.out or Path("out") / f"{file.name}_optimum"
-    with progress("candidates", 0) as bar:
-        optimum = optimise(
-            problem,
-            batch_analysis(problem, arguments.positions),
-            seed=arguments.seed,
-            generations=arguments.generations,
-            told=lambda candidates: bar("solved", candidates),
-        )
-    with whole_file(out / "optimum.toml") as part:
-        part.write_text(drive_text(optimum.drive(optimum.best)), encoding="utf-8")
-    _write_candidates(optimum, out / "candidates.parquet")
-    _print(optimum)
-    print(f"results: {out / 'optimum.toml'}, {out / 'candidates.parquet'}")
-    if not arguments.no_figures:
-        from ltca.figures.optimum_figures import write_optimum_figure
 
-        print(f"figure: {write_optimum_figure(optimum, out)}")
-    return 0
+
+def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Namespace) -> None:
+    """Warn of few positions, and say what has to be derived; derive it for the drive as it is."""
+    from ltca.analysis.extremes import sampling_warning
+    from ltca.commands.study_arguments import tell
+    from ltca.geometry.placement import position_angles
+    from ltca.studies.optimiser import most_candidates, varies_shape
+    from ltca.studies.shapes import SECONDS, find_beforehand, shapes_of
+
+    warning = sampling_warning(problem.drive, position_angles(arguments.positions))
+    if warning is not None:
+        tell(f"warning: {warning}")
+    if not engine.batches and varies_shape(problem):
+        if arguments.coefficients is not None:
+            from ltca.errors import DriveError
+
+            raise DriveError(
+                [
+                    f"--coefficients {arguments.coefficients}: serves one shape, and --vary "
+                    f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
+                ]
+            )
+        tell(
+            f"every candidate is a shape of its own: up to {most_candidates(problem, arguments.generations)} of them are "
+            f"derived, some {SECONDS} s each, and kept"
+        )
+    find_beforehand(engine, shapes_of([problem.drive]), tell)
 
 
 def _write_candidates(optimum: Optimum, path: Path) -> None:
@@ -90,31 +139,95 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
     from pyarrow import parquet
 
     from ltca.output.files import whole_file
+    from ltca.output.provenance import code_hash, code_version
+    from ltca.studies.execution.storage import field_column, quantity_column
 
     problem = optimum.problem
     front = np.zeros(len(optimum.variables), dtype=bool)
     front[optimum.front] = True
-    columns = {v.path: column for v, column in zip(problem.variables, optimum.variables.T, strict=True)}
-    columns |= dict(zip(problem.quantities, optimum.values.T, strict=True))
+    flags = {
+        "feasible": (optimum.feasible, "whether it is sound and within the limits"),
+        "front": (front, "whether it is on the Pareto front, or the best of one aim"),
+    }
+    schema = pa.schema(
+        [
+            *(pa.field(v.path, pa.float64(), metadata=field_column(v.path)) for v in problem.variables),
+            *(pa.field(name, pa.float64(), metadata=quantity_column(name)) for name in problem.quantities),
+            *(
+                pa.field(name, pa.bool_(), metadata={"units": "1", "description": text})
+                for name, (_, text) in flags.items()
+            ),
+        ],
+        metadata={"version": code_version(), "code_hash": code_hash("ltca")},
+    )
+    columns = [*optimum.variables.T, *optimum.values.T, *(values for values, _ in flags.values())]
     with whole_file(path) as part:
-        parquet.write_table(pa.table({**columns, "feasible": optimum.feasible, "front": front}), part)
+        parquet.write_table(pa.Table.from_arrays([pa.array(column) for column in columns], schema=schema), part)
 
 
-def _print(optimum: Optimum) -> None:
+def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positions: int) -> dict[str, Any]:
+    """What ``optimum.json`` holds: the drive as it is and the one found, solved finely, and as the search saw them."""
     from ltca.drive.fields import read_field
-    from ltca.figures.study_figures import shown
+    from ltca.output.provenance import code_hash, code_version
+    from ltca.studies.execution.storage import field_column, quantity_column
+    from ltca.studies.optimiser import broken_limits, describe_limit
+
+    problem, nominal, found = optimum.problem, *fine
+    return {
+        "drive": problem.drive.name,
+        "version": code_version(),
+        "code_hash": code_hash("ltca"),
+        **engine.options,
+        "candidates": len(optimum.variables),
+        "positions_of_candidates": positions,
+        "positions": found.positions,
+        "extremes": "refined between the positions",
+        "variables": {
+            variable.path: {
+                **field_column(variable.path),
+                "low": variable.low,
+                "high": variable.high,
+                "as_it_is": float(read_field(problem.drive, variable.path)),
+                "found": float(value),
+            }
+            for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True)
+        },
+        "quantities": {
+            name: {
+                **quantity_column(name),
+                "as_it_is": nominal.values[name],
+                "found": found.values[name],
+                "as_it_is_in_search": float(optimum.start[column]),
+                "found_in_search": float(optimum.values[optimum.best, column]),
+            }
+            for column, name in enumerate(problem.quantities)
+        },
+        "limits": [describe_limit(limit) for limit in problem.limits],
+        "broken_limits": [describe_limit(limit) for limit in broken_limits(problem, found.values)],
+    }
+
+
+def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
+    from ltca.drive.fields import read_field
+    from ltca.studies.optimiser import broken_limits, describe_limit
     from ltca.studies.quantities import QUANTITIES
 
-    problem = optimum.problem
+    problem, nominal, found = optimum.problem, *fine
     print(
-        f"{len(optimum.variables)} candidates in {optimum.generations} batches, {optimum.feasible.sum()} within the limits"
+        f"{len(optimum.variables)} candidates × {positions} positions in {optimum.generations} batches, "
+        f"{optimum.feasible.sum()} within the limits"
     )
-    print(f"{'':<48}{'as it is':>12}{'found':>12}")
+    print(f"{'':<48}{f'{found.positions} positions, refined':>24}{f'{positions} positions':>24}")
+    print(f"{'':<48}{'as it is':>12}{'found':>12}{'as it is':>12}{'found':>12}")
     for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):
         print(f"{variable.path:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")
-    for name, before, after in zip(problem.quantities, optimum.start, optimum.values[optimum.best], strict=True):
-        factor, unit = shown(name)
-        head = f"{QUANTITIES[name].description}{f' [{unit}]' if unit else ''}"
-        print(f"{head:<48}{before * factor:>12.5g}{after * factor:>12.5g}")
+    for column, name in enumerate(problem.quantities):
+        values = nominal.values[name], found.values[name], optimum.start[column], optimum.values[optimum.best, column]
+        print(f"{QUANTITIES[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))
+    for limit in broken_limits(problem, found.values):
+        print(
+            f"beyond {describe_limit(limit)} when solved finely: {found.values[limit.quantity]:.5g}; the search saw "
+            f"{positions} positions only, more --positions come nearer"
+        )
     if len(problem.aims) == 2:
         print(f"Pareto front of {optimum.front.size} candidates; the one found is its compromise")

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.commands.compliance_arguments import add_compliance_arguments
+
 if TYPE_CHECKING:
-    from ltca.studies.execution.engine import Engine
     from ltca.studies.execution.storage import StudyFolder
+    from ltca.studies.execution.workers import Workers
     from ltca.studies.run_study import StudySummary
     from ltca.studies.study import Study
 
 DEFAULT_POSITIONS = 28
 
 
-def add_engine_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add where a study is solved."""
+def add_study_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what every study has: compliance, who solves it, folder, resuming, figures."""
+    add_compliance_arguments(parser)
     parser.add_argument("--workers", metavar="W", type=int, default=1, help="local processes; default 1")
     parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
-
-
-def add_study_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what every study has: engine, folder, resuming, figures."""
-    add_engine_arguments(parser)
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
     parser.add_argument("--no-figures", action="store_true", help="write results and summary only")
@@ -32,8 +31,8 @@ def add_study_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def engine_of(arguments: argparse.Namespace) -> Engine:
-    """Return the engine asked for.
+def workers_of(arguments: argparse.Namespace) -> Workers:
+    """Return the workers asked for.
 
     Raises
     ------
@@ -41,33 +40,38 @@ def engine_of(arguments: argparse.Namespace) -> Engine:
         When the number of workers is out of range.
     """
     from ltca.errors import DriveError
-    from ltca.studies.execution.engine import Engine
+    from ltca.studies.execution.workers import Workers
 
     if not 1 <= arguments.workers <= 1024:
         raise DriveError([f"--workers = {arguments.workers}: must be from 1 to 1024"])
     if arguments.scheduler and arguments.workers > 1:
         raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
-    return Engine(workers=arguments.workers, scheduler=arguments.scheduler)
+    return Workers(processes=arguments.workers, scheduler=arguments.scheduler)
 
 
 def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespace) -> int:
     """Run a study with progress, write its figures and print what it says."""
+    from ltca.analysis.extremes import sampling_warning
     from ltca.errors import DriveError
+    from ltca.geometry.placement import position_angles
     from ltca.output.progress import progress
     from ltca.studies.run_study import run_study, write_sample
 
-    engine = engine_of(arguments)
+    workers = workers_of(arguments)
     if arguments.sample is not None:
         if not 0 <= arguments.sample < study.design.samples:
             raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])
         print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
+    warning = sampling_warning(study.cases[0][1], position_angles(study.positions))
+    if warning is not None:
+        tell(f"warning: {warning}")
     with progress("samples", study.design.samples) as bar:
 
         def advance(samples: int, rate: float) -> None:
             bar(f"{rate:.0f} positions/s" if rate else "", samples)
 
-        found = run_study(study, folder, engine, resume=arguments.resume, advance=advance)
+        found = run_study(study, folder, workers, resume=arguments.resume, advance=advance, told=tell)
     _print(study, folder, found)
     if found.quantities and not arguments.no_figures:
         from ltca.figures.study_figures import write_study_figures
@@ -77,22 +81,24 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     return 0
 
 
+def tell(message: str) -> None:
+    """Tell something beside the results, on stderr."""
+    print(message, file=sys.stderr)
+
+
 def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
-    from ltca.figures.study_figures import shown
     from ltca.studies.quantities import QUANTITIES
     from ltca.studies.run_study import write_sample
 
-    print(f"{study.name}: {study.design.samples} samples × {study.positions} positions")
+    print(f"{study.name}: {study.design.samples} samples × {study.positions} positions, {study.engine.compliance}")
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
     print(f"{'':<48}{'nominal':>10}{'mean':>10}{'1 %':>10}{'50 %':>10}{'99 %':>10}{'largest':>10}  sample")
     for name, summary in found.quantities.items():
-        factor, unit = shown(name)
-        head = f"{QUANTITIES[name].description}{f' [{unit}]' if unit else ''}"
         numbers = [found.nominal.get(name, float("nan")), summary.mean, *(summary.percentiles[i] for i in (1, 3, 5))]
-        cells = "".join(f"{value * factor:>10.4g}" for value in [*numbers, summary.largest])
-        print(f"{head:<48}{cells}  {summary.largest_sample}")
+        cells = "".join(f"{value:>10.4g}" for value in [*numbers, summary.largest])
+        print(f"{QUANTITIES[name].heading:<48}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
         first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]

@@ -18,10 +18,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve the samples, write and print the results."""
+    from ltca.commands.compliance_arguments import compliance_of
     from ltca.commands.study_arguments import execute_study
     from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.sweep_file import load_sweep
 
-    study = load_sweep(arguments.study)
+    study = load_sweep(arguments.study, compliance_of(arguments))
     out = arguments.out or Path("out") / arguments.study.stem
     return execute_study(study, StudyFolder(path=out), arguments)

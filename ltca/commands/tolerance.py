@@ -41,6 +41,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draw the samples, solve them, write and print the results."""
+    from ltca.commands.compliance_arguments import compliance_of
+    from ltca.commands.study_arguments import execute_study
     from ltca.errors import DriveError
     from ltca.reading.drive_file import load_drive
     from ltca.studies.designs import check_samples
@@ -61,8 +63,7 @@ def execute(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         sequence=arguments.design,
         quantities=None if arguments.quantities is None else tuple(arguments.quantities),
+        engine=compliance_of(arguments),
     )
     out = arguments.out or Path("out") / f"{file.name}_tolerance"
-    from ltca.commands.study_arguments import execute_study
-
     return execute_study(study, StudyFolder(path=out), arguments)

@@ -10,16 +10,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ltca.figures.run_figures import COLOURS, STYLE
-from ltca.figures.study_figures import shown
 from ltca.output.files import whole_file
 from ltca.studies.optimiser import Optimum, describe_limit
 from ltca.studies.quantities import QUANTITIES
 
 
-def write_optimum_figure(optimum: Optimum, folder: Path) -> Path:
-    """Write the figure as SVG and PNG and return the PNG."""
+def write_optimum_figure(optimum: Optimum, positions: int, folder: Path) -> Path:
+    """Write the figure of candidates solved at a number of positions as SVG and PNG and return the PNG."""
+    two = len(optimum.problem.aims) == 2
     with mpl.rc_context(STYLE):
-        figure, name = (_front(optimum), "pareto") if len(optimum.problem.aims) == 2 else (_search(optimum), "search")
+        title = _title(optimum, positions)
+        figure, name = (_front(optimum, title), "pareto") if two else (_search(optimum, title), "search")
         for suffix in (".svg", ".png"):
             path = folder / "figures" / f"{name}{suffix}"
             with whole_file(path) as part:
@@ -27,55 +28,48 @@ def write_optimum_figure(optimum: Optimum, folder: Path) -> Path:
     return path
 
 
-def _label(name: str) -> str:
-    unit = shown(name)[1]
-    return f"{QUANTITIES[name].description}{f' [{unit}]' if unit else ''}"
-
-
-def _title(optimum: Optimum) -> str:
+def _title(optimum: Optimum, positions: int) -> str:
     limits = ", ".join(describe_limit(limit) for limit in optimum.problem.limits)
-    return f"{len(optimum.variables)} candidates" + (f", subject to {limits}" if limits else "")
+    return f"{len(optimum.variables)} candidates × {positions} positions" + (f", subject to {limits}" if limits else "")
 
 
-def _front(optimum: Optimum) -> Figure:
+def _front(optimum: Optimum, title: str) -> Figure:
     figure = Figure(figsize=(6.4, 4.6))
     axes = figure.subplots()
-    scale = np.array([shown(name)[0] for name in optimum.problem.aims])
-    points = optimum.values[:, :2] * scale
+    points = optimum.values[:, :2]
     fine = optimum.feasible
     axes.plot(*points[~fine].T, ".", color="#c8c8c8", markersize=3.0, label="beyond a limit")
     axes.plot(*points[fine].T, ".", color=COLOURS[6], markersize=4.0, label="within the limits")
     axes.plot(*points[optimum.front].T, "o-", color=COLOURS[1], markersize=4.0, label="Pareto front")
-    axes.plot(*(optimum.start[:2] * scale), "s", color=COLOURS[0], label="the drive as it is")
+    axes.plot(*optimum.start[:2], "s", color=COLOURS[0], label="the drive as it is")
     axes.plot(*points[optimum.best], "D", color=COLOURS[2], label="compromise")
     # Far candidates would squeeze the front into a corner.
-    shown_points = np.concatenate([points[optimum.front], [optimum.start[:2] * scale]])
+    shown_points = np.concatenate([points[optimum.front], [optimum.start[:2]]])
     setters: tuple[Any, Any] = (axes.set_xlim, axes.set_ylim)
     for low, high, bound in zip(shown_points.min(axis=0), shown_points.max(axis=0), setters, strict=True):
         room = max(high - low, 1e-9 * abs(high))
         bound(low - 0.15 * room, high + 0.6 * room)
-    axes.set_xlabel(_label(optimum.problem.aims[0]))
-    axes.set_ylabel(_label(optimum.problem.aims[1]))
+    axes.set_xlabel(QUANTITIES[optimum.problem.aims[0]].heading)
+    axes.set_ylabel(QUANTITIES[optimum.problem.aims[1]].heading)
     axes.legend(frameon=False, fontsize=8.0)
-    axes.set_title(_title(optimum), fontsize=9.0)
+    axes.set_title(title, fontsize=9.0)
     return figure
 
 
-def _search(optimum: Optimum) -> Figure:
+def _search(optimum: Optimum, title: str) -> Figure:
     count = len(optimum.problem.variables)
     figure = Figure(figsize=(1.2 + 3.0 * count, 3.4))
     all_axes = figure.subplots(1, count, sharey=True, squeeze=False)[0]
-    scale = shown(optimum.problem.aims[0])[0]
-    aim, fine = optimum.values[:, 0] * scale, optimum.feasible
+    aim, fine = optimum.values[:, 0], optimum.feasible
     for column, (axes, variable) in enumerate(zip(all_axes, optimum.problem.variables, strict=True)):
         x = optimum.variables[:, column]
         axes.plot(x[~fine], aim[~fine], ".", color="#c8c8c8", markersize=3.0, label="beyond a limit")
         axes.plot(x[fine], aim[fine], ".", color=COLOURS[6], markersize=3.5, label="within the limits")
         axes.plot(x[optimum.best], aim[optimum.best], "D", color=COLOURS[2], label="best")
-        axes.axhline(optimum.start[0] * scale, color=COLOURS[0], linewidth=0.8, linestyle=(0, (4, 2)), label="as it is")
+        axes.axhline(optimum.start[0], color=COLOURS[0], linewidth=0.8, linestyle=(0, (4, 2)), label="as it is")
         axes.set_xlabel(variable.path)
         axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
-    all_axes[0].set_ylabel(_label(optimum.problem.aims[0]))
+    all_axes[0].set_ylabel(QUANTITIES[optimum.problem.aims[0]].heading)
     all_axes[-1].legend(frameon=False, fontsize=7.5)
-    figure.suptitle(_title(optimum), fontsize=9.0)
+    figure.suptitle(title, fontsize=9.0)
     return figure

@@ -10,7 +10,6 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.figures.run_figures import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.designs import SweepDesign
@@ -21,14 +20,6 @@ from ltca.studies.study_results import read_quantity
 
 SHOWN = 8
 """Fields in a ranking; the rest has no share worth a bar."""
-
-
-def shown(name: str) -> tuple[float, str]:
-    """Return factor and unit in which a quantity is shown: angles in ″ (backlash in ′), the rest as it is."""
-    unit = QUANTITIES[name].unit
-    if unit != "rad":
-        return 1.0, "" if unit == "1" else unit
-    return (ARCMIN, "′") if "backlash" in name else (ARCSEC, "″")
 
 
 def write_study_figures(
@@ -82,11 +73,10 @@ def _panels(count: int, height: float) -> tuple[Figure, Any]:
 def _distributions(folder: StudyFolder, study: Study, nominal: Mapping[str, float]) -> Figure:
     figure, axes = _panels(len(study.quantities), 2.3)
     for axis, name in zip(axes, study.quantities, strict=False):
-        factor, unit = shown(name)
         values = read_quantity(folder.results, name)
-        values = values[np.isfinite(values)] * factor
+        values = values[np.isfinite(values)]
         axis.hist(values, bins=min(60, max(8, int(np.sqrt(values.size)))), color=COLOURS[1], linewidth=0.0)
-        axis.set_xlabel(f"{QUANTITIES[name].description}{f' [{unit}]' if unit else ''}", fontsize=8.0)
+        axis.set_xlabel(QUANTITIES[name].heading, fontsize=8.0)
         axis.set_yticks([])
         axis.grid(visible=False)
         axis.spines["left"].set_visible(False)
@@ -95,9 +85,9 @@ def _distributions(folder: StudyFolder, study: Study, nominal: Mapping[str, floa
         for place in (low, high):
             axis.axvline(place, color=COLOURS[2], linewidth=1.0, linestyle=(0, (4, 2)))
         if name in nominal:
-            axis.axvline(nominal[name] * factor, color=COLOURS[0], linewidth=1.2)
+            axis.axvline(nominal[name], color=COLOURS[0], linewidth=1.2)
     figure.suptitle(
-        f"{study.name}: {study.design.samples} samples × {study.positions} positions "
+        f"{study.name}, {study.engine.compliance}: {study.design.samples} samples × {study.positions} positions "
         "(dashed: 1 % and 99 %; black: no deviations)",
         fontsize=9.5,
     )
@@ -112,8 +102,7 @@ def _responses(folder: StudyFolder, study: Study, design: SweepDesign) -> Figure
     axes = figure.subplots(rows, columns, squeeze=False, sharey="row", sharex="col")
     numbers = design.rows(0, design.samples)
     for row, name in enumerate(study.quantities):
-        scale, unit = shown(name)
-        values = read_quantity(folder.results, name) * scale
+        values = read_quantity(folder.results, name)
         for column, factor in enumerate(factors):
             axis = axes[row, column]
             x = numbers[:, column]
@@ -130,10 +119,10 @@ def _responses(folder: StudyFolder, study: Study, design: SweepDesign) -> Figure
                 axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
             if row == rows - 1:
                 axis.set_xlabel(factor.path, fontsize=8.0)
-        axes[row, 0].set_ylabel(
-            f"{QUANTITIES[name].description}{f' [{unit}]' if unit else ''}", fontsize=7.0, wrap=True
-        )
-    figure.suptitle(f"{study.name}: {design.samples} samples × {study.positions} positions", fontsize=9.5)
+        axes[row, 0].set_ylabel(QUANTITIES[name].heading, fontsize=7.0, wrap=True)
+    figure.suptitle(
+        f"{study.name}, {study.engine.compliance}: {design.samples} samples × {study.positions} positions", fontsize=9.5
+    )
     return figure
 
 

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
-from ltca.compliance.half_space import HalfSpaceCompliance, batch_signature
-from ltca.compliance.response import ComplianceModel
+from ltca.compliance.half_space import batch_signature
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import solve_equilibrium
-from ltca.errors import CycloError
+from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.errors import CycloError, DriveError
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.studies.quantities import QUANTITIES, SampleBatch
+from ltca.studies.shapes import with_kept_coefficients
 
 FloatArray = NDArray[np.float64]
-ModelBuilder = Callable[[Sequence[Drive], int], ComplianceModel]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,19 +46,29 @@ class BatchSettings:
         φ_C of every sample, rad.
     quantities : tuple of str
         Names of `ltca.studies.quantities`.
-    build : callable
-        Compliance model of several drives at a number of positions each.
+    engine : Engine
+        How bodies yield; one that takes no batches is asked for one drive at a time.
     nominal : Nominal or None
         Starting poses; by default every sample starts from first contact.
-    together : bool
-        Whether the model takes different drives in one batch; otherwise it is built for one drive at a time.
+
+    Raises
+    ------
+    DriveError
+        When the engine does not run on tables.
     """
 
     crank_angle: FloatArray
     quantities: tuple[str, ...]
-    build: ModelBuilder = HalfSpaceCompliance.of_drives
+    engine: Engine = field(default_factory=HalfSpace)
     nominal: Nominal | None = None
-    together: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse methods that studies would leave out in silence."""
+        method = self.engine.options["method"]
+        if method != "tables":
+            raise DriveError(
+                [f"method = {method}: studies balance samples on tables only; 'cyclo run' takes one drive"]
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,13 +95,34 @@ def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
     ConvergenceError
         When it does not balance.
     """
-    angle = settings.crank_angle
-    model = settings.build([drive], angle.size)
-    full = solve_equilibrium(model, angle, drive.wheel_moment()).pose
+    solved = _Batch([drive], settings)
+    full = solved.balance([drive.load.torque], None).pose
     light = full
     if any(QUANTITIES[name].stage == "light" for name in settings.quantities):
-        light = solve_equilibrium(model, angle, drive.wheel_moment(drive.load.light_torque), full).pose
+        light = solved.balance([drive.load.light_torque], full).pose
     return Nominal(full=full, light=light)
+
+
+class _Batch:
+    """Several drives at all angles on one engine, drive by drive."""
+
+    def __init__(self, drives: Sequence[Drive], settings: BatchSettings) -> None:
+        self.drives, self.positions = drives, settings.crank_angle.size
+        self.angle = np.tile(settings.crank_angle, len(drives))
+        self.prepared: PreparedEngine | None = None
+        if settings.engine.batches:
+            self.model = settings.engine.build(drives, self.positions)
+        else:
+            (drive,) = drives
+            self.prepared = with_kept_coefficients(settings.engine, drive).prepare(drive)
+            self.model = self.prepared.model
+
+    def balance(self, torques: list[float], start: FloatArray | None) -> Equilibrium:
+        """Balance the drives at their torques."""
+        if self.prepared is not None:
+            return self.prepared.balance(self.angle, torques[0], start)
+        moments = [drive.wheel_moment(torque) for drive, torque in zip(self.drives, torques, strict=True)]
+        return solve_equilibrium(self.model, self.angle, np.repeat(moments, self.positions), start)
 
 
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
@@ -105,13 +136,13 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     drives : sequence of Drive
         One for each sample.
     settings : BatchSettings
-        Angles, quantities, model.
+        Angles, quantities, engine.
     """
     values = np.full((len(drives), len(settings.quantities)), np.nan)
     messages = [""] * len(drives)
     groups: dict[tuple[object, ...], list[int]] = {}
     for number, drive in enumerate(drives):
-        key = batch_signature(drive) if settings.together else (number,)
+        key = batch_signature(drive) if settings.engine.batches else (number,)
         groups.setdefault(key, []).append(number)
     for members in groups.values():
         _solve_group(drives, members, settings, values, messages)
@@ -151,7 +182,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     drives : sequence of Drive
         Drives of one `ltca.compliance.half_space.batch_signature`.
     settings : BatchSettings
-        Angles, quantities, model.
+        Angles, quantities, engine.
     nominal : Nominal, optional
         Starting poses.
 
@@ -162,23 +193,17 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     DriveError
         When a torque cannot be carried (`ltca.analysis.half_width_guard`).
     """
-    samples, positions = len(drives), settings.crank_angle.size
+    samples = len(drives)
     stages = {QUANTITIES[name].stage for name in settings.quantities}
-    model = settings.build(drives, positions)
-    angle = np.tile(settings.crank_angle, samples)
-
-    def moments(torques: list[float]) -> FloatArray:
-        return np.repeat(torques, positions)
-
+    solved = _Batch(drives, settings)
     start = None if nominal is None else np.tile(nominal.full, (samples, 1))
-    full = solve_equilibrium(model, angle, moments([drive.wheel_moment() for drive in drives]), start)
-    pressures = model.pressures(full.response)
+    full = solved.balance([drive.load.torque for drive in drives], start)
+    pressures = solved.model.pressures(full.response)
     check_half_widths(drives[0], full.response, pressures)
     light, play = None, None
     if "light" in stages:
-        moment = moments([drive.wheel_moment(drive.load.light_torque) for drive in drives])
         start = full.pose if nominal is None else np.tile(nominal.light, (samples, 1))
-        light = solve_equilibrium(model, angle, moment, start)
+        light = solved.balance([drive.load.light_torque for drive in drives], start)
     if "backlash" in stages:
-        play = backlash(model.geometry, angle, WHEEL_ANGLE)
+        play = backlash(solved.model.geometry, solved.angle, WHEEL_ANGLE)
     return SampleBatch(samples=samples, full=full, pressures=pressures, light=light, backlash=play)

@@ -8,22 +8,23 @@ by Nelder and Mead's simplex.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.parts import Drive
 from ltca.drive.units import label, parse_quantity
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
-from ltca.studies.batch_analysis import BatchSettings, ModelBuilder, analyse_samples
+from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.quantities import QUANTITIES, check_quantities
+from ltca.studies.shapes import shapes_of
 
 FloatArray = NDArray[np.float64]
 Analysis = Callable[[Sequence[Drive]], FloatArray]
@@ -139,13 +140,7 @@ class Problem:
         return tuple(dict.fromkeys((*self.aims, *(limit.quantity for limit in self.limits))))
 
 
-def batch_analysis(
-    problem: Problem,
-    positions: int,
-    build: ModelBuilder = HalfSpaceCompliance.of_drives,
-    *,
-    together: bool = True,
-) -> Analysis:
+def batch_analysis(problem: Problem, positions: int, engine: Engine | None = None) -> Analysis:
     """Return the analysis of candidates by the batch solver over one turn.
 
     Parameters
@@ -154,14 +149,11 @@ def batch_analysis(
         For its quantities.
     positions : int
         Crank angles 2πk/N.
-    build : callable
-        Compliance model of several drives; half-space tables by default.
-    together : bool
-        Whether that model takes different drives in one batch, see `ltca.studies.batch_analysis.BatchSettings`.
+    engine : Engine, optional
+        How bodies yield; half-spaces by default.
     """
-    settings = BatchSettings(
-        crank_angle=position_angles(positions), quantities=problem.quantities, build=build, together=together
-    )
+    used: Engine = HalfSpace() if engine is None else engine
+    settings = BatchSettings(crank_angle=position_angles(positions), quantities=problem.quantities, engine=used)
     return lambda drives: analyse_samples(drives, settings).values
 
 
@@ -300,6 +292,7 @@ def optimise(
     scale = np.maximum(np.abs(start[:aims]), 1e-300)
     archive = _Archive(problem=problem, analysis=analysis, scale=scale, told=told)
     count = len(problem.variables)
+    maxiter, popsize, simplex = _effort(problem, generations)
     shares = [1.0] if aims == 1 else np.linspace(0.03, 0.97, WEIGHTS)
     for number, share in enumerate(shares):
         weights = np.ones(1) if aims == 1 else np.array([share, 1.0 - share])
@@ -310,8 +303,8 @@ def optimise(
         found = differential_evolution(
             rank,
             [(0.0, 1.0)] * count,
-            maxiter=generations if aims == 1 else max(4, generations // 3),
-            popsize=max(5, 24 // count),
+            maxiter=maxiter,
+            popsize=popsize,
             tol=1e-4,
             rng=np.random.default_rng([seed, number]),
             polish=False,
@@ -325,9 +318,35 @@ def optimise(
                 found.x,
                 method="Nelder-Mead",
                 bounds=[(0.0, 1.0)] * count,
-                options={"maxfev": 40 * count, "xatol": 1e-4, "fatol": 1e-7, "initial_simplex": _simplex(found.x)},
+                options={"maxfev": simplex, "xatol": 1e-4, "fatol": 1e-7, "initial_simplex": _simplex(found.x)},
             )
     return _outcome(archive, start, aims)
+
+
+def _effort(problem: Problem, generations: int) -> tuple[int, int, int]:
+    """Generations, candidates of each for every variable, candidates of the simplex."""
+    count = len(problem.variables)
+    if len(problem.aims) == 1:
+        return generations, max(5, 24 // count), 40 * count
+    return max(4, generations // 3), max(5, 24 // count), 0
+
+
+def most_candidates(problem: Problem, generations: int) -> int:
+    """Return how many candidates a search may solve at most."""
+    maxiter, popsize, simplex = _effort(problem, generations)
+    # a Sobol sequence has a power of two of members
+    members = 1 << (popsize * len(problem.variables) - 1).bit_length()
+    return (1 if len(problem.aims) == 1 else WEIGHTS) * members * (maxiter + 1) + simplex
+
+
+def varies_shape(problem: Problem) -> bool:
+    """Tell whether candidates differ in shape or material, so that each has influence coefficients of its own."""
+    ends = [
+        with_fields(problem.drive, {variable.path: value}, check=False)
+        for variable in problem.variables
+        for value in (variable.low, variable.high)
+    ]
+    return len(shapes_of([problem.drive, *ends])) > 1
 
 
 def _simplex(place: FloatArray) -> FloatArray:
@@ -365,6 +384,15 @@ def _outcome(archive: _Archive, start: FloatArray, aims: int) -> Optimum:
         best=best,
         front=np.asarray(front, dtype=np.intp),
         generations=archive.batches,
+    )
+
+
+def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Limit, ...]:
+    """Return the limits that quantities break by more than rounding, 1e-6 of the limit."""
+    return tuple(
+        limit
+        for limit in problem.limits
+        if limit.sense * (values[limit.quantity] - limit.value) > 1e-6 * abs(limit.value)
     )
 
 

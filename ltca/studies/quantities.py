@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ContactPressures
+from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
 from ltca.geometry.pairs import WHEEL_ANGLE
@@ -56,21 +57,21 @@ class SampleBatch:
         push = push * np.exp(-1j * self.full.crank_angle)
         return self.by_sample(push.real), self.by_sample(push.imag)
 
-    def wheel_angle(self) -> FloatArray:
-        """Wheel angle at the torque of each drive, rad."""
-        return self.by_sample(self.full.pose[:, WHEEL_ANGLE])
+    def transmission_error(self) -> FloatArray:
+        """Transmission error at the torque of each drive, arcsec."""
+        return self.by_sample(self.full.pose[:, WHEEL_ANGLE]) * ARCSEC
 
-    def light_wheel_angle(self) -> FloatArray:
-        """Wheel angle at the light torque, rad."""
+    def light_transmission_error(self) -> FloatArray:
+        """Transmission error at the light torque, arcsec."""
         if self.light is None:
             raise ValueError("the light torque was not solved")
-        return self.by_sample(self.light.pose[:, WHEEL_ANGLE])
+        return self.by_sample(self.light.pose[:, WHEEL_ANGLE]) * ARCSEC
 
     def backlashes(self) -> FloatArray:
-        """Backlash of the wheel, disc held, rad."""
+        """Backlash of the wheel, disc held, arcmin."""
         if self.backlash is None:
             raise ValueError("the backlash was not asked for")
-        return self.by_sample(self.backlash)
+        return self.by_sample(self.backlash) * ARCMIN
 
     def loaded(self, load: FloatArray) -> FloatArray:
         """Mean number of loaded pairs over the positions."""
@@ -86,7 +87,7 @@ class Quantity:
     Attributes
     ----------
     unit : str
-        Inside the suite.
+        Of its values: those of a run's summary.
     stage : {"full", "light", "backlash"}
         What has to be solved for it.
     description : str
@@ -100,6 +101,16 @@ class Quantity:
     description: str
     evaluate: Callable[[SampleBatch], FloatArray]
 
+    @property
+    def symbol(self) -> str:
+        """The unit as it is printed, empty for numbers."""
+        return {"1": "", "arcsec": "″", "arcmin": "′"}.get(self.unit, self.unit)
+
+    @property
+    def heading(self) -> str:
+        """Description and unit."""
+        return f"{self.description}{f' [{self.symbol}]' if self.symbol else ''}"
+
 
 def _quantity(
     unit: str, description: str, evaluate: Callable[[SampleBatch], FloatArray], stage: Stage = "full"
@@ -109,9 +120,11 @@ def _quantity(
 
 QUANTITIES: dict[str, Quantity] = {
     "ptp_transmission_error": _quantity(
-        "rad", "transmission error, peak to peak", lambda b: np.ptp(b.wheel_angle(), axis=1)
+        "arcsec", "transmission error, peak to peak", lambda b: np.ptp(b.transmission_error(), axis=1)
     ),
-    "mean_transmission_error": _quantity("rad", "transmission error, mean", lambda b: b.wheel_angle().mean(axis=1)),
+    "mean_transmission_error": _quantity(
+        "arcsec", "transmission error, mean", lambda b: b.transmission_error().mean(axis=1)
+    ),
     "max_pin_load": _quantity(
         "N", "largest load of a wheel pin", lambda b: b.by_sample(b.full.response.pin_load).max(axis=1)
     ),
@@ -148,16 +161,16 @@ QUANTITIES: dict[str, Quantity] = {
         "1", "loaded shaft pins, mean", lambda b: b.loaded(b.full.response.hole_load)
     ),
     "ptp_transmission_error_light": _quantity(
-        "rad",
+        "arcsec",
         "transmission error at the light torque, peak to peak",
-        lambda b: np.ptp(b.light_wheel_angle(), axis=1),
+        lambda b: np.ptp(b.light_transmission_error(), axis=1),
         "light",
     ),
     "mean_backlash_wheel": _quantity(
-        "rad", "backlash at the wheel, disc held, mean", lambda b: b.backlashes().mean(axis=1), "backlash"
+        "arcmin", "backlash at the wheel, disc held, mean", lambda b: b.backlashes().mean(axis=1), "backlash"
     ),
     "min_backlash_wheel": _quantity(
-        "rad", "backlash at the wheel, disc held, least", lambda b: b.backlashes().min(axis=1), "backlash"
+        "arcmin", "backlash at the wheel, disc held, least", lambda b: b.backlashes().min(axis=1), "backlash"
     ),
 }
 

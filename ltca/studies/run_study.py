@@ -8,12 +8,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ltca.errors import CycloError
-from ltca.geometry.placement import position_angles
 from ltca.output.files import whole_file, write_json
 from ltca.reading.writing import drive_text
-from ltca.studies.batch_analysis import BatchSettings, analyse_samples
-from ltca.studies.execution.engine import Engine, solve_batches
+from ltca.studies.batch_analysis import analyse_samples
 from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.workers import Workers, solve_batches
+from ltca.studies.quantities import QUANTITIES
+from ltca.studies.shapes import find_beforehand
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES, QuantitySummary, rank, read_quantity, summarise_quantity
 
@@ -49,10 +50,11 @@ class StudySummary:
 def run_study(
     study: Study,
     folder: StudyFolder,
-    engine: Engine,
+    workers: Workers,
     *,
     resume: bool = False,
     advance: Callable[[int, float], None] = lambda samples, rate: None,
+    told: Callable[[str], None] = lambda message: None,
 ) -> StudySummary:
     """Run a study, or what is left of it, and write its files.
 
@@ -62,12 +64,14 @@ def run_study(
         What to solve.
     folder : StudyFolder
         Where its files go.
-    engine : Engine
+    workers : Workers
         Who solves it.
     resume : bool
         Whether to continue what the folder holds.
     advance : callable
         Told the samples of every finished batch and the rate so far in positions per second.
+    told : callable
+        Told what has to be derived before samples are solved.
 
     Returns
     -------
@@ -76,18 +80,16 @@ def run_study(
     Raises
     ------
     CycloError
-        When the folder holds something else, or workers die again and again.
+        When the folder holds something else, no sample has influence coefficients, or workers die again and again.
     """
     left = folder.prepare(study, resume)
-    size, samples = study.batch_samples, study.design.samples
-
-    def samples_of(number: int) -> int:
-        return min(size, samples - number * size)
-
-    advance(samples - sum(map(samples_of, left)), 0.0)
+    if not study.engine.batches:
+        find_beforehand(study.engine, study.shapes(left), told)
+    waiting = sum(last - first for first, last in map(study.samples_of, left))
+    advance(study.design.samples - waiting, 0.0)
     began, solved = time.perf_counter(), 0
-    for result in solve_batches(study, left, engine):
-        folder.store(result)
+    for result in solve_batches(study, left, workers):
+        folder.store(study, result)
         solved += len(result.messages) * study.positions
         advance(len(result.messages), solved / (time.perf_counter() - began))
     seconds = time.perf_counter() - began
@@ -110,10 +112,7 @@ def run_study(
 
 
 def _nominal(study: Study) -> dict[str, float]:
-    settings = BatchSettings(
-        crank_angle=position_angles(study.positions), quantities=study.quantities, build=study.build
-    )
-    solved = analyse_samples([study.cases[0][1]], settings)
+    solved = analyse_samples([study.cases[0][1]], study.settings)
     if solved.messages[0]:
         return {}
     return dict(zip(study.quantities, map(float, solved.values[0]), strict=True))
@@ -129,6 +128,8 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
             "positions": study.positions,
             "failed": len(found.failures),
             "percentiles": list(PERCENTILES),
+            "compliance": study.engine.compliance,
+            "units": {name: QUANTITIES[name].unit for name in study.quantities},
             "nominal": found.nominal,
             "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
             "sensitivity": found.ranking,

@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
+from ltca.output.provenance import code_hash
 from ltca.reading.changes import with_fields
-from ltca.studies.batch_analysis import BatchSettings, ModelBuilder, Nominal, analyse_samples, solve_nominal
-from ltca.studies.designs import Design
+from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
+from ltca.studies.designs import Design, ToleranceDesign
+from ltca.studies.shapes import coefficients_identity, shapes_of
 
 FloatArray = NDArray[np.float64]
 
 BATCH_POSITIONS = 2048
 """Positions solved together: arrays of a batch stay in the cache, and a fifth of a second of work hides what a task
-costs on any engine (1.5 ms on dask.distributed)."""
+costs anywhere (1.5 ms on dask.distributed)."""
+SINGLE_POSITIONS = 256
+"""Positions of a batch whose drives are solved one by one, some ten times as dear each."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +48,12 @@ class Study:
         What is kept.
     near_nominal : bool
         Whether samples scatter closely about the drive, so that its solution is the place to start from.
-    build : callable
-        Compliance model of several drives.
+    engine : Engine
+        How bodies yield.
+    definition : str
+        What was asked for, as text: the study file or the options of the command.
+    drive_file : str
+        Text of the drive file; empty for the first case written as one.
     """
 
     name: str
@@ -53,12 +62,21 @@ class Study:
     positions: int
     quantities: tuple[str, ...]
     near_nominal: bool
-    build: ModelBuilder = field(default=HalfSpaceCompliance.of_drives)
+    engine: Engine = field(default_factory=HalfSpace)
+    definition: str = ""
+    drive_file: str = ""
+
+    @property
+    def settings(self) -> BatchSettings:
+        """How its samples are analysed, each from first contact."""
+        return BatchSettings(
+            crank_angle=position_angles(self.positions), quantities=self.quantities, engine=self.engine
+        )
 
     @property
     def batch_samples(self) -> int:
-        """Samples of a batch; batches are cut the same way for every engine."""
-        return max(1, BATCH_POSITIONS // self.positions)
+        """Samples of a batch; batches are cut the same way whoever solves them."""
+        return max(1, (BATCH_POSITIONS if self.engine.batches else SINGLE_POSITIONS) // self.positions)
 
     @property
     def batches(self) -> int:
@@ -66,13 +84,29 @@ class Study:
         return -(-self.design.samples // self.batch_samples)
 
     def fingerprint(self) -> str:
-        """Return a hash of everything the results depend on (hex, 16 digits)."""
-        model = getattr(self.build, "__qualname__", None) or repr(self.build)
-        parts = (self.cases, self.design, self.positions, self.quantities, self.near_nominal, model, BATCH_POSITIONS)
+        """Return a hash of everything the results depend on, the code included (hex, 16 digits)."""
+        parts = (
+            self.cases,
+            self.design,
+            self.positions,
+            self.quantities,
+            self.near_nominal,
+            sorted(self.engine.options.items()),
+            coefficients_identity(self.engine),
+            code_hash("ltca"),
+            self.batch_samples,
+        )
         return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
-    def drive_of(self, fields: dict[str, Any]) -> Drive:
+    def drive_of(self, fields: dict[str, Any], *, check: bool = True) -> Drive:
         """Return the drive of one sample.
+
+        Parameters
+        ----------
+        fields : dict
+            What the sample replaces, by dotted path.
+        check : bool
+            Whether physical contradictions are looked for.
 
         Raises
         ------
@@ -81,7 +115,35 @@ class Study:
         """
         fields = dict(fields)
         base = dict(self.cases)[fields.pop("case", self.cases[0][0])]
-        return with_fields(base, fields)
+        return with_fields(base, fields, check=check)
+
+    def shapes(self, numbers: Sequence[int]) -> dict[str, Drive]:
+        """Return a drive of every distinct shape in some batches, by fingerprint; what is no sound drive has none.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            Batches.
+        """
+        if not numbers:
+            return {}
+        if isinstance(self.design, ToleranceDesign):
+            # Every scattering field differs between two samples: where they share a shape, all do.
+            with suppress(CycloError):
+                drawn = [self.drive_of(self.design.fields(row), check=False) for row in self.design.rows(0, 2)]
+                if len(shapes_of([self.cases[0][1], *drawn])) == 1:
+                    return shapes_of([self.cases[0][1]])
+        found: dict[str, Drive] = {}
+        for number in numbers:
+            for row in self.design.rows(*self.samples_of(number)):
+                with suppress(CycloError):
+                    found |= shapes_of([self.drive_of(self.design.fields(row))])
+        return found
+
+    def samples_of(self, number: int) -> tuple[int, int]:
+        """Return the first sample of a batch and the first behind it."""
+        first = number * self.batch_samples
+        return first, min(first + self.batch_samples, self.design.samples)
 
     def sample_drive(self, sample: int) -> Drive:
         """Return the drive of a sample by its number.
@@ -121,9 +183,7 @@ _NOMINAL: dict[str, Nominal | None] = {}
 
 def _settings(study: Study) -> BatchSettings:
     """Settings with the nominal solution, which every process finds once for itself."""
-    settings = BatchSettings(
-        crank_angle=position_angles(study.positions), quantities=study.quantities, build=study.build
-    )
+    settings = study.settings
     key = study.fingerprint()
     if key not in _NOMINAL:
         _NOMINAL.clear()
@@ -132,16 +192,11 @@ def _settings(study: Study) -> BatchSettings:
             # Without it samples start from first contact, and say themselves what is wrong.
             with suppress(CycloError):
                 _NOMINAL[key] = solve_nominal(study.cases[0][1], settings)
-    return BatchSettings(
-        crank_angle=settings.crank_angle,
-        quantities=settings.quantities,
-        build=settings.build,
-        nominal=_NOMINAL[key],
-    )
+    return replace(settings, nominal=_NOMINAL[key])
 
 
 def run_batch(study: Study, number: int) -> BatchResult:
-    """Solve one batch: the task every engine runs.
+    """Solve one batch: the task every worker runs.
 
     Parameters
     ----------
@@ -150,11 +205,9 @@ def run_batch(study: Study, number: int) -> BatchResult:
     number : int
         Batch 0 … ``study.batches`` − 1.
     """
-    first = number * study.batch_samples
-    last = min(first + study.batch_samples, study.design.samples)
-    factors = study.design.rows(first, last)
-    values = np.full((last - first, len(study.quantities)), np.nan)
-    messages = [""] * (last - first)
+    factors = study.design.rows(*study.samples_of(number))
+    values = np.full((len(factors), len(study.quantities)), np.nan)
+    messages = [""] * len(factors)
     drives, sound = [], []
     for place, row in enumerate(factors):
         try:

@@ -21,15 +21,17 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.mistakes import describe_mistake
 from ltca.drive.parts import Drive
@@ -56,13 +58,15 @@ class _Reader:
             raise DriveError(self.problems, self.source)
 
 
-def load_sweep(path: Path) -> Study:
+def load_sweep(path: Path, engine: Engine | None = None) -> Study:
     """Read a sweep from its TOML file.
 
     Parameters
     ----------
     path : Path
         ``study.toml``.
+    engine : Engine, optional
+        How bodies yield; half-spaces by default.
 
     Returns
     -------
@@ -74,7 +78,8 @@ def load_sweep(path: Path) -> Study:
         When file, drive, design or a factor is wrong; all mistakes together.
     """
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        table = tomllib.loads(text)
     except (OSError, UnicodeDecodeError) as error:
         raise DriveError([f"cannot be read: {error}"], str(path)) from error
     except tomllib.TOMLDecodeError as error:
@@ -83,10 +88,11 @@ def load_sweep(path: Path) -> Study:
     if not isinstance(source, str):
         raise DriveError(["drive: is missing; give 'paper' or a drive file"], str(path))
     # A drive file is looked for beside the study, so that both can be moved together.
-    return parse_sweep(table, source if source == "paper" else str(path.parent / source), str(path))
+    study = parse_sweep(table, source if source == "paper" else str(path.parent / source), str(path), engine)
+    return replace(study, definition=text)
 
 
-def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study") -> Study:
+def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", engine: Engine | None = None) -> Study:
     """Validate the table of a sweep file; see `load_sweep`."""
     reader = _Reader(source=source, problems=[])
     reader.problems += [
@@ -120,6 +126,9 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study") -> 
         positions=positions,
         quantities=check_quantities(names),
         near_nominal=False,
+        engine=HalfSpace() if engine is None else engine,
+        definition=json.dumps(table, ensure_ascii=False),
+        drive_file=file.text,
     )
 
 

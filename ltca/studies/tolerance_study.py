@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.tolerances import Factors
 from ltca.reading.drive_file import DriveFile
 from ltca.studies.designs import ToleranceDesign
@@ -18,6 +21,7 @@ def tolerance_study(
     seed: int = 0,
     sequence: str = "random",
     quantities: tuple[str, ...] | None = None,
+    engine: Engine | None = None,
 ) -> Study:
     """Return the tolerance study of one case of a drive.
 
@@ -33,6 +37,8 @@ def tolerance_study(
         See `ltca.studies.designs.ToleranceDesign`.
     quantities : tuple of str, optional
         What is kept; by default `DEFAULT_QUANTITIES`.
+    engine : Engine, optional
+        How bodies yield; half-spaces by default.
 
     Returns
     -------
@@ -45,6 +51,8 @@ def tolerance_study(
     """
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
+    kept = DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities)
+    asked = {"case": name, "samples": samples, "positions": positions, "seed": seed, "design": sequence}
     return Study(
         name=f"{file.name} {name}",
         cases=((name, drive),),
@@ -52,6 +60,9 @@ def tolerance_study(
             factors=Factors.of_tolerances(drive, file.tolerances), samples=samples, seed=seed, sequence=sequence
         ),
         positions=positions,
-        quantities=DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities),
+        quantities=kept,
         near_nominal=True,
+        engine=HalfSpace() if engine is None else engine,
+        definition=json.dumps({"study": "tolerances", **asked, "quantities": kept}, ensure_ascii=False),
+        drive_file=file.text,
     )

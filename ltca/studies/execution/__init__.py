@@ -3,11 +3,11 @@
 Modules in the order data passes:
 
 ===========  ============================================================
-engine       Batches on this process, on a local pool of processes or on a dask.distributed cluster: one loop for all
+workers      Batches on this process, on a local pool of processes or on a dask.distributed cluster: one loop for all
              of them
+warm_worker  What every worker needs, imported and built: the fork server of `ltca.studies.execution.workers` loads
+             this module once
 storage      Files of a study: finished batches while it runs, then one dataset and one table that are whole or not
              there
-warm_worker  What every worker needs, imported and built: the fork server of `ltca.studies.execution.engine` loads
-             this module once
 ===========  ============================================================
 """

@@ -1,22 +1,27 @@
 """Files of a study: finished batches while it runs, then one dataset and one table that are whole or not there.
 
-Nothing in the final files depends on time, on the engine or on the order in which batches came.
+Nothing in the final files depends on time, on who solved it or on the order in which batches came.
 """
 
 from __future__ import annotations
 
 import json
 import shutil
+import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.drive.fields import field_kinds
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
+from ltca.output.provenance import code_hash, code_version
+from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
 from ltca.studies.quantities import QUANTITIES
 from ltca.studies.study import BatchResult, Study
@@ -73,8 +78,9 @@ class StudyFolder:
                 raise CycloError(f"{self.path}: holds no study to resume")
             if held != fingerprint:
                 raise CycloError(
-                    f"{self.path}: holds another study (drive, tolerances, samples, positions, seed or quantities "
-                    "differ); resume with the options it was started with, or use another --out"
+                    f"{self.path}: holds another study (drive, tolerances, samples, positions, seed, quantities, "
+                    "compliance, coefficients or the code differ); resume with the options it was started with, or use "
+                    "another --out"
                 )
             if self.results.exists() and not unfinished:
                 return []
@@ -83,7 +89,7 @@ class StudyFolder:
                 f"{self.path}: holds finished batches of an interrupted study; continue it with --resume, or remove "
                 f"{self._batches} to start over"
             )
-        done = {int(item.stem) for item in self._batches.glob("[0-9]*.npz")} if resume else set()
+        done = self._done(fingerprint) if resume else set()
         if not resume:
             for stale in (self.results, self.table):
                 stale.unlink(missing_ok=True)
@@ -94,7 +100,7 @@ class StudyFolder:
                 "name": study.name,
                 "samples": study.design.samples,
                 "positions": study.positions,
-                "version": version("cyclo-ltca"),
+                "version": code_version(),
             },
         )
         return [number for number in range(study.batches) if number not in done]
@@ -107,14 +113,32 @@ class StudyFolder:
         except (OSError, ValueError, KeyError) as error:
             raise CycloError(f"{self._plan}: cannot be read: {error}") from error
 
-    def store(self, result: BatchResult) -> None:
-        """Keep one finished batch, whole or not at all."""
+    def _done(self, fingerprint: str) -> set[int]:
+        """Finished batches of this study; one that is damaged or of another is solved again."""
+        done = set()
+        for item in self._batches.glob("[0-9]*.npz"):
+            try:
+                with np.load(item) as stored:
+                    sound = str(stored["fingerprint"]) == fingerprint
+                    for name in stored.files:
+                        stored[name]  # reads it whole, checksum included
+            except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error):
+                sound = False
+            if sound:
+                done.add(int(item.stem))
+            else:
+                item.unlink()
+        return done
+
+    def store(self, study: Study, result: BatchResult) -> None:
+        """Keep one finished batch, whole or not at all, and whose it is."""
         with whole_file(self._batches / f"{result.number:08d}.npz") as part:
             np.savez(
                 part,
                 factors=result.factors,
                 values=result.values,
                 messages=np.array(result.messages, dtype=str),
+                fingerprint=np.array(study.fingerprint()),
             )
 
     def _load(self, number: int) -> BatchResult:
@@ -175,24 +199,16 @@ class StudyFolder:
         samples, names = study.design.samples, study.design.names
         with h5netcdf.File(path, "w") as file:
             file.dimensions = {"sample": samples, "factor": len(names), "failure": len(failures)}
-            file.attrs.update(
-                {
-                    "study": study.name,
-                    "fingerprint": study.fingerprint(),
-                    "positions": study.positions,
-                    "samples": samples,
-                    "version": version("cyclo-ltca"),
-                }
-            )
-            if isinstance(study.design, SweepDesign):
-                levels = {f.path: list(f.levels) for f in study.design.factors if f.is_text}
-                file.attrs["levels"] = json.dumps(levels)
+            file.attrs.update(_attributes(study))
             text = {"dtype": h5netcdf.core.h5py.string_dtype()}
             file.create_variable("factor", ("factor",), **text)[:] = np.array(names, dtype=object)
+            units = file.create_variable("factor_units", ("factor",), **text)
+            units[:] = np.array([_factor_column(study, name)["units"] for name in names], dtype=object)
+            units.attrs["long_name"] = "unit of each factor"
             file.create_variable("sample", ("sample",), dtype="i8")[:] = np.arange(samples)
             length = min(CHUNK, samples)
             drawn = file.create_variable("factor_value", ("sample", "factor"), dtype="f8", chunks=(length, len(names)))
-            drawn.attrs["long_name"] = "value of each factor, in the unit of its field"
+            drawn.attrs["long_name"] = "value of each factor, in its unit (factor_units); of a text its level"
             failed = file.create_variable("failed", ("sample",), dtype="i1")
             failed.attrs["long_name"] = "1 where the sample failed; its quantities are no numbers then"
             columns = []
@@ -216,11 +232,60 @@ class StudyFolder:
         import pyarrow as pa
         from pyarrow import parquet
 
-        names = [*study.design.names, *study.quantities]
-        kinds = [("sample", pa.int64()), *((name, pa.float64()) for name in names), ("message", pa.string())]
-        schema = pa.schema(kinds)
+        schema = pa.schema(
+            [
+                pa.field("sample", pa.int64(), metadata={"units": "1", "description": "number of the sample, from 0"}),
+                *(pa.field(name, pa.float64(), metadata=_factor_column(study, name)) for name in study.design.names),
+                *(pa.field(name, pa.float64(), metadata=quantity_column(name)) for name in study.quantities),
+                pa.field("message", pa.string(), metadata={"units": "", "description": "why it failed, else empty"}),
+            ],
+            metadata={name: str(value) for name, value in _attributes(study).items()},
+        )
         with parquet.ParquetWriter(path, schema) as writer:
             for first, factors, values, messages in self._in_chunks(study):
                 columns = [np.arange(first, first + len(messages)), *factors.T, *values.T]
                 arrays = [pa.array(column) for column in columns]
                 writer.write_table(pa.Table.from_arrays([*arrays, pa.array(messages)], schema=schema))
+
+
+def _attributes(study: Study) -> dict[str, Any]:
+    """What a file of a study says of itself; no clock and no folder among it."""
+    found = {
+        "Conventions": "CF-1.11",
+        "title": f"study of {study.name}",
+        "source": f"cyclo {code_version()}",
+        "version": code_version(),
+        "code_hash": code_hash("ltca"),
+        "study": study.name,
+        "study_definition": study.definition,
+        "drive_file": study.drive_file or drive_text(study.cases[0][1]),
+        "fingerprint": study.fingerprint(),
+        "positions": study.positions,
+        "samples": study.design.samples,
+        **study.engine.options,
+    }
+    if isinstance(study.design, SweepDesign):
+        found["levels"] = json.dumps({f.path: list(f.levels) for f in study.design.factors if f.is_text})
+    return found
+
+
+def quantity_column(name: str) -> dict[str, str]:
+    """Return the metadata of the column of a quantity in a table."""
+    return {"units": QUANTITIES[name].unit, "description": QUANTITIES[name].description}
+
+
+def field_column(path: str) -> dict[str, str]:
+    """Return the metadata of the column of a field of the drive in a table."""
+    kinds = field_kinds()
+    kind = kinds.get(path) or kinds[path.rpartition(".")[0]]
+    unit = {"": "1", "dimensionless": "1"}.get(kind.unit, kind.unit.replace("*", " "))
+    return {"units": unit, "description": f"drive field {path}"}
+
+
+def _factor_column(study: Study, name: str) -> dict[str, str]:
+    if isinstance(study.design, SweepDesign):
+        factor = next(item for item in study.design.factors if item.path == name)
+        if factor.is_text:
+            levels = ", ".join(f"{number} {level}" for number, level in enumerate(factor.levels))
+            return {"units": "1", "description": f"number of the level of {name}: {levels}"}
+    return field_column(name)

@@ -1,4 +1,4 @@
-"""What every worker needs, imported and built: the fork server of `ltca.studies.execution.engine` loads this module once."""
+"""What every worker needs, imported and built: the fork server of `ltca.studies.execution.workers` loads this module once."""
 
 from __future__ import annotations
 

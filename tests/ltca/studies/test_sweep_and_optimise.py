@@ -8,9 +8,10 @@ import tomllib
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands import curves, optimise, sweep, tolerance
-from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.coefficients import without_coupling
 from ltca.drive.fields import read_field
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.placement import position_angles
@@ -188,7 +189,14 @@ def test_names_ranges_and_limits(drive):
     ):
         with pytest.raises(DriveError, match=message):
             parse_variable(text, drive)
-    assert parse_limit("min_backlash_wheel >= 8 arcmin").value == pytest.approx(8.0 / 60.0 * np.pi / 180.0)
+    for text, value in (
+        ("min_backlash_wheel >= 8 arcmin", 8.0),
+        ("min_backlash_wheel >= 8", 8.0),  # plain numbers in the unit that is printed
+        ("min_backlash_wheel >= 0.001 rad", 0.001 * 10_800.0 / np.pi),
+        ("ptp_transmission_error <= 0.05 arcmin", 3.0),
+        ("ptp_transmission_error <= 3 arcsec", 3.0),
+    ):
+        assert parse_limit(text).value == pytest.approx(value), text
     for text, message in (
         ("max_pin_load < 3 N", "write it as"),
         ("beauty <= 3", "is no quantity"),
@@ -202,7 +210,7 @@ def test_models_of_one_drive_serve_the_optimiser(drive):
     """A model that is built for one drive at a time (finite-element coefficients are) gives what the batch gives."""
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
     drives = [drive, with_fields(drive, {"disc.equidistant_offset": 0.16})]
-    alone = batch_analysis(problem, 5, lambda one, positions: HalfSpaceCompliance.of_drive(one[0]), together=False)
+    alone = batch_analysis(problem, 5, Hybrid(coefficients=without_coupling(drive), hole_near_field=False))
     np.testing.assert_allclose(alone(drives), batch_analysis(problem, 5)(drives), rtol=1e-9)
 
 

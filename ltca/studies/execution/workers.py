@@ -1,6 +1,6 @@
 """Batches on this process, on a local pool of processes or on a dask.distributed cluster: one loop for all of them.
 
-Every engine is an executor of `concurrent.futures`. Results come as they are done; a batch depends on its number
+Every one of them is an executor of `concurrent.futures`. Results come as they are done; a batch depends on its number
 alone, so who solves it and when shows nowhere in them.
 """
 
@@ -36,18 +36,18 @@ class ThisProcess(Executor):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Engine:
+class Workers:
     """Where batches are solved.
 
     Attributes
     ----------
-    workers : int
+    processes : int
         Processes of the local pool; 1 is this process alone.
     scheduler : str
         Address of a dask.distributed scheduler, empty for none.
     """
 
-    workers: int = 1
+    processes: int = 1
     scheduler: str = ""
 
     @contextmanager
@@ -62,16 +62,16 @@ class Engine:
         if self.scheduler:
             with _cluster(self.scheduler) as found:
                 yield found
-        elif self.workers > 1:
+        elif self.processes > 1:
             # Never a fork of this process, which may have threads; where there is a fork server it imports the suite and
             # builds the tables once, and every worker starts as its copy.
             server = "forkserver" in get_all_start_methods()
             context = get_context("forkserver" if server else "spawn")
             if server:
                 context.set_forkserver_preload(["ltca.studies.execution.warm_worker"])
-            pool = ProcessPoolExecutor(self.workers, mp_context=context, initializer=_calm_threads)
+            pool = ProcessPoolExecutor(self.processes, mp_context=context, initializer=_calm_threads)
             try:
-                yield pool, self.workers
+                yield pool, self.processes
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
         else:
@@ -112,7 +112,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         client.close()
 
 
-def solve_batches(study: Study, numbers: Iterable[int], engine: Engine) -> Iterator[BatchResult]:
+def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Iterator[BatchResult]:
     """Solve batches and yield them as they are done.
 
     Parameters
@@ -121,7 +121,7 @@ def solve_batches(study: Study, numbers: Iterable[int], engine: Engine) -> Itera
         The study.
     numbers : iterable of int
         Batches to solve.
-    engine : Engine
+    workers : Workers
         Where.
 
     Yields
@@ -138,8 +138,8 @@ def solve_batches(study: Study, numbers: Iterable[int], engine: Engine) -> Itera
     for _ in range(LOSSES + 1):
         done: set[int] = set()
         try:
-            with engine.executor() as (executor, workers):
-                for result in _flow(study, left, executor, QUEUE * workers):
+            with workers.executor() as (executor, count):
+                for result in _flow(study, left, executor, QUEUE * count):
                     done.add(result.number)
                     yield result
             return

@@ -1,4 +1,4 @@
-"""The same dataset bit for bit: any engine, a lost worker, a killed study resumed; failures told; memory flat."""
+"""The same dataset bit for bit: any worker, a lost one, a killed study resumed; failures told; memory flat."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor
-from ltca.studies.execution.engine import Engine, solve_batches
 from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.quantities import QUANTITIES
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study, run_batch
@@ -43,7 +43,7 @@ def small_study(paper, samples=30, quantities=("ptp_transmission_error", "max_pi
 def reference(paper, tmp_path_factory):
     """Files of the small study solved in this process."""
     folder = StudyFolder(path=tmp_path_factory.mktemp("reference"))
-    run_study(small_study(paper, samples=12), folder, Engine())
+    run_study(small_study(paper, samples=12), folder, Workers())
     return folder
 
 
@@ -62,13 +62,13 @@ def test_every_quantity_against_the_run_of_its_sample(paper):
     assert set(found) == set(QUANTITIES)
     alone = analyse(drive, position_angles(24))
     from ltca.analysis.summary import summarise
-    from ltca.drive.units import ARCMIN, ARCSEC
+    from ltca.drive.units import ARCSEC
 
     told = summarise(alone)
     pairs = {
-        "ptp_transmission_error": told["ptp_transmission_error_arcsec"] / ARCSEC,
-        "ptp_transmission_error_light": told["ptp_transmission_error_light_arcsec"] / ARCSEC,
-        "mean_backlash_wheel": told["backlash_wheel_arcmin"] / ARCMIN,
+        "ptp_transmission_error": told["ptp_transmission_error_arcsec"],
+        "ptp_transmission_error_light": told["ptp_transmission_error_light_arcsec"],
+        "mean_backlash_wheel": told["backlash_wheel_arcmin"],
         "max_pin_load": told["max_pin_load_N"],
         "max_pin_pressure_mid": told["max_pin_pressure_mid_MPa"],
         "max_roller_load": told["max_roller_load_N"],
@@ -81,7 +81,7 @@ def test_every_quantity_against_the_run_of_its_sample(paper):
         "mean_loaded_pins": told["mean_loaded_pins"],
         "mean_loaded_rollers": told["mean_loaded_rollers"],
         "mean_loaded_pin_shaft_pins": told["mean_loaded_pin_shaft_pins"],
-        "mean_transmission_error": alone.full.pose[:, 3].mean(),
+        "mean_transmission_error": alone.full.pose[:, 3].mean() * ARCSEC,
         "max_bearing_load": np.hypot(alone.bearing_radial, alone.bearing_tangential).max(),
     }
     for name, expected in pairs.items():
@@ -107,24 +107,24 @@ def test_the_dataset_holds_what_was_drawn_and_found(paper, reference):
 @pytest.mark.slow
 def test_two_workers_write_the_same_files(paper, reference, tmp_path):
     folder = StudyFolder(path=tmp_path)
-    run_study(small_study(paper, samples=12), folder, Engine(workers=2))
+    run_study(small_study(paper, samples=12), folder, Workers(processes=2))
     same_files(folder, reference)
 
 
 def test_resume_solves_what_is_left_and_no_more(paper, reference, tmp_path):
     study, folder = small_study(paper, samples=12), StudyFolder(path=tmp_path)
     assert folder.prepare(study, resume=False) == [0, 1, 2]
-    folder.store(run_batch(study, 1))
+    folder.store(study, run_batch(study, 1))
     with pytest.raises(CycloError, match="continue it with --resume"):
         folder.prepare(study, resume=False)
     with pytest.raises(CycloError, match="holds another study"):
         folder.prepare(replace(study, positions=8), resume=True)
     assert folder.prepare(study, resume=True) == [0, 2]
-    found = run_study(study, folder, Engine(), resume=True)
+    found = run_study(study, folder, Workers(), resume=True)
     assert found.solved_positions == 8 * POSITIONS
     same_files(folder, reference)
     # a finished study is not solved again
-    again = run_study(study, folder, Engine(), resume=True)
+    again = run_study(study, folder, Workers(), resume=True)
     assert again.solved_positions == 0
     same_files(folder, reference)
     with pytest.raises(CycloError, match="no study to resume"):
@@ -167,7 +167,7 @@ def bad_sweep(paper):
 
 def test_failed_samples_are_listed_with_their_drive_and_stop_nobody(paper, tmp_path):
     folder = StudyFolder(path=tmp_path)
-    found = run_study(bad_sweep(paper), folder, Engine())
+    found = run_study(bad_sweep(paper), folder, Workers())
     assert [sample for sample, _ in found.failures] == [1, 2]
     assert "interfere" in found.failures[0][1]
     assert "cannot be carried" in found.failures[1][1]
@@ -180,7 +180,7 @@ def test_failed_samples_are_listed_with_their_drive_and_stop_nobody(paper, tmp_p
     heavy = load_drive(tmp_path / "samples" / "sample_00000002.toml").cases["nominal"]
     assert heavy.load.torque == 1e8
     # told again by a resumed, finished study
-    assert run_study(bad_sweep(paper), folder, Engine(), resume=True).failures == found.failures
+    assert run_study(bad_sweep(paper), folder, Workers(), resume=True).failures == found.failures
 
 
 def test_sample_drive_file_is_the_sample(paper, tmp_path):
@@ -197,14 +197,14 @@ def test_local_pool_survives_a_killed_worker(paper, reference, tmp_path):
     study, folder = small_study(paper, samples=12), StudyFolder(path=tmp_path)
     before = children()
     killed = False
-    for result in solve_batches(study, folder.prepare(study, resume=False), Engine(workers=2)):
-        folder.store(result)
+    for result in solve_batches(study, folder.prepare(study, resume=False), Workers(processes=2)):
+        folder.store(study, result)
         if not killed:
             victims = [pid for pid in children() if pid not in before and "multiprocessing" in command(pid)]
             os.kill(victims[-1], signal.SIGKILL)
             killed = True
     assert killed
-    run_study(study, folder, Engine(), resume=True)
+    run_study(study, folder, Workers(), resume=True)
     same_files(folder, reference)
 
 
@@ -308,7 +308,7 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
             if len(done) == 3:  # the first call tells what a resumed study had
                 workers[0].kill()
 
-        found = run_study(study, folder, Engine(scheduler=address), advance=advance)
+        found = run_study(study, folder, Workers(scheduler=address), advance=advance)
         assert workers[0].wait(timeout=10) == -signal.SIGKILL
         assert sum(done) == 32
         assert not found.failures
@@ -318,7 +318,7 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
             process.kill()
             process.wait(timeout=20)
     straight = StudyFolder(path=tmp_path / "straight")
-    run_study(study, straight, Engine())
+    run_study(study, straight, Workers())
     same_files(folder, straight)
 
 
@@ -327,14 +327,14 @@ def test_scheduler_that_does_not_answer_is_told(paper, tmp_path):
     pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
     study = small_study(paper, samples=4)
     with pytest.raises(CycloError, match="no scheduler answers there"):
-        run_study(study, StudyFolder(path=tmp_path), Engine(scheduler="tcp://127.0.0.1:9"))
+        run_study(study, StudyFolder(path=tmp_path), Workers(scheduler="tcp://127.0.0.1:9"))
 
 
 MEMORY = """
 import resource, sys
 from pathlib import Path
 from ltca.reading.drive_file import load_drive
-from ltca.studies.execution.engine import Engine
+from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import run_study
 from ltca.studies.execution import storage
 from ltca.studies.execution.storage import StudyFolder
@@ -342,7 +342,7 @@ from ltca.studies.tolerance_study import tolerance_study
 storage.CHUNK = 1024  # so that the smaller study fills several as well
 paper, samples = load_drive("paper"), int(sys.argv[1])
 study = tolerance_study(paper, case="CS-6", samples=samples, positions=1, quantities=("max_pin_load",))
-run_study(study, StudyFolder(path=Path(sys.argv[2])), Engine())
+run_study(study, StudyFolder(path=Path(sys.argv[2])), Workers())
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 

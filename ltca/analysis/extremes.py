@@ -1,0 +1,386 @@
+"""Extremes of an analysis between its positions: peak-to-peak values and largest loads that do not hang on sampling.
+
+Positions 2πk/N see N/gcd(N, z_C) phases of the mesh only: 13 or 26 positions of a disc of 13 teeth find one or two
+points of every flank's passage. And where contacts open, the wheel angle has kinks: its extremes are sharp, and even
+hundreds of positions miss them by per cents. So the turn is filled up until every passage of a tooth, a hole or a
+roller is resolved, and then searched about its highest samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, gcd
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.compliance.response import ContactPressures
+from ltca.drive.parts import Drive
+from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.placement import Placement, position_angles
+
+FloatArray = NDArray[np.float64]
+
+TURN = 2.0 * np.pi
+RESOLVED = 8
+"""Positions in a passage from which its highest places can be told, and phases of the mesh below which we warn."""
+SCANNED = 24
+"""Positions in a passage that the search starts from, as far as `SCAN` goes."""
+SCAN = 720
+"""Positions of a turn that are enough to start from with many teeth; never fewer than `RESOLVED` a passage."""
+GAIN = 1e-3
+"""What is not looked for any more, as a part of the range of a signed quantity, of the largest load or pressure."""
+ROUNDS = 6
+PLACES = 4
+"""Places of each kind that are tried for each extreme in a round, the most promising."""
+NEAREST = 1e-3
+"""Places nearer to a sample than this part of a passage are not tried."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extremes:
+    """Extremes over one turn of the crank, both ends included; never less than those of the given positions.
+
+    Attributes
+    ----------
+    ptp_transmission_error, ptp_transmission_error_light : float
+        Peak to peak at the torque of the run and at the light torque, rad.
+    ptp_tangential_bearing_load, max_bearing_load : float
+        N.
+    max_pin_load, max_roller_load, max_pin_shaft_load : float
+        N.
+    max_pin_pressure_mid, max_pin_pressure_max, max_roller_pressure_mid, max_roller_pressure_max : float
+        MPa; not a number where the engine cannot say it.
+    added_positions, added_light_positions : int
+        Positions solved beyond the given ones, at either torque.
+    """
+
+    ptp_transmission_error: float
+    ptp_transmission_error_light: float
+    ptp_tangential_bearing_load: float
+    max_bearing_load: float
+    max_pin_load: float
+    max_roller_load: float
+    max_pin_shaft_load: float
+    max_pin_pressure_mid: float
+    max_pin_pressure_max: float
+    max_roller_pressure_mid: float
+    max_roller_pressure_max: float
+    added_positions: int
+    added_light_positions: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sampling:
+    """How crank angles sample the mesh.
+
+    Attributes
+    ----------
+    positions : int
+        How many there are.
+    positions_per_mesh_period : float
+        Positions by passages of a tooth, 360°/z_C, in a whole turn, or between the outermost angles of part of one.
+    distinct_mesh_phases : int
+        Different places in that passage among them.
+    """
+
+    positions: int
+    positions_per_mesh_period: float
+    distinct_mesh_phases: int
+
+
+def is_full_turn(crank_angle: FloatArray) -> bool:
+    """Tell whether crank angles are 2πk/N, k = 0 … N−1, with more than one position."""
+    count = crank_angle.size
+    return count > 1 and np.allclose(crank_angle, position_angles(count), rtol=0.0, atol=1e-9)
+
+
+def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
+    """Return how crank angles sample the mesh of a drive.
+
+    Parameters
+    ----------
+    drive : Drive
+        For its teeth.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import load_drive
+    >>> sampling(load_drive("paper").cases["CS-1"], position_angles(26)).distinct_mesh_phases
+    2
+    """
+    teeth, count = drive.disc.number_of_teeth, crank_angle.size
+    if is_full_turn(crank_angle):
+        return Sampling(
+            positions=count, positions_per_mesh_period=count / teeth, distinct_mesh_phases=count // gcd(count, teeth)
+        )
+    # A phase is a place on a circle; 1e-9 rad of crank angle are the round-off of many turns.
+    phases = np.sort(np.mod(crank_angle * teeth / TURN, 1.0))
+    apart = np.diff(phases, append=phases[0] + 1.0) > 1e-9 * teeth
+    passages = float(np.ptp(crank_angle)) * teeth / TURN
+    return Sampling(
+        positions=count,
+        positions_per_mesh_period=count / max(passages, 1.0),
+        distinct_mesh_phases=max(1, int(np.count_nonzero(apart))),
+    )
+
+
+def sampling_warning(drive: Drive, crank_angle: FloatArray) -> str | None:
+    """Return what to say of crank angles that see too few phases of the mesh; None where they see enough.
+
+    Parameters
+    ----------
+    drive : Drive
+        For its teeth.
+    crank_angle : array, shape (positions,)
+        φ_C, rad; nothing is said of a single one, which has neither mean nor range.
+    """
+    found = sampling(drive, crank_angle)
+    if found.positions == 1 or found.distinct_mesh_phases >= RESOLVED:
+        return None
+    teeth = drive.disc.number_of_teeth
+    enough = next(count for count in range(2 * RESOLVED, 2 * RESOLVED + teeth) if gcd(count, teeth) == 1)
+    phases = f"{found.distinct_mesh_phases} phase{'s' if found.distinct_mesh_phases > 1 else ''}"
+    return (
+        f"{found.positions} positions see {phases} of the mesh of {teeth} teeth: means and extremes over them say little of "
+        f"the turn; take at least {enough} over it, a number that shares no factor with {teeth}"
+    )
+
+
+def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
+    """Return the extremes of an analysis over the whole turn that its positions sample.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        At crank angles 2πk/N (`is_full_turn`). Positions in between are balanced on its compliance by Newton's method,
+        started from their neighbours' poses.
+
+    Raises
+    ------
+    ValueError
+        When the positions are no full turn.
+    ConvergenceError
+        When a position in between does not balance.
+
+    Notes
+    -----
+    Rollers come back to their places after many turns only, so a turn ends elsewhere than it began: both ends belong
+    to it.
+    """
+    drive, given = analysis.drive, analysis.full.crank_angle
+    if not is_full_turn(given):
+        raise ValueError("extremes are refined over full turns, 2πk/N with more than one position")
+    passages = passages_per_turn(drive)
+    full = _Stage.of(analysis.full, _full_signals(analysis.full, analysis.pressures), passages)
+    light = _Stage.of(analysis.light, _wheel_signals(analysis.light), passages)
+    wanted = scan_angles(given.size, passages)
+    wanted_light = wanted
+    for _ in range(ROUNDS + 1):
+        _solve(analysis, full, light, wanted, wanted_light)
+        wanted, wanted_light = full.search.promising(), light.search.promising()
+        if wanted.size + wanted_light.size == 0:
+            break
+    found, found_light = full.search.largest(), light.search.largest()
+    return Extremes(
+        ptp_transmission_error=found["wheel_angle"] + found["wheel_angle_negative"],
+        ptp_transmission_error_light=found_light["wheel_angle"] + found_light["wheel_angle_negative"],
+        ptp_tangential_bearing_load=found["tangential"] + found["tangential_negative"],
+        max_bearing_load=found["bearing"],
+        max_pin_load=found["pin"],
+        max_roller_load=found["roller"],
+        max_pin_shaft_load=found["hole"],
+        max_pin_pressure_mid=found["pin_mid"],
+        max_pin_pressure_max=found["pin_largest"],
+        max_roller_pressure_mid=found["roller_mid"],
+        max_roller_pressure_max=found["roller_largest"],
+        added_positions=full.search.angle.size - given.size,
+        added_light_positions=light.search.angle.size - given.size,
+    )
+
+
+def passages_per_turn(drive: Drive) -> int:
+    """Return how many teeth, holes or rollers, whichever are most, pass the load in a turn of the crank."""
+    rollers = drive.crank_bearing.number_of_rollers * (1.0 - float(Placement.of_drive(drive).cage_speed))
+    return max(drive.disc.number_of_teeth, drive.pin_shaft.number_of_pins, ceil(rollers))
+
+
+def scan_angles(positions: int, passages: int) -> FloatArray:
+    """Return what resolves every passage when added to positions 2πk/N, and the end of the turn, rad.
+
+    Examples
+    --------
+    >>> scan_angles(13, 13).size, scan_angles(360, 13).size
+    (300, 1)
+    """
+    parts = ceil(max(RESOLVED * passages, min(SCANNED * passages, SCAN)) / positions)
+    places = np.arange(positions * parts + 1)
+    return np.asarray(TURN * places[(places % parts > 0) | (places == places[-1])] / (positions * parts))
+
+
+@dataclass(slots=True, kw_only=True)
+class PeakSearch:
+    """Search for the largest values of sampled curves: tells where they may be larger than any sample.
+
+    What a peak between samples can reach is read from its sides. Where both are straight it is a kink, at the crossing
+    of the lines from beside it, which lies above any curve that bends down; where it is smooth it is near the vertex
+    of a parabola.
+
+    Attributes
+    ----------
+    angle : array, shape (samples,)
+        Ascending, rad.
+    values : array, shape (samples, columns)
+        The curves.
+    groups : dict of str to (slice, bool)
+        Columns whose largest value is one extreme, and whether that is one end of a range.
+    nearest : float
+        Places nearer to a sample are not asked for, rad.
+    """
+
+    angle: FloatArray
+    values: FloatArray
+    groups: dict[str, tuple[slice, bool]]
+    nearest: float
+
+    def add(self, angle: FloatArray, values: FloatArray) -> None:
+        """Take new samples."""
+        order = np.argsort(np.concatenate([self.angle, angle]), kind="stable")
+        self.angle = np.concatenate([self.angle, angle])[order]
+        self.values = np.concatenate([self.values, values])[order]
+
+    def largest(self) -> dict[str, float]:
+        """Return the largest value of every group."""
+        return {name: float(np.max(self.values[:, columns])) for name, (columns, _) in self.groups.items()}
+
+    def promising(self) -> FloatArray:
+        """Return the places where an extreme may be larger than every sample by more than `GAIN`, ascending, rad."""
+        found = [np.zeros(0)]
+        estimates = (_vertices(self.angle, self.values), *_kinks_on_both_sides(self.angle, self.values))
+        for columns, is_end in self.groups.values():
+            values = self.values[:, columns]
+            least = np.max(values) + GAIN * (np.ptp(values) if is_end else np.max(values))
+            for places, heights in estimates:
+                height = heights[:, columns].ravel()
+                first = np.argsort(-height, kind="stable")[:PLACES]
+                found.append(places[:, columns].ravel()[first[height[first] > least]])
+        kept: list[float] = []
+        for place in np.sort(np.concatenate(found)):
+            apart = place - kept[-1] if kept else np.inf
+            if min(apart, np.min(np.abs(self.angle - place))) > self.nearest:
+                kept.append(float(place))
+        return np.array(kept)
+
+
+def _vertices(x: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Places and heights of the parabolas through each highest sample and its neighbours; −∞ where there is none."""
+    x = x[:, None]
+    slope = np.diff(values, axis=0) / np.diff(x, axis=0)
+    before, behind = slope[:-1], slope[1:]
+    bend = (behind - before) / (x[2:] - x[:-2])
+    peak = (before >= 0.0) & (behind <= 0.0) & (bend < 0.0)
+    place = 0.5 * (x[:-2] + x[1:-1]) - 0.5 * before / np.where(peak, bend, -1.0)
+    height = values[:-2] + (place - x[:-2]) * (before + bend * (place - x[1:-1]))
+    return place, np.where(peak, height, -np.inf)
+
+
+def _kinks_on_both_sides(x: FloatArray, values: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    """Crossings of lines in the intervals behind and before each highest sample."""
+    places, heights = _kinks_behind(-x[::-1], values[::-1])
+    return [_kinks_behind(x, values), (-places[::-1], heights[::-1])]
+
+
+def _kinks_behind(x: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Crossings of the line that ends in each highest sample with the one that begins in the next sample."""
+    x = x[:, None]
+    slope = np.diff(values, axis=0) / np.diff(x, axis=0)
+    rise, fall, width = slope[:-2], slope[2:], x[2:-1] - x[1:-2]
+    peak = (rise > 0.0) & (slope[1:-1] <= 0.0) & (fall < rise)
+    along = (values[2:-1] - values[1:-2] - fall * width) / np.where(peak, rise - fall, 1.0)
+    along = np.clip(along, 0.0, width)
+    return x[1:-2] + along, np.where(peak, values[1:-2] + rise * along, -np.inf)
+
+
+@dataclass(slots=True, kw_only=True)
+class _Stage:
+    """The positions at one torque: their search, and their poses as seen from the turning crank."""
+
+    search: PeakSearch
+    angle: FloatArray
+    pose: FloatArray
+    moment: float
+
+    @classmethod
+    def of(cls, found: Equilibrium, signals: dict[str, FloatArray], passages: int) -> _Stage:
+        groups, column = {}, 0
+        for name, values in signals.items():
+            groups[name] = (slice(column, column + values.shape[1]), name.startswith(("wheel", "tangential")))
+            column += values.shape[1]
+        search = PeakSearch(
+            angle=found.crank_angle,
+            values=np.hstack(list(signals.values())),
+            groups=groups,
+            nearest=NEAREST * TURN / passages,
+        )
+        pose = _turned(found.pose, -found.crank_angle)
+        return cls(search=search, angle=found.crank_angle, pose=pose, moment=float(found.wheel_moment[0]))
+
+    def start(self, angle: FloatArray) -> FloatArray:
+        """Poses between those known."""
+        between = [np.interp(angle, self.angle, column) for column in self.pose.T]
+        return _turned(np.stack(between, axis=1), angle)
+
+    def add(self, angle: FloatArray, pose: FloatArray, signals: dict[str, FloatArray]) -> None:
+        self.search.add(angle, np.hstack(list(signals.values())))
+        joined = np.concatenate([self.angle, angle])
+        order = np.argsort(joined, kind="stable")
+        self.angle, self.pose = joined[order], np.concatenate([self.pose, _turned(pose, -angle)])[order]
+
+
+def _turned(pose: FloatArray, angle: FloatArray) -> FloatArray:
+    place = (pose[:, 0] + 1j * pose[:, 1]) * np.exp(1j * angle)
+    return np.column_stack([place.real, place.imag, pose[:, 2:]])
+
+
+def _solve(analysis: LoadedAnalysis, full: _Stage, light: _Stage, angles: FloatArray, light_angles: FloatArray) -> None:
+    """Balance new positions of both torques in one batch and give them to their stages."""
+    joined = np.concatenate([angles, light_angles])
+    moment = np.repeat([full.moment, light.moment], [angles.size, light_angles.size])
+    start = np.concatenate([full.start(angles), light.start(light_angles)])
+    found = solve_equilibrium(analysis.model, joined, moment, start)
+    if angles.size:
+        signals = _full_signals(found, analysis.model.pressures(found.response))
+        loaded = slice(angles.size)
+        full.add(angles, found.pose[loaded], {name: values[loaded] for name, values in signals.items()})
+    if light_angles.size:
+        behind = slice(angles.size, None)
+        signals = _wheel_signals(found)
+        light.add(light_angles, found.pose[behind], {name: values[behind] for name, values in signals.items()})
+
+
+def _wheel_signals(found: Equilibrium) -> dict[str, FloatArray]:
+    wheel = found.pose[:, WHEEL_ANGLE, None]
+    return {"wheel_angle": wheel, "wheel_angle_negative": -wheel}
+
+
+def _full_signals(found: Equilibrium, pressures: ContactPressures) -> dict[str, FloatArray]:
+    rollers, outer, inner = found.response.rollers, pressures.outer, pressures.inner
+    push = (rollers.outer_load * rollers.outer_direction).sum(axis=1, keepdims=True)
+    tangential = (push * np.exp(-1j * found.crank_angle[:, None])).imag
+    return {
+        **_wheel_signals(found),
+        "tangential": tangential,
+        "tangential_negative": -tangential,
+        "bearing": np.abs(push),
+        "pin": found.response.pin_load,
+        "roller": rollers.outer_load,
+        "hole": found.response.hole_load,
+        "pin_mid": pressures.pins.mid,
+        "pin_largest": pressures.pins.largest,
+        "roller_mid": np.hstack([outer.mid, inner.mid]),
+        "roller_largest": np.hstack([outer.largest, inner.largest]),
+    }

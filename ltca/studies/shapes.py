@@ -1,0 +1,153 @@
+"""Influence coefficients of the shapes that a study has: found before its samples are solved, kept while they are.
+
+Coefficients belong to a shape (`ltca.drive.parts.Drive.shape_fingerprint`): samples that differ in errors of single
+parts, load or direction share them, samples that differ in a dimension or a material have their own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections import OrderedDict
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import fields
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ltca.analysis.engines import Engine
+from ltca.compliance.coefficient_files import GROUP, cached_file
+from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.drive.parts import Drive
+from ltca.errors import CycloError
+from ltca.output.provenance import code_hash
+
+KEPT = 8
+"""Shapes whose coefficients a process keeps in memory, some 10 MB each."""
+SECONDS = 20
+"""What deriving one shape like the paper's takes, about."""
+
+_ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
+
+
+def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
+    """Return the engine with the coefficients of a drive in it, those of the last shapes from memory.
+
+    Parameters
+    ----------
+    engine : Engine
+        How bodies yield.
+    drive : Drive
+        Whose shape counts.
+
+    Raises
+    ------
+    CycloError
+        When there are none and none can be derived.
+    """
+    given = _given(engine)
+    if engine.batches or isinstance(given, InfluenceCoefficients):
+        return engine
+    key = (*engine.options.values(), repr(given), drive.shape_fingerprint())
+    if key not in _ENGINES:
+        with _one_process(drive.shape_fingerprint()):
+            _ENGINES[key] = engine.with_coefficients(drive)
+        if len(_ENGINES) > KEPT:
+            _ENGINES.popitem(last=False)
+    _ENGINES.move_to_end(key)
+    return _ENGINES[key]
+
+
+def _given(engine: Engine) -> Any:
+    """What the engine was given: coefficients, files, or nothing."""
+    return getattr(engine, "coefficients", None)
+
+
+@contextmanager
+def _one_process(shape: str) -> Iterator[None]:
+    """Let one process of a machine at a time look for a shape: the others find what it has derived."""
+    try:
+        import fcntl
+    except ImportError:  # no such locks on this system: at worst two derive the same
+        yield
+        return
+    with (Path(tempfile.gettempdir()) / f"cyclo-{os.getuid()}-{shape}.lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def shapes_of(drives: Iterable[Drive]) -> dict[str, Drive]:
+    """Return the first drive of every distinct shape, by fingerprint."""
+    found: dict[str, Drive] = {}
+    for drive in drives:
+        found.setdefault(drive.shape_fingerprint(), drive)
+    return found
+
+
+def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[[str], None]) -> None:
+    """Derive what a study will need in this process, so that its workers find it.
+
+    Parameters
+    ----------
+    engine : Engine
+        How bodies yield; nothing is done for half-spaces.
+    shapes : mapping of str to Drive
+        Of `shapes_of`.
+    told : callable
+        Told how many shapes have to be derived, if any.
+
+    Raises
+    ------
+    CycloError
+        When a file given does not serve a shape, or no shape at all has coefficients. A shape that alone cannot be
+        derived is left to its samples, which say why.
+    """
+    given = _given(engine)
+    if engine.batches or isinstance(given, InfluenceCoefficients) or not shapes:
+        return
+    wanted = list(shapes.values())
+    if given is None:
+        missing = [drive for drive in wanted if not cached_file(drive).exists()]
+        if missing:
+            few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
+            told(f"{few} no influence coefficients yet: derived first, some {SECONDS} s each")
+        wanted = missing or wanted[:1]
+    failures = []
+    for drive in wanted:
+        try:
+            with_kept_coefficients(engine, drive)
+        except CycloError as error:
+            if given is not None:
+                raise
+            failures.append(error)
+    if len(failures) == len(wanted) == len(shapes):
+        raise failures[0]
+
+
+def coefficients_identity(engine: Engine) -> str:
+    """Return what tells the coefficients of an engine from others: hash of what was given or of what derives them."""
+    given = _given(engine)
+    if engine.batches:
+        return "none"
+    if isinstance(given, InfluenceCoefficients):
+        digest = hashlib.sha256()
+        for item in fields(given):
+            value = getattr(given, item.name)
+            digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
+        return f"given {digest.hexdigest()[:16]}"
+    if given is not None:
+        files = [given] if isinstance(given, Path) else list(given)
+        return "files " + " ".join(hashlib.sha256(_bytes(path)).hexdigest()[:16] for path in files)
+    packages = sorted({entry.module.partition(".")[0] for entry in entry_points(group=GROUP)})
+    return f"derived {code_hash(*packages)}"
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise CycloError(f"{path}: cannot be read as a coefficient file: {error}") from error
