@@ -25,7 +25,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
-from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, GridContact
+from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.geometry.separation import circle_departure, flank_departure
 
 FloatArray = NDArray[np.float64]
@@ -81,12 +81,7 @@ def recover_pressure(
     poisson_ratio : float
         Of the body whose shear stress is wanted.
     """
-    contact = GridContact(kind)
-    for _ in range(2):  # the second grid has the half-width that the first one found
-        contact.fit(approach, effective_radius)
-        contact.shape(0.0, departure)
-        contact.press(approach)
-    solved = contact.solution(approach)
+    solved = solve_fitted(kind, approach, effective_radius, departure)
     shear = find_subsurface_shear(solved, poisson_ratio)
     x, y, pressure = _unfolded(solved)
     return PressureField(

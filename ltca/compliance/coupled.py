@@ -151,14 +151,14 @@ class CoupledCompliance:
         # Half of a rigid overlap is a fair share of the near field.
         guess = np.where(guess > 0.0, 0.5 * guess, guess)
         if start is not None:
-            for row, memory in enumerate(start.memory[rows]):
-                if memory is not None:
-                    guess[row] = memory
+            for row, warm in enumerate(start.warm_start[rows]):
+                if warm is not None:
+                    guess[row] = warm
         return batch.response(batch.solve(guess))
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return pressures and half-widths from the near fields."""
-        laws, near = self.near_field, np.stack(list(response.memory))
+        laws, near = self.near_field, np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
         inner, _ = approach_at_load(laws.inner, response.rollers.inner_load, self.inner_radius)
         hole, _ = approach_at_load(laws.hole, response.hole_load, self.hole_radius)
@@ -321,8 +321,8 @@ class _Batch:
         )
         flank = replace(self.flank, approach=approach[:, :pins])
         holes = replace(self.holes, approach=approach[:, outer.stop :])
-        memory = np.empty(near.shape[0], dtype=object)
-        memory[:] = list(near)
+        warm_start = np.empty(near.shape[0], dtype=object)
+        warm_start[:] = list(near)
         return Response(
             force=resultant(flank, load[:, :pins], holes, load[:, outer.stop :], rollers),
             tangent=tangent,
@@ -331,7 +331,7 @@ class _Batch:
             rollers=rollers,
             pin_load=load[:, :pins],
             hole_load=load[:, outer.stop :],
-            memory=memory,
+            warm_start=warm_start,
         )
 
 

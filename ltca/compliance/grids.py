@@ -1,13 +1,16 @@
 """Contact grids solved inside every iteration of the equilibrium: the ``direct`` method.
 
 The same equilibrium as with tables, but each loaded contact is a grid of its own with the true separation of its
-surfaces: exact circles for rollers and races, exact flank and exact circle for pins. The memory that travels with
-each position holds its contacts, so that one iteration starts from the contact cells of the last.
+surfaces: exact circles for rollers and races, exact flank and exact circle for pins. Loads depend on the pose alone.
+The warm start that travels with each position holds its contacts as values, so that one iteration starts from the
+contact cells of the last.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,41 +26,57 @@ from ltca.compliance.response import (
 )
 from ltca.compliance.rollers import RollerLaws, RollerState, balance_rollers
 from ltca.contact.end_pressure import largest_pressure
-from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, GridContact
+from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
 from ltca.geometry.pairs import ContactGeometry, FlankMotion
 from ltca.geometry.separation import circle_departure, flank_departure
 
 FloatArray = NDArray[np.float64]
 
-SAME_PLACE = 1e-6
-"""Contacts that move by less than this parameter (rad) keep their separation; its radius then errs by 1e-5 or less,
-the load by a tenth of that."""
+PLACES = 4096
+"""Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
+which errs by 1e-6 of the curvature (a half of (2π/4096)²/4), the load by a tenth of that."""
+
+SeparationOf = Callable[[int, int], Separation]
+"""The separation of a pair, by position and pair."""
 
 
-@dataclass(frozen=True, slots=True)
-class PositionContacts:
-    """Contacts of one position that have been loaded so far, by the number of their pair."""
+class PositionContacts(NamedTuple):
+    """Pieces of the contacts of one position that have been loaded so far, by pair; empty for the others."""
 
-    pins: dict[int, GridContact] = field(default_factory=dict)
-    inner: dict[int, GridContact] = field(default_factory=dict)
-    outer: dict[int, GridContact] = field(default_factory=dict)
+    pins: tuple[Pieces, ...]
+    inner: tuple[Pieces, ...]
+    outer: tuple[Pieces, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class _RollerGrids:
-    """The law of the rollers of a batch of positions on one race, each on its own grid."""
+class _KindGrids:
+    """The law of the contacts of one kind in a batch of positions, each on grids of its own.
 
-    contacts: list[dict[int, GridContact]]
+    It lives as long as one response: the pieces of every contact are replaced as it is pressed again.
+    """
+
+    def __init__(self, kind: ContactKind, separation: SeparationOf, start: list[tuple[Pieces, ...]]) -> None:
+        self.kind, self.separation = kind, separation
+        self.pieces = [list(position) for position in start]
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         pressed = np.asarray(approach, dtype=float)
         load, stiffness = np.zeros_like(pressed), np.zeros_like(pressed)
-        for row, roller in zip(*np.nonzero(pressed > 0.0), strict=True):
-            load[row, roller], stiffness[row, roller] = self.contacts[row][int(roller)].press(
-                float(pressed[row, roller])
+        for row, pair in zip(*np.nonzero(pressed > 0.0), strict=True):
+            load[row, pair], stiffness[row, pair], self.pieces[row][pair] = press(
+                self.kind, self.separation(row, pair), float(pressed[row, pair]), self.pieces[row][pair]
             )
         return load, stiffness
+
+    def pressures(self, approach: FloatArray) -> KindPressures:
+        found = np.zeros((3, *approach.shape))
+        for row, pair in zip(*np.nonzero(approach > 0.0), strict=True):
+            for share, patch in recover_patches(
+                self.kind, self.separation(row, pair), float(approach[row, pair]), self.pieces[row][pair]
+            ):
+                largest = largest_pressure(patch, self.kind.end_cell)
+                found[:, row, pair] += share * np.array([patch.mid_pressure, largest, patch.half_width])
+        return KindPressures(mid=found[0], largest=found[1], half_width=found[2], end_cell=self.kind.end_cell)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,78 +125,86 @@ class GridCompliance:
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`."""
-        memory = np.full(crank_angle.size, None, dtype=object) if start is None else start.memory.copy()
-        for row in range(memory.size):
-            if memory[row] is None:
-                memory[row] = PositionContacts()
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
-        pin_load, pin_stiffness = self._press_pins(flank, memory)
+        pins, inner, outer = self._laws(flank, self._known(crank_angle.size, None if start is None else start.warm_start))
+        pin_load, pin_stiffness = pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
         hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
-        rollers = self._balance(crank_angle, pose, None if start is None else start.share, memory)
+        rollers = balance_rollers(
+            self.geometry.rollers(crank_angle),
+            pose[:, 0] + 1j * pose[:, 1],
+            RollerLaws(inner=inner, outer=outer, inner_radius=self.inner_radius, outer_radius=self.outer_radius),
+            None if start is None else start.share,
+        )
+        warm_start = np.empty(crank_angle.size, dtype=object)
+        for row, kept in enumerate(zip(pins.pieces, inner.pieces, outer.pieces, strict=True)):
+            warm_start[row] = PositionContacts(*(tuple(pieces) for pieces in kept))
         return assemble_response(
-            flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, memory=memory
+            flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, warm_start=warm_start
         )
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return pressures and half-widths from the grids, those of the shaft pins from their loads."""
-        flank, rollers, memory = response.flank, response.rollers, response.memory
+        flank, rollers = response.flank, response.rollers
+        pins, inner, outer = self._laws(flank, self._known(flank.approach.shape[0], response.warm_start))
         return ContactPressures(
-            pins=_read_grids([entry.pins for entry in memory], flank.approach, self.kinds.pins),
-            outer=_read_grids([entry.outer for entry in memory], rollers.outer_approach, self.kinds.outer),
-            inner=_read_grids([entry.inner for entry in memory], rollers.inner_approach, self.kinds.inner),
+            pins=pins.pressures(flank.approach),
+            outer=outer.pressures(rollers.outer_approach),
+            inner=inner.pressures(rollers.inner_approach),
             holes=elastic_hole_pressures(self.kinds.holes, response.hole_load, self.geometry.placement),
             rigid_shaft_pins=False,
         )
 
-    def _press_pins(self, flank: FlankMotion, memory: NDArray[np.object_]) -> tuple[FloatArray, FloatArray]:
-        load, stiffness = np.zeros_like(flank.approach), np.zeros_like(flank.approach)
-        profile, pin_radii = self.geometry.profile, self.geometry.placement.wheel_pin_radii
-        for row, pin in zip(*np.nonzero(flank.approach > 0.0), strict=True):
-            approach = float(flank.approach[row, pin])
-            contact = memory[row].pins.setdefault(int(pin), GridContact(self.kinds.pins))
-            contact.fit(approach, float(flank.effective_radius[row, pin]))
-            theta = float(flank.parameter[row, pin])
-            if abs(theta - contact.place) < SAME_PLACE:
-                theta = contact.place
-            radius = float(pin_radii[pin])
-            contact.shape(theta, lambda x, t=theta, r=radius: flank_departure(profile, t, x) + circle_departure(x, r))
-            load[row, pin], stiffness[row, pin] = contact.press(approach)
-        return load, stiffness
-
-    def _balance(
-        self, crank_angle: FloatArray, pose: FloatArray, share: FloatArray | None, memory: NDArray[np.object_]
-    ) -> RollerState:
+    def _known(self, positions: int, warm_start: NDArray[np.object_] | None) -> list[PositionContacts]:
+        """What is known of the contacts of every position."""
         place = self.geometry.placement
-        rays = self.geometry.rollers(crank_angle)
-        displacement = pose[:, 0] + 1j * pose[:, 1]
-        interference = rays.outermost - rays.touching_distance(displacement)
-        guess = np.full(interference.shape, 0.5) if share is None else share
-        # Grids are chosen before the rollers are balanced and held meanwhile: their laws then stay monotone.
-        for row, roller in zip(*np.nonzero(interference > 0.0), strict=True):
-            number, whole, part = int(roller), float(interference[row, roller]), float(guess[row, roller])
-            radius = float(place.roller_radii[roller])
-            inner = memory[row].inner.setdefault(number, GridContact(self.kinds.inner))
-            inner.fit(part * whole, float(self.inner_radius[roller]))
-            race = place.inner_race_radius
-            inner.shape(0.0, lambda x, r=radius, o=race: circle_departure(x, r) + circle_departure(x, o))
-            outer = memory[row].outer.setdefault(number, GridContact(self.kinds.outer))
-            outer.fit((1.0 - part) * whole, float(self.outer_radius[roller]))
-            bore = -place.bore_radius
-            outer.shape(0.0, lambda x, r=radius, o=bore: circle_departure(x, r) + circle_departure(x, o))
-        laws = RollerLaws(
-            inner=_RollerGrids([entry.inner for entry in memory]),
-            outer=_RollerGrids([entry.outer for entry in memory]),
-            inner_radius=self.inner_radius,
-            outer_radius=self.outer_radius,
+        nothing: tuple[Pieces, ...] = ((),) * place.roller_radii.size
+        fresh = PositionContacts(pins=((),) * place.wheel_pin_radii.size, inner=nothing, outer=nothing)
+        return [fresh if warm is None else warm for warm in ([None] * positions if warm_start is None else warm_start)]
+
+    def _laws(self, flank: FlankMotion, known: list[PositionContacts]) -> tuple[_KindGrids, _KindGrids, _KindGrids]:
+        """Laws of the pins, of the rollers on the inner race and in the bore."""
+        place, profile = self.geometry.placement, self.geometry.profile
+        spacing = self._spacing
+        number, part = np.divmod(flank.parameter, spacing)
+        part /= spacing
+
+        def between_pin_and_flank(row: int, pin: int) -> Separation:
+            radius = float(place.wheel_pin_radii[pin])
+
+            def departure(at: int, x: FloatArray) -> FloatArray:
+                return flank_departure(profile, at * spacing, x) + circle_departure(x, radius)
+
+            return Separation(
+                effective_radius=float(flank.effective_radius[row, pin]),
+                departure=departure,
+                place=int(number[row, pin]),
+                part=float(part[row, pin]),
+            )
+
+        def between_roller_and(race: float, effective_radius: FloatArray) -> SeparationOf:
+            def separation(row: int, roller: int) -> Separation:
+                radius = float(place.roller_radii[roller])
+                return Separation(
+                    effective_radius=float(effective_radius[roller]),
+                    departure=lambda _, x: circle_departure(x, radius) + circle_departure(x, race),
+                )
+
+            return separation
+
+        bore = between_roller_and(-float(place.bore_radius), self.outer_radius)
+        race = between_roller_and(float(place.inner_race_radius), self.inner_radius)
+        return (
+            _KindGrids(self.kinds.pins, between_pin_and_flank, [position.pins for position in known]),
+            _KindGrids(self.kinds.inner, race, [position.inner for position in known]),
+            _KindGrids(self.kinds.outer, bore, [position.outer for position in known]),
         )
-        return balance_rollers(rays, displacement, laws, share)
 
-
-def _read_grids(contacts: list[dict[int, GridContact]], approach: FloatArray, kind: ContactKind) -> KindPressures:
-    mid, largest, half_width = np.zeros_like(approach), np.zeros_like(approach), np.zeros_like(approach)
-    for row, pair in zip(*np.nonzero(approach > 0.0), strict=True):
-        solved = contacts[row][int(pair)].solution(float(approach[row, pair]))
-        mid[row, pair], half_width[row, pair] = solved.mid_pressure, solved.half_width
-        largest[row, pair] = largest_pressure(solved, kind.end_cell)
-    return KindPressures(mid=mid, largest=largest, half_width=half_width, end_cell=kind.end_cell)
+    @property
+    def _spacing(self) -> float:
+        """Distance of the places on the flank, rad."""
+        profile = self.geometry.profile
+        waves = round(profile.reduction_ratio)
+        if profile.deviation is not None:
+            waves = max(waves, profile.deviation.knots.size, *profile.deviation.orders)
+        return float(2.0 * np.pi / (PLACES * waves))

@@ -36,8 +36,9 @@ class Response:
         Balanced rollers.
     pin_load, hole_load : array, shape (positions, pairs)
         N.
-    memory : array of object, shape (positions,)
-        What a model wants to find again at the next pose of each position; None where it wants nothing.
+    warm_start : array of object, shape (positions,)
+        What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
+        wants nothing. It saves work and alters no answer.
     """
 
     force: FloatArray
@@ -47,7 +48,7 @@ class Response:
     rollers: RollerState
     pin_load: FloatArray
     hole_load: FloatArray
-    memory: NDArray[np.object_]
+    warm_start: NDArray[np.object_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,27 +132,27 @@ class Start:
         Contact parameters on the flank, rad.
     share : array, shape (positions, n_BR)
         Shares of `ltca.compliance.rollers`.
-    memory : array of object, shape (positions,)
-        Memory of the model, see `Response`.
+    warm_start : array of object, shape (positions,)
+        Of the model, see `Response`.
     """
 
     parameter: FloatArray
     share: FloatArray
-    memory: NDArray[np.object_]
+    warm_start: NDArray[np.object_]
 
     @classmethod
     def after(cls, response: Response) -> Start:
         """Return the start that a response gives for the next pose."""
-        return cls(parameter=response.flank.parameter, share=response.rollers.share, memory=response.memory)
+        return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
-        return Start(parameter=self.parameter[rows], share=self.share[rows], memory=self.memory[rows])
+        return Start(parameter=self.parameter[rows], share=self.share[rows], warm_start=self.warm_start[rows])
 
     def replaced(self, rows: NDArray[np.intp] | NDArray[np.bool_], other: Start) -> Start:
         """Return a copy with some positions taken from another start, given for just these."""
-        fresh = Start(parameter=self.parameter.copy(), share=self.share.copy(), memory=self.memory.copy())
-        fresh.parameter[rows], fresh.share[rows], fresh.memory[rows] = other.parameter, other.share, other.memory
+        fresh = Start(parameter=self.parameter.copy(), share=self.share.copy(), warm_start=self.warm_start.copy())
+        fresh.parameter[rows], fresh.share[rows], fresh.warm_start[rows] = other.parameter, other.share, other.warm_start
         return fresh
 
 
@@ -163,7 +164,7 @@ def assemble_response(
     hole_load: FloatArray,
     hole_stiffness: FloatArray,
     rollers: RollerState,
-    memory: NDArray[np.object_] | None = None,
+    warm_start: NDArray[np.object_] | None = None,
 ) -> Response:
     """Put the loads of uncoupled pairs together: generalised force and tangent.
 
@@ -173,7 +174,7 @@ def assemble_response(
         Kinematics of the pairs, balanced rollers.
     pin_load, pin_stiffness, hole_load, hole_stiffness : array, shape (positions, pairs)
         N and N/mm.
-    memory : array of object, shape (positions,), optional
+    warm_start : array of object, shape (positions,), optional
         See `Response`.
     """
     force = resultant(flank, pin_load, holes, hole_load, rollers)
@@ -187,7 +188,7 @@ def assemble_response(
         rollers=rollers,
         pin_load=pin_load,
         hole_load=hole_load,
-        memory=np.full(force.shape[0], None, dtype=object) if memory is None else memory,
+        warm_start=np.full(force.shape[0], None, dtype=object) if warm_start is None else warm_start,
     )
 
 

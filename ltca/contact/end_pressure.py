@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.pressure_cells import PatchSolution
-from ltca.contact.tracked_grid import ContactKind, GridContact
+from ltca.contact.tracked_grid import ContactKind, solve_fitted
 
 FloatArray = NDArray[np.float64]
 
@@ -46,12 +46,7 @@ def largest_pressure(solved: PatchSolution, stretch: float) -> float:
 
 
 def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
-    contact = GridContact(kind)
-    for _ in range(2):  # once more with the half-width that the first solution found
-        contact.fit(approach, radius)
-        contact.shape(0.0, lambda x: x**2 / (2.0 * radius))
-        contact.press(approach)
-    solved = contact.solution(approach)
+    solved = solve_fitted(kind, approach, radius, lambda x: x**2 / (2.0 * radius))
     return largest_pressure(solved, kind.end_cell) / solved.mid_pressure
 
 

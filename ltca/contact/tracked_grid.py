@@ -2,19 +2,25 @@
 
 An influence matrix depends on the shape of its grid alone, not on its size: grids are kept per shape (cell width
 by patch length, on a ladder of 5 %) with unit length, and one small set of matrices serves every contact of a drive.
-A contact stays on its rung while its half-width fits within 8 %, so its load is a continuous function of the pose
-where Newton's method ends. Where the edge of the contact falls within a cell moves the load of 12 cells per
-half-width by less than 1e-4 (measured in ``tests/ltca/test_contact_grid.py``).
+Where the edge of the contact falls within a cell moves the load of 12 cells per half-width by less than 1e-4 (measured
+in ``tests/ltca/contact/test_tracked_grid.py``).
 
-While the same cells touch, pressure is linear in the approach: p(δ) = p + (δ' − δ) A⁻¹1, known without another
-factorisation. Only a change of the contact cells or of the separation costs one.
+**A load depends on approach, radius and place alone**, never on what was solved before. The rung of a contact follows
+from the half-width expected at its approach; in a tenth of a rung about the boundary of two rungs both are solved and
+share the contact, so its load is continuous with its slope and Newton's method ends. The separation of a flank is
+interpolated between places of a fixed ladder.
+
+While the same cells touch, pressure is linear in the approach and in the way from one place of that ladder to the
+next, p = δ A⁻¹1 − A⁻¹h, known without another factorisation. A `GridPiece` holds what that takes. It is a value:
+contacts that start from the pieces of a neighbouring pose solve the same problem, only faster.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +31,19 @@ from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Drive, contact_modulus
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 Departure = Callable[[FloatArray], FloatArray]
 
 CELLS = 12
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""
+BLEND = 0.05
+"""Part of a rung about each boundary over which the grids on both sides share a contact: they differ by 1e-4 in the
+load, so the share adds 1 % to its slope, and a tenth of all contacts costs two grids."""
+SHADES = 5
+"""Parts of a rung by which the contact cells of cylinders are kept to start from."""
 FIT = 0.08
-"""Largest misfit of ln(half-width) before a contact changes its rung."""
+"""Largest misfit of ln(half-width) before a contact solved once (`solve_fitted`) changes its rung."""
 
 END_GRADING = 2.5
 """Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
@@ -60,9 +72,6 @@ class ContactKind:
         Whether the separation is even along the profile (circles) or not (flanks).
     cells : int
         Cells over the half-width and over half the length.
-    pattern : dict
-        Contact cells last found, by how far the patch ends before the body: where the next new contact starts.
-        Grids are scaled with the half-width, so all contacts look much alike on them.
     """
 
     length: float
@@ -70,7 +79,6 @@ class ContactKind:
     generator: SummedProfile | None
     symmetric: bool
     cells: int = CELLS
-    pattern: dict[int, NDArray[np.bool_]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def end_cell(self) -> float:
@@ -159,162 +167,346 @@ def unit_grid(rung: int, reach_rung: int, *, cells: int, symmetric: bool) -> Pat
     )
 
 
-class GridContact:
-    """A contact that remembers its grid, its separation and its contact cells.
+class GridRung(NamedTuple):
+    """Shape of a grid, see `unit_grid`."""
+
+    rung: int
+    reach_rung: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Separation:
+    """How two surfaces leave each other where they touch.
+
+    Attributes
+    ----------
+    effective_radius : float
+        ρ there, from which the width of the contact is expected, mm.
+    departure : callable
+        Separation in mm at a place of a ladder of places, by its number, over the distance along the tangent in mm.
+    place : int
+        Place below, 0 where there is but one.
+    part : float
+        Way from it to the place above, 0 to 1; the separation is interpolated between both.
+    """
+
+    effective_radius: float
+    departure: Callable[[int, FloatArray], FloatArray]
+    place: int = 0
+    part: float = 0.0
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights of the places."""
+        return np.array([1.0 - self.part, self.part]) if self.part > 0.0 else np.ones(1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GridPiece:
+    """A contact on one grid with its contact cells held: all that is linear in the approach and the separation.
+
+    Attributes
+    ----------
+    grid : GridRung
+        Which grid.
+    place : int
+        Place of the separation, see `Separation`.
+    active : array of bool, shape (cells,)
+        Contact cells.
+    rate, opening_rate : array, shape (cells,)
+        Pressure by E*, and opening, by approach over patch length.
+    taken, opening_taken : array, shape (cells, places)
+        What the separation at each place takes from both.
+    load_rate : float
+        Sum of the pressure's rate over the cells' areas.
+    load_taken : array, shape (places,)
+        What the separation at each place takes from that.
+    """
+
+    grid: GridRung
+    place: int
+    active: BoolArray
+    rate: FloatArray
+    opening_rate: FloatArray
+    taken: FloatArray
+    opening_taken: FloatArray
+    load_rate: float
+    load_taken: FloatArray
+
+    def holds(self, closing: float, weights: FloatArray, slack: float) -> bool:
+        """Return whether just these cells touch at an approach over patch length: no pull outside, no overlap."""
+        taken, opening_taken = self.taken, self.opening_taken
+        if weights.size == 1:  # at a place of the ladder, or the only one
+            taken, opening_taken = taken[:, :1], opening_taken[:, :1]
+        elif taken.shape[1] == 1:
+            return False
+        pressure = closing * self.rate - taken @ weights
+        if np.min(pressure) < -1e-11 * np.max(pressure):
+            return False
+        return bool(np.min(closing * self.opening_rate - opening_taken @ weights) >= -slack)
+
+
+Pieces = tuple[GridPiece, ...]
+
+
+class Pressed(NamedTuple):
+    """A pressed contact: load, N, its derivative by the approach at held place, N/mm, and the pieces behind it."""
+
+    load: float
+    stiffness: float
+    pieces: Pieces
+
+
+def press(kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()) -> Pressed:
+    """Return load and stiffness of a contact.
 
     Parameters
     ----------
     kind : ContactKind
         What it shares with others.
+    separation : Separation
+        Of its surfaces.
+    approach : float
+        δ, mm, positive.
+    start : sequence of GridPiece
+        Pieces of a neighbouring pose: they make it faster and change nothing.
     """
+    shares = _shares(kind, separation.effective_radius, approach)
+    slopes = {} if len(shares) == 1 else _share_slopes(kind, separation.effective_radius, approach)
+    load = stiffness = 0.0
+    pieces = []
+    for rung, share in shares.items():
+        piece = _settle(kind, rung, separation, approach, start)
+        length = _patch_length(kind, rung)
+        scale = kind.contact_modulus * length * _grid(kind, rung).images / np.pi
+        taken = float(piece.load_taken[: separation.weights.size] @ separation.weights)
+        own = scale * length * (approach / length * piece.load_rate - taken)
+        load += share * own
+        stiffness += share * scale * piece.load_rate + slopes.get(rung, 0.0) * own
+        pieces.append(piece)
+    return Pressed(load, stiffness, tuple(pieces))
 
-    __slots__ = (
-        "_approach",
-        "_opening_rate",
-        "_scaled_areas",
-        "_solution",
-        "_unit_separation",
-        "active",
-        "factorisations",
-        "grid",
-        "kind",
-        "patch_length",
-        "place",
-        "radius",
-        "reach_rung",
-        "rung",
+
+def recover_patches(
+    kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()
+) -> list[tuple[float, PatchSolution]]:
+    """Return the pressures of a contact on each of its grids and the share of each; arguments as for `press`."""
+    patches = []
+    weights = separation.weights
+    for rung, share in _shares(kind, separation.effective_radius, approach).items():
+        piece = _settle(kind, rung, separation, approach, start)
+        closing = approach / _patch_length(kind, rung)
+        solved = UnilateralSolution(
+            pressure=np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0),
+            active=piece.active,
+            opening=closing * piece.opening_rate - piece.opening_taken[:, : weights.size] @ weights,
+            rate=piece.rate,
+            history=(),
+        )
+        unit = _unit_separations(kind, rung, separation) @ weights
+        patches.append((share, _patch_solution(kind, rung, unit, approach, solved)))
+    return patches
+
+
+def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchSolution:
+    """Return the pressure over a contact on the one grid that fits the half-width found.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        What it shares with others.
+    approach, effective_radius : float
+        δ and ρ, mm.
+    departure : callable
+        Separation in mm over the distance along the tangent in mm.
+    """
+    separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
+    reach = int(np.floor(_reach_place(kind, approach)))
+    rung = GridRung(round(_width_place(kind, reach, effective_radius, approach)), reach)
+    patch, active = None, _expected_cells(kind, rung, effective_radius, approach)
+    for _ in range(2):
+        if patch is not None:
+            place = float(np.log(patch.half_width / _patch_length(kind, rung))) / RUNG
+            if patch.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:
+                break
+            rung = GridRung(round(place), reach)
+        unit = _unit_separations(kind, rung, separation)[:, 0]
+        areas = _scaled_areas(kind, rung)
+        solved = solve_unilateral_contact(
+            _grid(kind, rung).influence,
+            (approach / _patch_length(kind, rung) - unit) * areas,
+            start=active,
+            load_direction=areas,
+        )
+        patch, active = _patch_solution(kind, rung, unit, approach, solved), solved.active
+    assert patch is not None
+    return patch
+
+
+def _settle(
+    kind: ContactKind, rung: GridRung, separation: Separation, approach: float, start: Sequence[GridPiece]
+) -> GridPiece:
+    """The piece of one grid that holds at an approach: one of the start if it does, else solved from it."""
+    weights, closing = separation.weights, approach / _patch_length(kind, rung)
+    areas = _scaled_areas(kind, rung)
+    active = None
+    for piece in start:
+        if piece.grid == rung:
+            active = piece.active
+            if piece.place == separation.place and piece.holds(closing, weights, 1e-13 * float(np.max(areas)) * closing):
+                return piece
+    if active is None:
+        # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.
+        near = [piece for piece in start if abs(piece.grid.rung - rung.rung) <= 1]
+        active = near[0].active if near else _expected_cells(kind, rung, separation.effective_radius, approach)
+    units = _unit_separations(kind, rung, separation)
+    influence = _grid(kind, rung).influence
+    found = solve_unilateral_contact(
+        influence,
+        (closing - units @ weights) * areas,
+        start=active,
+        load_direction=np.column_stack([areas, units * areas[:, None]]),
+    )
+    inside = np.nonzero(found.active)[0]
+    opening = influence[:, inside] @ found.rate[inside] - np.column_stack([areas, units * areas[:, None]])
+    opening[inside] = 0.0
+    load = areas @ found.rate
+    return GridPiece(
+        grid=rung,
+        place=separation.place,
+        active=_read_only(found.active),
+        rate=_read_only(found.rate[:, 0]),
+        opening_rate=_read_only(opening[:, 0]),
+        taken=_read_only(found.rate[:, 1:]),
+        opening_taken=_read_only(opening[:, 1:]),
+        load_rate=float(load[0]),
+        load_taken=_read_only(load[1:]),
     )
 
-    def __init__(self, kind: ContactKind) -> None:
-        self.kind = kind
-        self.rung, self.reach_rung = 0, -1
-        self.grid: PatchGrid | None = None
-        self.patch_length = kind.length
-        self.place, self.radius = np.nan, np.nan
-        self.active: NDArray[np.bool_] | None = None
-        self.factorisations = 0
-        self._unit_separation: FloatArray | None = None
-        self._scaled_areas = np.zeros(0)
-        self._solution: UnilateralSolution | None = None
-        self._opening_rate = np.zeros(0)
-        self._approach = np.nan
 
-    def fit(self, approach: float, radius: float) -> None:
-        """Choose the grid for an approach and an effective radius, mm; the present one stays while it fits."""
-        kind = self.kind
-        reach_rung = 0
-        if kind.generator is not None:
-            half = kind.generator.overlap_half_length(approach)
-            reach_rung = max(0, int(np.floor(np.log(0.5 * kind.length / half) / RUNG)))
-        if abs(reach_rung - self.reach_rung) == 1 and self.grid is not None and reach_rung > self.reach_rung:
-            reach_rung = self.reach_rung  # a little too long a patch only has idle cells
-        patch_length = kind.length * float(np.exp(-reach_rung * RUNG))
-        ideal = expected_half_width(patch_length, radius, approach)
-        if self._solution is not None and np.isfinite(self._approach) and self._approach > 0.0:
-            known = self.solution(self._approach).half_width
-            if known > 0.0:
-                ideal = known * float(np.sqrt(approach / self._approach * radius / self.radius))
-        place = float(np.log(ideal / patch_length)) / RUNG
-        fits = abs(place - self.rung) * RUNG <= FIT and reach_rung == self.reach_rung
-        if self.grid is None or not fits:
-            self.rung, self.reach_rung, self.patch_length = round(place), reach_rung, patch_length
-            self.grid = unit_grid(self.rung, reach_rung, cells=kind.cells, symmetric=kind.symmetric)
-            self._scaled_areas = np.pi * self.grid.areas.ravel()
-            self._unit_separation = self._solution = None
-            self.active = kind.pattern.get(reach_rung)
-            if self.active is None:  # the strip of the expected width
-                strip = np.abs(self.grid.x_centres) < np.exp(self.rung * RUNG)
-                self.active = np.repeat(strip, self.grid.shape[1])
-        self.radius = radius
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    array = np.ascontiguousarray(array)
+    array.flags.writeable = False
+    return array
 
-    def shape(self, place: float, departure: Departure) -> None:
-        """Set the separation: where the contact is and how far both surfaces leave their tangent there.
 
-        Parameters
-        ----------
-        place : float
-            Any number that tells places with different separations apart; unchanged places change nothing.
-        departure : callable
-            Separation over the distance along the tangent, both in mm.
-        """
-        if self._unit_separation is not None and place == self.place:
-            return
-        grid = self._grid()
-        length = self.patch_length
-        widths = np.diff(grid.x_edges)
-        points = grid.x_centres[:, None] + 0.5 * widths[:, None] * _POINTS
-        along_x = departure(points * length) @ _WEIGHTS / (2.0 * length)
-        separation = np.repeat(along_x[:, None], grid.shape[1], axis=1)
-        if self.kind.generator is not None:
-            points = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
-            separation += self.kind.generator.relief(points * length) @ _WEIGHTS / (2.0 * length)
-        self._unit_separation = separation.ravel()
-        self.place, self._solution = place, None
+def _smooth_step(part: float) -> float:
+    part = min(max(part, 0.0), 1.0)
+    return part * part * (3.0 - 2.0 * part)
 
-    def press(self, approach: float) -> tuple[float, float]:
-        """Return load and stiffness (contact cells held) at an approach in mm, N and N/mm."""
-        grid = self._grid()
-        pressure = self._pressure(approach)
-        solution = self._solution
-        assert solution is not None
-        scale = self.kind.contact_modulus * self.patch_length * grid.images / np.pi
-        load = scale * self.patch_length * float(pressure @ self._scaled_areas)
-        return load, scale * float(solution.rate @ self._scaled_areas)
 
-    def solution(self, approach: float) -> PatchSolution:
-        """Return the pressure over the patch at an approach, in mm and MPa."""
-        unit, length = self._grid(), self.patch_length
-        pressure = self._pressure(approach) * self.kind.contact_modulus
-        found = self._solution
-        assert found is not None
-        assert self._unit_separation is not None
-        grid = PatchGrid(
-            x_edges=unit.x_edges * length,
-            y_edges=unit.y_edges * length,
-            symmetric_x=unit.symmetric_x,
-            symmetric_y=unit.symmetric_y,
-        )
-        load, stiffness = self.press(approach)
-        penetration = (approach - self._unit_separation * length) * grid.areas.ravel()
-        return PatchSolution(
-            grid=grid,
-            approach=approach,
-            pressure=pressure.reshape(grid.shape),
-            load=load,
-            stiffness=stiffness,
-            energy=0.5 * grid.images * float(pressure @ penetration),
-            solution=found,
-        )
+def _shares(kind: ContactKind, radius: float, approach: float) -> dict[GridRung, float]:
+    """Grids of a contact and the part of its load that each gives: one, two near a boundary of rungs, four at most."""
+    reach_place = _reach_place(kind, approach)
+    reach = int(np.floor(reach_place))
+    # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one leaves
+    # when the shorter has room enough.
+    over = _smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
+    found: dict[GridRung, float] = {}
+    for number, part in ((reach, over), (reach - 1, 1.0 - over)):
+        if part > 0.0:
+            place = _width_place(kind, number, radius, approach)
+            below = int(np.floor(place))
+            above = _smooth_step((place - below - 0.5) / BLEND + 0.5)
+            if above < 1.0:
+                found[GridRung(below, number)] = part * (1.0 - above)
+            if above > 0.0:
+                found[GridRung(below + 1, number)] = part * above
+    return found
 
-    def _grid(self) -> PatchGrid:
-        if self.grid is None:
-            raise ValueError("fit() comes before the grid is used")
-        return self.grid
 
-    def _pressure(self, approach: float) -> FloatArray:
-        """Dimensionless pressure p/E* of all cells."""
-        if self._solution is not None:
-            found = self._solution
-            step = (approach - self._approach) / self.patch_length
-            pressure = found.pressure + step * found.rate
-            opening = found.opening + step * self._opening_rate
-            slack = 1e-13 * float(np.max(self._scaled_areas)) * max(approach / self.patch_length, 1e-12)
-            if np.all(pressure >= 0.0) and np.all(opening >= -slack):
-                return pressure
-            self.active = found.active
-        grid = self._grid()
-        if self._unit_separation is None:
-            raise ValueError("shape() comes before the contact is pressed")
-        found = solve_unilateral_contact(
-            grid.influence,
-            (approach / self.patch_length - self._unit_separation) * self._scaled_areas,
-            start=self.active,
-            load_direction=self._scaled_areas,
-        )
-        self.factorisations += len(found.history)
-        self.active = self.kind.pattern[self.reach_rung] = found.active
-        inside = np.nonzero(found.active)[0]
-        self._opening_rate = grid.influence[:, inside] @ found.rate[inside] - self._scaled_areas
-        self._opening_rate[inside] = 0.0
-        self._solution, self._approach = found, approach
-        return found.pressure
+def _share_slopes(kind: ContactKind, radius: float, approach: float) -> dict[GridRung, float]:
+    """Derivatives of the shares by the approach, 1/mm: they weigh differences of 1e-4, a difference quotient will do."""
+    step = 1e-6 * approach
+    before, after = (_shares(kind, radius, approach + sign * step) for sign in (-1.0, 1.0))
+    return {rung: (after.get(rung, 0.0) - before.get(rung, 0.0)) / (2.0 * step) for rung in before | after}
+
+
+def _reach_place(kind: ContactKind, approach: float) -> float:
+    """How far a profiled contact ends before the body does, in rungs."""
+    if kind.generator is None:
+        return 0.0
+    return max(0.0, float(np.log(0.5 * kind.length / kind.generator.overlap_half_length(approach))) / RUNG)
+
+
+def _width_place(kind: ContactKind, reach_rung: int, radius: float, approach: float) -> float:
+    """Expected half-width by patch length, in rungs."""
+    length = kind.length * float(np.exp(-reach_rung * RUNG))
+    return float(np.log(expected_half_width(length, radius, approach) / length)) / RUNG
+
+
+def _patch_length(kind: ContactKind, rung: GridRung) -> float:
+    return kind.length * float(np.exp(-rung.reach_rung * RUNG))
+
+
+def _grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
+    return unit_grid(rung.rung, rung.reach_rung, cells=kind.cells, symmetric=kind.symmetric)
+
+
+def _scaled_areas(kind: ContactKind, rung: GridRung) -> FloatArray:
+    return np.asarray(np.pi * _grid(kind, rung).areas.ravel())
+
+
+def _unit_separations(kind: ContactKind, rung: GridRung, separation: Separation) -> FloatArray:
+    """Mean separation of every cell at the places of a separation, by patch length, shape (cells, places)."""
+    grid, length = _grid(kind, rung), _patch_length(kind, rung)
+    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
+    units = np.empty((*grid.shape, separation.weights.size))
+    for number in range(units.shape[2]):
+        along_x = separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
+        units[..., number] = along_x[:, None]
+    if kind.generator is not None:
+        points = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
+        units += (kind.generator.relief(points * length) @ _WEIGHTS / (2.0 * length))[None, :, None]
+    return units.reshape(-1, units.shape[2])
+
+
+def _patch_solution(
+    kind: ContactKind, rung: GridRung, unit: FloatArray, approach: float, solved: UnilateralSolution
+) -> PatchSolution:
+    """A dimensionless solution in mm and MPa."""
+    shape, length = _grid(kind, rung), _patch_length(kind, rung)
+    grid = PatchGrid(
+        x_edges=shape.x_edges * length,
+        y_edges=shape.y_edges * length,
+        symmetric_x=shape.symmetric_x,
+        symmetric_y=shape.symmetric_y,
+    )
+    areas, pressure = _scaled_areas(kind, rung), solved.pressure * kind.contact_modulus
+    scale = kind.contact_modulus * length * shape.images / np.pi
+    return PatchSolution(
+        grid=grid,
+        approach=approach,
+        pressure=pressure.reshape(grid.shape),
+        load=scale * length * float(solved.pressure @ areas),
+        stiffness=scale * float(solved.rate @ areas),
+        energy=0.5 * grid.images * float(pressure @ ((approach - unit * length) * grid.areas.ravel())),
+        solution=solved,
+    )
+
+
+def _expected_cells(kind: ContactKind, rung: GridRung, radius: float, approach: float) -> BoolArray:
+    """Contact cells to start from when nothing is known: those of the cylinder of the expected half-width."""
+    if kind.generator is None:
+        width = round(SHADES * _width_place(kind, rung.reach_rung, radius, approach))
+        return _cylinder_cells(width, rung.rung, kind.cells, kind.symmetric)
+    grid = _grid(kind, rung)
+    return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1])
+
+
+@cache
+def _cylinder_cells(width: int, rung: int, cells: int, symmetric: bool) -> BoolArray:
+    """Contact cells on the grid of a rung of the cylinder whose expected half-width is `width` in parts of a rung."""
+    half_width = float(np.exp(width * RUNG / SHADES))
+    size = half_width  # √(ρδ)
+    for _ in range(10):
+        size *= half_width / expected_half_width(1.0, size, size)
+    grid = unit_grid(rung, 0, cells=cells, symmetric=True)
+    x = grid.x_edges
+    separation = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * size)
+    found = solve_unilateral_contact(
+        grid.influence,
+        ((size - separation)[:, None] * grid.areas).ravel(),
+        start=np.repeat(grid.x_centres < half_width, grid.shape[1]),
+    ).active.reshape(grid.shape)
+    return _read_only((found if symmetric else np.concatenate([found[::-1], found])).ravel())

@@ -35,7 +35,7 @@ class UnilateralSolution:
         Cells in contact.
     opening : ndarray, shape (n,)
         ``A p − penetration``; zero in the contact, non-negative outside (in the unit of ``penetration``).
-    rate : ndarray, shape (n,)
+    rate : ndarray, shape (n,) or (n, directions)
         Solution of ``A q = load_direction`` on the contact, zero outside: the exact tangent of the pressure when
         the penetration grows by ``load_direction`` (all zeros when no direction was given).
     history : tuple of int
@@ -67,8 +67,8 @@ def solve_unilateral_contact(
         Right-hand side: the overlap of the undeformed bodies (area-weighted if A is).
     start : ndarray of bool, shape (n,), optional
         Cells to start with; default where ``penetration`` is positive.
-    load_direction : ndarray, shape (n,), optional
-        Direction of the penetration's change for the tangent ``rate``.
+    load_direction : ndarray, shape (n,) or (n, directions), optional
+        Direction of the penetration's change for the tangent ``rate``, or several.
     max_iterations : int
         Factorisations allowed.
 
@@ -89,7 +89,7 @@ def solve_unilateral_contact(
     count = penetration.size
     active = (penetration > 0.0) if start is None else np.array(start, dtype=bool)
     pressure = np.zeros(count)
-    rate = np.zeros(count)
+    rate = np.zeros(count) if load_direction is None else np.zeros(load_direction.shape)
     history: list[int] = []
     fewest, trials = count + 1, _BLOCK_TRIALS
     scale = float(np.max(np.abs(penetration), initial=0.0))

@@ -10,7 +10,6 @@ import ltca.figures.pressure_figures
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.pressure_fields import build_pressure_dataset, pin_fields, roller_fields
 from ltca.commands.program import main
-from ltca.contact.tracked_grid import ContactKind, GridContact
 from ltca.drive.parts import LengthProfile
 from ltca.figures.pressure_figures import draw_roller_pressure, even_cells
 from ltca.geometry.flank import FlankProfile
@@ -99,44 +98,6 @@ def test_circles_leave_their_tangent():
     x = np.array([0.0, 1.0, 3.0, 6.0])
     np.testing.assert_allclose(circle_departure(x, 5.0), [0.0, 5.0 - np.sqrt(24.0), 1.0, np.inf])
     np.testing.assert_allclose(circle_departure(x[:3], -5.0), [0.0, np.sqrt(24.0) - 5.0, -1.0])
-
-
-def contact(cells=12, generator=None):
-    kind = ContactKind(length=11.8, contact_modulus=113e3, generator=generator, symmetric=True, cells=cells)
-    found = GridContact(kind)
-    found.fit(8e-3, 4.0)
-    found.shape(0.0, lambda x: x**2 / 8.0)
-    return found
-
-
-def test_pressing_on_without_a_factorisation_is_exact():
-    """While the same cells touch the load is linear in the approach; a fresh solution agrees to round-off."""
-    used, fresh = contact(), contact()
-    first, stiffness = used.press(8e-3)
-    known = used.factorisations
-    load, _ = used.press(8e-3 + 1e-8)
-    assert used.factorisations == known
-    assert load == pytest.approx(first + 1e-8 * stiffness, rel=1e-12)
-    assert load == pytest.approx(fresh.press(8e-3 + 1e-8)[0], rel=1e-11)
-    back, _ = used.press(5e-3)
-    assert used.factorisations > known
-    assert back == pytest.approx(contact().press(5e-3)[0], rel=1e-11)
-
-
-def test_where_the_edge_falls_moves_the_load_by_less_than_a_ten_thousandth():
-    loads = []
-    for rung in range(-2, 3):
-        one = contact()
-        one.rung += rung
-        from ltca.contact.tracked_grid import unit_grid
-
-        one.grid = unit_grid(one.rung, 0, cells=12, symmetric=True)
-        one._scaled_areas = np.pi * one.grid.areas.ravel()
-        one._unit_separation, one.active = None, None
-        one.shape(0.0, lambda x: x**2 / 8.0)
-        loads.append(one.press(8e-3)[0])
-    # ± 10 % of the half-width; contacts change their rung at 8 %.
-    assert np.ptp(loads) < 2e-4 * np.mean(loads)
 
 
 def test_fields_survive_their_file(fields, tmp_path):
