@@ -6,7 +6,6 @@ all of them that a quantity has; so far each of the first four has size 1.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,7 @@ from fem.drive.model import DriveModel
 from fem.drive.solution import FullSolution
 from fem.mesh.mesh_file import write_vtu
 from ltca.errors import CycloError
-from ltca.output.files import whole_file
+from ltca.output.files import whole_file, write_json
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -207,14 +206,12 @@ def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: st
         # An older one would point at bodies of two solutions if this one is cut short.
         index.unlink(missing_ok=True)
     except OSError as error:
-        raise CycloError(f"cannot write {index}: {error.strerror or error}") from error
+        raise CycloError(f"{index}: cannot be written: {error.strerror or error}") from error
     with whole_file(folder / "fem.nc") as part:
         build_dataset(solution, case).to_netcdf(part, engine="h5netcdf")
     bodies = [write_field(field, folder / f"{field.body.name}.vtu") for field in fields]
     write_multi_block(bodies, index)
-    with whole_file(folder / "summary.json") as part:
-        text = json.dumps(summarise(solution), indent=2, ensure_ascii=False, allow_nan=False)
-        part.write_text(text + "\n", encoding="utf-8")
+    write_json(folder / "summary.json", summarise(solution))
 
 
 def write_multi_block(bodies: list[Path], path: Path) -> Path:

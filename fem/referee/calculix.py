@@ -143,7 +143,9 @@ def read_wheel_turn(text: str) -> float:
     """Return the turn of the wheel from the pose of the deck, rad, from one increment of a .dat file."""
     lines = [line for line in text.splitlines() if line.strip()]
     return next(
-        float(following.split()[1]) for line, following in pairwise(lines) if "displacements" in line and "WHEEL" in line
+        float(following.split()[1])
+        for line, following in pairwise(lines)
+        if "displacements" in line and "WHEEL" in line
     )
 
 
@@ -191,7 +193,11 @@ def compare_with_calculix(solution: FullSolution, folder: Path, program: str) ->
     CycloError
         When CalculiX fails.
     """
-    answer = ask_calculix(solution, write_deck(solution, folder / "calculix.inp"), program)
+    return tabulate_answers(solution, ask_calculix(solution, write_deck(solution, folder / "calculix.inp"), program))
+
+
+def tabulate_answers(solution: FullSolution, answer: RefereeAnswer) -> list[str]:
+    """Return a table of our answer and CalculiX's, line by line."""
     details = solution.contacts.details
     largest: dict[str, float] = {}
     for pair, detail in zip(solution.model.pairs, details, strict=True):

@@ -1,7 +1,7 @@
-"""Level 2, what is solved: each problem, its definition, today's answer of ours, and how another code answers it.
+"""Level 2, what is solved: each problem, its definition, our answer computed now, and how another code answers it.
 
-An answer is a table of figures by name; numbers are lists by part, zeros included. Definitions are what both codes are
-given, so that a stored answer of the other code can be refused when the problem has changed since.
+A definition is what both codes are given, so that an answer of the other code that was stored can be refused when the
+problem has changed since. Loads are lists by part, zeros included.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fem.drive.solution import FullSolution, solve_drive
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
 from ltca.contact.length_profile import LogarithmicRelief
-from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
@@ -95,7 +95,8 @@ def define_drive() -> dict[str, Any]:
 
 def our_drive() -> Answer:
     """Solve the drive by our finite elements."""
-    contacts = (solution := solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)).contacts
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
+    contacts = solution.contacts
     return {
         "pin_load": contacts.pin_load.tolist(),
         "roller_load": contacts.roller_load_outer.tolist(),
@@ -126,6 +127,9 @@ def _by_part(solution: FullSolution, load: dict[str, float]) -> Answer:
     return {name: values.tolist() for name, values in found.values()}
 
 
+STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PressedRoller:
     """A roller pressed against a flat.
@@ -138,8 +142,10 @@ class PressedRoller:
         mm.
     load : float
         N.
+    span : float
+        Width of the other code's grid, some 3.4 half-widths, mm.
     cells : tuple of int
-        Of the other code, across and along.
+        Of that grid, across and along.
     relief : LogarithmicRelief or None
         Profile along the length; None for a cylinder.
     """
@@ -148,42 +154,42 @@ class PressedRoller:
     length: float
     radius: float
     load: float
+    span: float
     cells: tuple[int, int]
     relief: LogarithmicRelief | None = None
 
     @property
     def modulus(self) -> float:
         """E* of roller and flat, MPa."""
-        return contact_modulus(210e3, 0.3, 210e3, 0.3)
+        return contact_modulus(STEEL, STEEL)
 
     def drop(self, place: FloatArray) -> FloatArray:
         """Return how far the profile falls back at places along the length from the middle, mm."""
         return np.zeros_like(place) if self.relief is None else np.asarray(self.relief.relief(place))
 
-    def solved(self) -> tuple[float, float, float]:
-        """Return our pressure at mid-length (MPa), approach and half-width (mm)."""
+    def solved(self) -> tuple[float, float]:
+        """Return our pressure at mid-length (MPa) and approach (mm)."""
         law: LineContactLaw | ProfiledLineContactLaw
         if self.relief is None:
             law = LineContactLaw(self.length, self.modulus)
         else:
             law = ProfiledLineContactLaw.for_radii(self.relief, self.modulus, self.radius, self.radius)
         approach = float(approach_at_load(law, np.array([self.load]), self.radius)[0][0])
-        return float(law.mid_pressure(approach, self.radius)), approach, float(law.half_width(approach, self.radius))
+        return float(law.mid_pressure(approach, self.radius)), approach
 
 
 ROLLERS = (
-    PressedRoller(name="uncrowned roller", length=11.8, radius=2.0, load=1500.0, cells=(96, 512)),
+    PressedRoller(name="uncrowned roller", length=11.8, radius=2.0, load=1500.0, span=0.173, cells=(96, 512)),
     PressedRoller(
         name="roller with ISO/TS 16281 profile",
         length=20.0,
         radius=10.0,
         load=40e3,
+        span=1.626,
         cells=(96, 384),
         relief=LogarithmicRelief(length=20.0, diameter=20.0),
     ),
 )
-# Width of the other code's grid in half-widths.
-SPAN = 3.4
 
 
 def has_tamaas() -> bool:
@@ -200,7 +206,7 @@ def define_rollers() -> dict[str, Any]:
             "load_N": roller.load,
             "modulus_MPa": f"{roller.modulus:.9g}",
             "cells": list(roller.cells),
-            "span": SPAN,
+            "span_mm": roller.span,
             "drop_mm": [f"{drop:.9g}" for drop in roller.drop(roller.length * np.array([0.0, 0.2, 0.4, 0.48, 0.4999]))],
         }
         for roller in ROLLERS
@@ -209,7 +215,7 @@ def define_rollers() -> dict[str, Any]:
 
 def our_rollers() -> Answer:
     """Press the rollers with our laws: peak pressure at mid-length and approach by roller."""
-    return {roller.name: list(roller.solved()[:2]) for roller in ROLLERS}
+    return {roller.name: list(roller.solved()) for roller in ROLLERS}
 
 
 def their_rollers() -> Answer:
@@ -221,7 +227,7 @@ def _press(roller: PressedRoller) -> tuple[float, float]:
     """Return pressure at mid-length and approach by tamaas: uniform cells, FFT of Boussinesq, conjugate gradients."""
     import tamaas
 
-    length, span = roller.length, SPAN * roller.solved()[2]
+    length, span = roller.length, roller.span
     tamaas.set_log_level(tamaas.LogLevel.error)
     model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [span, length], list(roller.cells))
     model.E, model.nu = roller.modulus, 0.0
@@ -246,9 +252,7 @@ def _press(roller: PressedRoller) -> tuple[float, float]:
 CODES = {
     code.name: code
     for code in (
-        OtherCode(
-            name="CalculiX", installed=has_calculix, definition=define_drive, ours=our_drive, theirs=their_drive
-        ),
+        OtherCode(name="CalculiX", installed=has_calculix, definition=define_drive, ours=our_drive, theirs=their_drive),
         OtherCode(
             name="tamaas", installed=has_tamaas, definition=define_rollers, ours=our_rollers, theirs=their_rollers
         ),
