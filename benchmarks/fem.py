@@ -1,8 +1,13 @@
 """Time and memory of the full finite-element solution against the number of unknowns.
 
-``python benchmarks/fem.py [--sizes 4 2 1 0.7 0.4] [--ccx] [--out FILE]``: one position from nothing for each
+``python benchmarks/fem.py [--sizes 4 2 1 0.7 0.4] [--ccx [6 4 3 2 1]] [--out FILE]``: one position from nothing for each
 size, each in a process of its own (peak memory is that of the process), then a further load and a further position at
-the default size; with ``--ccx`` CalculiX solves the deck of the default size in the same run.
+the default size; with ``--ccx`` CalculiX solves the decks of these sizes (the default one) in the same run.
+
+``--sizes --ccx 6 4 3 2`` (no timing) shows what coarse meshes do to the wheel's angle: ours, ours on the same mesh with
+every other pressure alone (both ways to choose them), CalculiX's. With every other pressure the mesh of size 3 has as few of
+them as that of size 6 (1.3 for each half-width) and its displacements stay: what then moves, the pressures move.
+``--penalty 25 50 100`` shows what CalculiX's penalty gives way.
 """
 
 from __future__ import annotations
@@ -13,17 +18,21 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 # This file's folder would hide the package of the same name.
 sys.path[0] = str(Path(__file__).resolve().parents[1])
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
+if TYPE_CHECKING:
+    from fem.drive.solution import FullSolution
+
 CASE, ANGLE = "CS-1", 0.5
 STAGES = ("guess", "coarse", "mesh", "assembly and factorisation", "contact and pose", "check")
 
 
-def measure(size: float, further: bool, ccx: bool) -> dict:
+def measure(size: float, further: bool) -> dict:
     """Solve in this process and return unknowns, seconds (wall and CPU) and peak memory."""
     import resource
     import time
@@ -55,35 +64,104 @@ def measure(size: float, further: bool, ccx: bool) -> dict:
         start, cpu = time.perf_counter(), time.process_time()
         solve_drive(drive, ANGLE + 0.3, scale=size)
         row["further position"] = {"seconds": time.perf_counter() - start, "cpu_seconds": time.process_time() - cpu}
-    if ccx:
-        import tempfile
-
-        from fem.referee.calculix import compare_with_calculix
-        from fem.referee.calculix_deck import find_calculix
-
-        with tempfile.TemporaryDirectory() as folder:
-            row["calculix"] = compare_with_calculix(solution, Path(folder), find_calculix())
     return row
+
+
+def compare(size: float, penalties: list[float]) -> dict:
+    """Solve one position, let CalculiX solve it, and return both tables and wheel angles (arc seconds)."""
+    import tempfile
+
+    from fem.drive.solution import solve_drive
+    from fem.referee.calculix import ask_calculix, tabulate_answers
+    from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, write_deck
+    from ltca.reading.drive_file import load_drive
+
+    solution = solve_drive(load_drive("paper").cases[CASE], ANGLE, scale=size)
+    row: dict = {"size": size, "ours": arcseconds(solution.pose.wheel_angle)}
+    row["half_the_pressures"] = [arcseconds(halve_pressures(solution, first)) for first in (1, 2)]
+    with tempfile.TemporaryDirectory() as folder:
+        for penalty in penalties or [PENALTY_FACTOR]:
+            deck = write_deck(solution, Path(folder) / "deck.inp", penalty=penalty)
+            answer = ask_calculix(solution, deck, find_calculix())
+            row.setdefault("theirs", {})[f"{penalty:g}"] = arcseconds(answer.wheel_angle)
+            row["table"] = tabulate_answers(solution, answer)
+    return row
+
+
+def arcseconds(angle: float) -> float:
+    """Return an angle in arc seconds."""
+    import math
+
+    return math.degrees(angle) * 3600.0
+
+
+def halve_pressures(solution: FullSolution, first: int) -> float:
+    """Return the wheel's angle, rad, with pressures at every other vertex alone, linear between: `first` is 1 or 2.
+
+    Meshes, compliances and gaps stay; pressures are a subspace of what they were, so only the contact is coarser.
+    """
+    import numpy as np
+
+    from fem.contact.unilateral import ContactProblem, solve_floating_contact
+
+    model = solution.model
+    columns = []
+    for pair in model.pairs:
+        arc = pair.zone.arc
+        left = np.unique(np.r_[0, np.arange(first, len(arc) - 1, 2), len(arc) - 1])
+        for vertex in left[1:-1]:
+            column = np.zeros(model.unknown_count)
+            column[pair.unknowns] = np.interp(arc, arc[left], (left == vertex).astype(float))[1:-1]
+            columns.append(column)
+    basis = np.array(columns).T
+    integrals = [model.integrate(pair, solution.pose) for pair in model.pairs]
+    whole = model.contact_problem(solution.pose, integrals, solution.state.wheel_moment)
+    part = ContactProblem(
+        compliance=basis.T @ whole.compliance @ basis,
+        gap=basis.T @ whole.gap,
+        motions=basis.T @ whole.motions,
+        external=whole.external,
+    )
+    found = solve_floating_contact(part, basis.T @ solution.state.contact.pressure > 0.0)
+    # The fourth motion is the turn of the wheel from the pose.
+    return float(solution.pose.wheel_angle + found.motion[3])
 
 
 def main() -> None:
     """Measure every size in a process of its own and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sizes", type=float, nargs="+", default=[6.0, 2.0, 1.0, 0.5, 0.38])
-    parser.add_argument("--ccx", action="store_true", help="CalculiX on the deck of size 1")
+    parser.add_argument("--sizes", type=float, nargs="*", default=[6.0, 2.0, 1.0, 0.5, 0.38])
+    parser.add_argument("--ccx", type=float, nargs="*", metavar="SIZE", help="CalculiX on decks of these sizes (1)")
+    parser.add_argument("--penalty", type=float, nargs="+", default=[], help="its penalty factors (the deck's)")
     parser.add_argument("--out", type=Path)
-    parser.add_argument("--worker", type=float, help=argparse.SUPPRESS)
+    parser.add_argument("--worker", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.worker is not None:
-        print(json.dumps(measure(arguments.worker, arguments.worker == 1.0, arguments.ccx)))
+        task, size = arguments.worker.split(":")
+        done = compare(float(size), arguments.penalty) if task == "ccx" else measure(float(size), float(size) == 1.0)
+        print(json.dumps(done))
         return
+    rows = time_sizes(arguments.sizes)
+    compared = [] if arguments.ccx is None else compare_sizes(arguments.ccx or [1.0], arguments.penalty)
+    if arguments.out:
+        content = {"load_average": os.getloadavg(), "rows": rows, "calculix": compared}
+        arguments.out.write_text(json.dumps(content, indent=1) + "\n")
+
+
+def run_worker(task: str, size: float, penalties: list[float]) -> dict:
+    """Do one task in a process of its own."""
+    words = [sys.executable, __file__, "--worker", f"{task}:{size}"]
+    words += ["--penalty", *map(str, penalties)] if penalties else []
+    done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def time_sizes(sizes: list[float]) -> list[dict]:
+    """Measure every size and print the table."""
     rows = []
     print(f"{'unknowns':>9}{'total s':>9}{'CPU s':>8}{'MB':>7}   " + "".join(f"{stage[:13]:>15}" for stage in STAGES))
-    for size in arguments.sizes:
-        words = [sys.executable, __file__, "--worker", str(size)]
-        words += ["--ccx"] if arguments.ccx and size == 1.0 else []
-        done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True)
-        row = json.loads(done.stdout.splitlines()[-1])
+    for size in sizes:
+        row = run_worker("time", size, [])
         rows.append(row)
         seconds = row["seconds"]
         print(
@@ -94,10 +172,28 @@ def main() -> None:
         for name in ("further load", "another load", "further position"):
             if name in row:
                 print(f"  {name}: {row[name]}")
-        for line in row.get("calculix", []):
+    return rows
+
+
+def compare_sizes(sizes: list[float], penalties: list[float]) -> list[dict]:
+    """Compare every size with CalculiX and print the tables, wheel angles last."""
+    rows = []
+    for size in sizes:
+        rows.append(run_worker("ccx", size, penalties))
+        print(f"\nsize {size:g}")
+        for line in rows[-1]["table"]:
             print(f"  {line}")
-    if arguments.out:
-        arguments.out.write_text(json.dumps({"load_average": os.getloadavg(), "rows": rows}, indent=1) + "\n")
+    print(
+        f"\nwheel angle, ″\n{'size':>5}{'ours':>10}{'every other pressure':>22}{'penalty':>9}{'ccx':>10}{'ours − ccx':>12}"
+    )
+    for row in rows:
+        first, second = row["half_the_pressures"]
+        for penalty, theirs in row["theirs"].items():
+            print(
+                f"{row['size']:>5g}{row['ours']:>10.3f}{first:>12.3f}{second:>10.3f}{penalty:>9}{theirs:>10.3f}"
+                f"{row['ours'] - theirs:>+12.3f}"
+            )
+    return rows
 
 
 if __name__ == "__main__":

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from contextlib import nullcontext
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain
-from ltca.output.files import write_json
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
 from validation.compare.derived_coefficients import coefficients_of, nominal_coefficients_of
@@ -149,14 +145,11 @@ def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: C
     CycloError
         When something does not converge or a file cannot be written.
     """
-    kept_answers = folder / "other_codes.json"
-    with nullcontext() if _read_rows(kept_answers) else asked_codes() as answers:
+    with asked_codes(folder / "other_codes.json") as answers:
         one, three, coefficients, four = _before_positions(plan, folder / "coefficients", step, say)
         full = _solve_positions(plan, folder / "positions", step, say)
-        if answers is not None:
-            step("other codes")
-            _write_rows(kept_answers, answers())
-    two = _read_rows(kept_answers)
+        step("other codes")
+        two = answers()
     compared = {case: compare_case(plan.drives[case], full[case], coefficients[case]) for case in plan.drives}
     five = _model_rows(plan, compared, full, coefficients, folder / "coefficients", say)
     flexibility, six = {}, []
@@ -233,20 +226,3 @@ def _solve_positions(
                 )
             )
     return solved
-
-
-def _read_rows(path: Path) -> list[Row]:
-    """Return rows of other codes that are kept; they are asked once, as their answers do not depend on the plan."""
-    try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
-        return [Row(**item) for item in content["rows"]] if content["key"] == _KEY else []
-    except (OSError, ValueError, KeyError, TypeError):
-        return []
-
-
-def _write_rows(path: Path, rows: list[Row]) -> None:
-    fields = [{name: getattr(row, name) for name in Row.__dataclass_fields__} for row in rows]
-    write_json(path, {"key": _KEY, "rows": fields})
-
-
-_KEY = {"version": version("cyclo-ltca")}

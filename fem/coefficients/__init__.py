@@ -7,7 +7,9 @@ stations     Stations: the places of a disc at which influence coefficients are 
 patch_loads  Patches with semi-elliptic pressure on meshed boundaries: loads, and the means by which they measure
 bodies       Normal approach influence coefficients of the bodies of a drive, derived by finite elements
 dataset      All influence coefficients of a drive as one labelled dataset, the content of ``coefficients.nc``
-file         ``coefficients.nc``: written whole or not at all, read back as the dataset that was written
 laws         Checks of a file of influence coefficients by laws that need no second computation
+schema       What a file of influence coefficients must hold to be used, and whose bodies it belongs to; whoever made
+             it
+file         ``coefficients.nc``: written whole or not at all, read back as the dataset that was written
 ===========  ============================================================
 """

@@ -6,6 +6,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem.coefficients.schema import require_schema
 from fem.errors import MeshError
 from ltca.output.files import whole_file
 
@@ -60,7 +61,7 @@ def read_coefficients(path: Path) -> xr.Dataset:
     Raises
     ------
     MeshError
-        When there is no such file, or it holds something else.
+        When there is no such file, or it holds something else (`fem.coefficients.schema.require_schema`).
     """
     import xarray as xr
 
@@ -68,8 +69,7 @@ def read_coefficients(path: Path) -> xr.Dataset:
         raise MeshError(f"{path}: no such file")
     try:
         dataset = xr.load_dataset(path, engine="h5netcdf")
-    except (OSError, ValueError) as error:
-        raise MeshError(f"{path}: cannot be read as coefficients: {error}") from error
-    if "disc_approach" not in dataset or "fingerprint" not in dataset.attrs:
-        raise MeshError(f"{path}: holds no influence coefficients; cyclo derive writes them")
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        raise MeshError(f"{path}: cannot be read as coefficients (netCDF-4): {error}") from error
+    require_schema(dataset, str(path))
     return dataset

@@ -6,15 +6,23 @@ import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ltca.errors import CycloError
 
-SUMMARY: str = "derive the bodies' influence coefficients by finite elements"
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fem.coefficients.laws import Check
+
+SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
+# Options that say how to derive, and their defaults.
+DERIVING = {"stations": 1.0, "size": 1.0, "plane": "strain", "without_clearance": False, "out": "coefficients.nc"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
+    parser.add_argument("drive", nargs="?", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
     parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
     parser.add_argument(
         "--stations",
@@ -36,6 +44,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "the pressures); it says so, and so does a run with it",
     )
     parser.add_argument("--out", metavar="FILE", default="coefficients.nc", help="file (default: coefficients.nc)")
+    parser.add_argument(
+        "--check",
+        metavar="FILE",
+        help="derive nothing; check this file, whichever code made it: its schema (docs/coefficients.md), then reciprocity, "
+        "positive work, rigid motions, near field and closed forms; with DRIVE also that it belongs to the bodies of that "
+        "drive in --case. What a file of another code leaves out (wider patches, resultants, how it was derived) is said "
+        "not to be in it. Exit status: 0 all laws held, 1 one is broken, 2 unreadable or of another schema or drive",
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -51,6 +67,10 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, missing libraries or a mesh that would not fit into memory.
     """
+    if arguments.check is not None:
+        return _check_file(arguments)
+    if arguments.drive is None:
+        raise CycloError("derive: give a drive file, or a file of coefficients with --check")
     import time
 
     from ltca.reading.drive_file import load_drive
@@ -91,12 +111,42 @@ def execute(arguments: argparse.Namespace) -> int:
         f"clearances: bearing {attributes['bearing_clearance']:g} mm, pin hole {attributes['pin_hole_clearance']:g} mm"
         f"{left_out}"
     )
-    width = max(len(check.name) for check in checks)
-    for check in checks:
-        bounds = f"at most {check.highest:g}" if check.lowest == 0.0 else f"{check.lowest:g} to {check.highest:g}"
-        print(f"{check.name:<{width}}  {check.value:>10.4g}  {bounds:<16}  {'ok' if check.passed else 'FAILED'}")
+    _print_checks(written, checks)
     print(f"written to {out}")
     return 0 if all(check.passed for check in checks) else 1
+
+
+def _check_file(arguments: argparse.Namespace) -> int:
+    """Check a file that is there; return 0 when all laws held, 1 when one is broken."""
+    for option, default in DERIVING.items():
+        if getattr(arguments, option) != default:
+            raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --check, which derives nothing")
+    from fem.coefficients.file import read_coefficients
+    from fem.coefficients.laws import check_coefficients
+    from fem.coefficients.schema import check_against_drive
+    from ltca.reading.drive_file import load_drive
+
+    dataset = read_coefficients(Path(arguments.check))
+    checks = check_coefficients(dataset)
+    if arguments.drive is not None:
+        file = load_drive(arguments.drive)
+        _, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+        checks += check_against_drive(dataset, drive, arguments.check)
+    print(f"{arguments.check}: {dataset.sizes['station']} stations, plane {dataset.attrs['plane']}")
+    _print_checks(dataset, checks)
+    return 0 if all(check.passed for check in checks) else 1
+
+
+def _print_checks(dataset: xr.Dataset, checks: tuple[Check, ...]) -> None:
+    """Print each law with its value, limit and verdict; then those that the file says nothing about."""
+    from fem.coefficients.laws import unstated_laws
+
+    unstated = unstated_laws(dataset)
+    width = max(len(name) for name in [*(check.name for check in checks), *unstated])
+    for check in checks:
+        print(f"{check.name:<{width}}  {check.value:>10.4g}  {check.bounds:<16}  {'ok' if check.passed else 'FAILED'}")
+    for name, lacking in unstated.items():
+        print(f"{name:<{width}}  {'':>10}  {'':<16}  not checked: the file has no {lacking}")
 
 
 def _progress() -> Callable[[str], None]:

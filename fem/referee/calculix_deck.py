@@ -6,7 +6,7 @@ codes. What differs from our own model:
 
 - rollers are held sideways at two nodes near their axis instead of in the mean (frictionless contacts
   leave these supports with next to nothing to carry, and a mean over all nodes would fill the matrix);
-- contact is a penalty: pressure = `PENALTY_FACTOR` E/h times penetration;
+- contact is a penalty at many points of each face: pressure = `PENALTY_FACTOR` E/h times penetration;
 - rollers that carry nothing are left out, because nothing would hold them.
 """
 
@@ -125,7 +125,7 @@ def _faces(body: BodyMesh, middles: IntArray, elements: int) -> list[str]:
     return [f"{elements + int(owner) + 1},S{int(side) + 1}" for owner, side in zip(owners, local, strict=True)]
 
 
-def write_deck(solution: FullSolution, path: Path) -> Path:
+def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_FACTOR) -> Path:
     """Write a complete input deck of the problem that a full solution solved.
 
     Parameters
@@ -134,6 +134,8 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
         Plane strain.
     path : Path
         Ends in ``.inp``.
+    penalty : float
+        Penalty stiffness times smallest edge over E.
 
     Returns
     -------
@@ -207,7 +209,7 @@ def write_deck(solution: FullSolution, path: Path) -> Path:
         interactions += [
             f"*SURFACE INTERACTION, NAME=I_{name}",
             "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-            f"{PENALTY_FACTOR * materials.disc.youngs_modulus / edge:.6g}",
+            f"{penalty * materials.disc.youngs_modulus / edge:.6g}",
             f"*CONTACT PAIR, INTERACTION=I_{name}, TYPE=SURFACE TO SURFACE",
             f"S_{name},O_{name}",
         ]

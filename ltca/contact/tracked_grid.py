@@ -353,7 +353,9 @@ def _settle(
     for piece in start:
         if piece.grid == rung:
             active = piece.active
-            if piece.place == separation.place and piece.holds(closing, weights, 1e-13 * float(np.max(areas)) * closing):
+            if piece.place == separation.place and piece.holds(
+                closing, weights, 1e-13 * float(np.max(areas)) * closing
+            ):
                 return piece
     if active is None:
         # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.

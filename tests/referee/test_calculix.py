@@ -19,11 +19,12 @@ pytestmark = [
 
 
 def test_full_drive(tmp_path):
-    """Elements of twice the default size, the same in both codes; the full-size comparison is benchmarks/fem.py.
+    """Elements of three times the default size, the same in both codes; the full-size comparison is benchmarks/fem.py --ccx.
 
-    The wheel angles are 0.03″ apart here and 0.33″ with three times the size; the cause of the latter was not found.
+    Here ccx prints an increment in which contacts still pull before its answer (0.33″ off ours instead of 0.06″): see
+    tests/fem/referee.
     """
-    solution = solve_drive(load_drive("paper").cases["CS-1"], 0.5, scale=2.0)
+    solution = solve_drive(load_drive("paper").cases["CS-1"], 0.5, scale=3.0)
     answer = ask_calculix(solution, write_deck(solution, tmp_path / "drive.inp"), "ccx")
     largest = {}
     for pair, detail in zip(solution.model.pairs, solution.contacts.details, strict=True):
@@ -31,7 +32,7 @@ def test_full_drive(tmp_path):
     for pair, detail in zip(solution.model.pairs, solution.contacts.details, strict=True):
         theirs = answer.load.get(pair_name(pair), 0.0)
         assert abs(detail.load - theirs) < 5e-3 * largest[pair.kind], pair_name(pair)
-    # 0.3″ of the wheel is 0.13 µm at the pins: the penalty gives way by about a tenth of that.
+    # 0.3″ of the wheel is 0.13 µm at the pins: the penalty gives way by a fifth of that.
     assert np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0 == pytest.approx(0.0, abs=0.3)
 
 

@@ -91,5 +91,5 @@ def _station_distances(analysis: LoadedAnalysis, coefficients: InfluenceCoeffici
     return {
         "pin": distance(response.flank.parameter, coefficients.flank),
         "roller_outer": distance(bore, coefficients.bore),
-        "shaft_pin": distance(across, coefficients.holes[0]),
+        "hole": distance(across, coefficients.holes[0]),
     }

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-Kind = Literal["pin", "roller_outer", "roller_inner", "shaft_pin"]
+Kind = Literal["pin", "roller_outer", "roller_inner", "hole"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 COMPARED_SHARE = 0.05

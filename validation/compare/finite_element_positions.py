@@ -1,15 +1,16 @@
 """Full finite-element solutions of chosen positions, each kept as a file of its own as soon as it is there.
 
-A file belongs to a drive in a case (by fingerprint), a crank angle and the settings of the solution; whatever does not fit
-is solved again. So a run that was killed goes on where it stopped and ends with the same numbers.
+A file belongs to a drive in a case (by fingerprint), a crank angle, the settings of the solution and the code that found
+it; whatever does not fit, or was damaged, is solved again. So a run that was killed goes on where it stopped and ends with
+the same numbers, and no number of older code is compared.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +23,10 @@ from fem.drive.solution_files import summarise
 from fem.pictures.solution_pictures import draw_solution
 from ltca.drive.parts import Drive
 from ltca.output.files import write_json
+from ltca.output.provenance import code_hash, code_version
 from validation.compare.comparison import KindAnswer, PositionAnswer
 
-FORMAT = 1
+FORMAT = 2
 PICTURES = ("von_mises", "deformed", "contacts")
 PICTURE_SIDE = 1200
 
@@ -127,7 +129,8 @@ def solve_position(
         if pictures:
             _draw(solution, settings, title, path.with_suffix(""))
         if content is None:
-            content = {"key": key, "summary": summarise(solution)}
+            summary = summarise(solution)
+            content = {"key": key, "checksum": _checksum(summary), "summary": summary}
             write_json(path, content)
             content = _read(path, key)
     assert content is not None
@@ -151,7 +154,8 @@ def position_name(drive: Drive, case: str, crank_angle: float, settings: Setting
 def _key(drive: Drive, case: str, crank_angle: float, settings: Settings) -> dict[str, Any]:
     return {
         "format": FORMAT,
-        "version": version("cyclo-ltca"),
+        "version": code_version(),
+        "code": code_hash("fem", "ltca"),
         "fingerprint": drive.fingerprint(),
         "case": case,
         "crank_angle_rad": crank_angle,
@@ -166,7 +170,13 @@ def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
         content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return content if isinstance(content, dict) and content.get("key") == key else None
+    if not isinstance(content, dict) or content.get("key") != key:
+        return None
+    return content if content.get("checksum") == _checksum(content.get("summary")) else None
+
+
+def _checksum(summary: object) -> str:
+    return hashlib.sha256(json.dumps(summary, sort_keys=True).encode()).hexdigest()
 
 
 def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path) -> None:
@@ -179,10 +189,11 @@ def answer_of_summary(summary: dict[str, Any]) -> PositionAnswer:
     """Return the answer in the summary of a full solution (`fem.drive.solution_files.summarise`)."""
 
     def kind(load: str, pressure: str, width: str) -> KindAnswer:
+        # Lists are nested by disc; there is one.
         return KindAnswer(
-            load=np.array(summary[f"{load}_N"], dtype=float),
-            pressure=np.array(summary[f"{pressure}_MPa"], dtype=float),
-            half_width=np.array(summary[f"{width}_mm"], dtype=float),
+            load=np.array(summary[f"{load}_N"][0], dtype=float),
+            pressure=np.array(summary[f"{pressure}_MPa"][0], dtype=float),
+            half_width=np.array(summary[f"{width}_mm"][0], dtype=float),
         )
 
     disc = summary["disc_displacement"]
@@ -192,7 +203,7 @@ def answer_of_summary(summary: dict[str, Any]) -> PositionAnswer:
             "pin": kind("pin_load", "pin_pressure_max", "pin_half_width"),
             "roller_outer": kind("roller_load_outer", "roller_pressure_max_outer", "roller_half_width_outer"),
             "roller_inner": kind("roller_load_inner", "roller_pressure_max_inner", "roller_half_width_inner"),
-            "shaft_pin": kind("pin_shaft_load", "pin_shaft_pressure_max", "pin_shaft_half_width"),
+            "hole": kind("pin_shaft_load", "pin_shaft_pressure_max", "pin_shaft_half_width"),
         },
         bearing_radial=float(summary["bearing_radial_N"]),
         bearing_tangential=float(summary["bearing_tangential_N"]),

@@ -63,7 +63,7 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
         "pin": (response.pin_load, pressures.pins.mid, pressures.pins.half_width),
         "roller_outer": (response.rollers.outer_load, pressures.outer.mid, pressures.outer.half_width),
         "roller_inner": (response.rollers.inner_load, pressures.inner.mid, pressures.inner.half_width),
-        "shaft_pin": (response.hole_load, hole_pressure, hole_width),
+        "hole": (response.hole_load, hole_pressure, hole_width),
     }
     return [
         PositionAnswer(

@@ -28,7 +28,7 @@ SAFE = 0.05
 NAMES: dict[str, str] = {
     "pin": "largest pin load",
     "roller_outer": "largest roller load",
-    "shaft_pin": "largest pin-shaft load",
+    "hole": "largest pin-shaft load",
 }
 CAUSE = "what the rigid disc and uncoupled contacts leave out: informs only"
 
@@ -156,7 +156,7 @@ def full_solution_changes(compared: list[ComparedPosition]) -> dict[str, float]:
 
     half = [position.answers["half-space"] for position in compared]
     full = [position.full.answer for position in compared]
-    kinds: dict[str, Kind] = {"pin_load": "pin", "roller_load": "roller_outer", "pin_shaft_load": "shaft_pin"}
+    kinds: dict[str, Kind] = {"pin_load": "pin", "roller_load": "roller_outer", "pin_shaft_load": "hole"}
     return {name: largest(full, kind) / largest(half, kind) - 1.0 for name, kind in kinds.items()}
 
 

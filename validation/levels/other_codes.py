@@ -1,13 +1,13 @@
-"""Level 2: the codes against other people's, run where they are installed, else as stored with the command that ran them.
+"""Level 2: today's code against other people's, asked where they are installed, else as stored with the command that did.
 
-Stored figures are ours and theirs of one run on our machine, in ``validation/levels/stored/other_codes.json``;
-``python -m validation.levels.other_codes`` writes the file anew where both codes are installed.
+Our side is computed in every run. Only the other codes' answers are stored, in ``stored/other_codes.json``, each with the
+fingerprint of the problem it belongs to (`validation.levels.other_code_problems`); an answer to another problem is refused.
+``python -m validation.levels.other_codes`` writes the file anew where the codes are installed.
 """
 
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import json
 import os
 import signal
@@ -21,33 +21,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.drive.solution import solve_drive
-from fem.referee.calculix import ask_calculix
-from fem.referee.calculix_deck import find_calculix, pair_name, write_deck
-from ltca.contact.length_profile import LogarithmicRelief
-from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import CycloError
-from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
-from ltca.laws.series import approach_at_load
 from ltca.output.files import write_json
-from ltca.reading.drive_file import load_drive
-from validation.compare.comparison import ARCSECONDS
+from ltca.output.provenance import code_hash
+from validation.compare.comparison import ARCSECONDS, Kind, contact_name
+from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, ROLLERS, Answer
 from validation.rows import Row
 
-FloatArray = NDArray[np.float64]
-
-CASE, CRANK_ANGLE, SIZE = "CS-1", 0.5, 4.0
 COMMAND = "python -m validation.levels.other_codes"
 STORED = "stored/other_codes.json"
 LIMITS = {
     "load": (5e-3, "of the largest load of its kind; same mesh in both codes, their contact is a penalty"),
     "wheel": (
-        0.6,
-        "two elements for each half-width: there the other code's contact points miss up to 0.46″ (sizes 6, 4, 3 "
-        "measured), from 2.5 on 0.04″; at full size 0.3″ is asked for (benchmarks/fem.py --ccx)",
+        0.3,
+        "seconds of arc, as of full FE: two elements for each half-width resolve the contacts, the penalty gives way by "
+        "a fifth of it",
     ),
     "pressure": (3e-3, "the other code's uniform cells, 96 across: finer ones halve the difference (0.15 % at worst)"),
     "approach": (3e-3, "its uniform cells at the ends: 0.05 to 0.1 % measured"),
@@ -55,41 +44,53 @@ LIMITS = {
 
 
 @contextmanager
-def asked_codes() -> Iterator[Callable[[], list[Row]]]:
+def asked_codes(kept: Path | None = None) -> Iterator[Callable[[], list[Row]]]:
     """Let the installed codes work in a process of their own while the block runs.
+
+    Parameters
+    ----------
+    kept : Path, optional
+        File that keeps their answers: those that belong to today's problems and code are not asked for again.
 
     Yields
     ------
     callable
-        Waits for their answers and returns the rows of level 2; missing codes answer as stored.
+        Computes our side, waits for their answers and returns the rows of level 2; missing codes answer as stored.
 
     Raises
     ------
     CycloError
-        From the callable, when a code that is installed fails.
+        From the callable, when a code that is installed fails, or a stored answer belongs to another problem.
     """
-    installed = [code for code, found in (("CalculiX", _has_calculix()), ("tamaas", _has_tamaas())) if found]
+    known = {} if kept is None else read_kept(kept)
+    asked = [name for name, code in CODES.items() if name not in known and code.installed()]
     with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
-        answers = Path(folder) / "answers.json"
-        words = [sys.executable, "-m", "validation.levels.other_codes", "--out", str(answers), *installed]
-        trouble = Path(folder) / "trouble.txt"
+        answers, trouble = Path(folder) / "answers.json", Path(folder) / "trouble.txt"
         process = None
-        if installed:
+        if asked:
+            words = [sys.executable, "-m", "validation.levels.other_codes", "--out", str(answers), *asked]
             with trouble.open("wb") as stream:
                 # A session of its own, so that what the process starts ends with it; one thread for the same digits always.
                 one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
                 process = subprocess.Popen(words, stdout=stream, stderr=stream, env=one_thread, start_new_session=True)
 
         def collect() -> list[Row]:
-            figures = json.loads((resources.files("validation.levels") / STORED).read_text(encoding="utf-8"))
-            names = {code: f"{code} (stored, {COMMAND})" for code in RUNS}
+            # Ours first: the other process works meanwhile.
+            ours = {name: code.ours() for name, code in CODES.items()}
+            found = dict(known)
             if process is not None:
                 if process.wait() != 0:
                     lines = trouble.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-                    raise CycloError(f"{' and '.join(installed)} failed: {lines[-1] if lines else process.returncode}")
-                figures |= json.loads(answers.read_text(encoding="utf-8"))
-                names |= {code: code for code in installed}
-            return [_row(item, names[code]) for code in RUNS for item in figures[code]]
+                    raise CycloError(f"{' and '.join(asked)} failed: {lines[-1] if lines else process.returncode}")
+                found |= fitting_answers(json.loads(answers.read_text(encoding="utf-8")))
+            if kept is not None and process is not None:
+                write_kept(kept, found)
+            rows = []
+            for name in CODES:
+                fresh = name in found
+                theirs = found[name] if fresh else stored_answer(name)
+                rows += compare_answers(name, ours[name], theirs, name if fresh else f"{name} (stored, {COMMAND})")
+            return rows
 
         try:
             yield collect
@@ -99,153 +100,126 @@ def asked_codes() -> Iterator[Callable[[], list[Row]]]:
                 process.wait()
 
 
-def _has_calculix() -> bool:
+def fitting_answers(content: dict[str, Any]) -> dict[str, Answer]:
+    """Return the answers, by code, whose problem is today's."""
+    return {
+        name: content[name]["answer"]
+        for name, code in CODES.items()
+        if name in content and content[name]["problem"] == code.fingerprint()
+    }
+
+
+def stored_answer(name: str) -> Answer:
+    """Return what a code answered when it was asked last and its answer stored.
+
+    Raises
+    ------
+    CycloError
+        When that belongs to another problem than today's.
+    """
+    content = json.loads((resources.files("validation.levels") / STORED).read_text(encoding="utf-8"))
+    found = fitting_answers(content)
+    if name not in found:
+        raise CycloError(
+            f"{name} is not installed and its stored answer belongs to another problem: where it is installed, {COMMAND}"
+        )
+    return found[name]
+
+
+def read_kept(path: Path) -> dict[str, Answer]:
+    """Return the answers, by code, that a file keeps for today's problems and today's code; none when it is damaged."""
     try:
-        find_calculix()
-    except CycloError:
-        return False
-    return True
+        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        return fitting_answers(content["answers"]) if content["code"] == _code() else {}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
 
 
-def _has_tamaas() -> bool:
-    return importlib.util.find_spec("tamaas") is not None
+def write_kept(path: Path, answers: dict[str, Answer]) -> None:
+    """Keep answers with the fingerprints of their problems and of the code that posed them."""
+    write_json(path, {"code": _code(), "answers": with_problems(answers)})
 
 
-def _row(item: dict[str, Any], code: str) -> Row:
-    limit, reason = LIMITS[item["bound"]]
-    scale = item["scale"]
+def _code() -> str:
+    # ltca and fem write what the other codes are given; validation says what.
+    return code_hash("ltca", "fem", "validation")
+
+
+def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
+    """Return answers, by code, as files hold them: each with the fingerprint of its problem."""
+    return {name: {"problem": CODES[name].fingerprint(), "answer": answer} for name, answer in answers.items()}
+
+
+def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
+    """Return the rows of one code.
+
+    Parameters
+    ----------
+    name : {"CalculiX", "tamaas"}
+        The code.
+    ours, theirs : dict
+        Answers to its problem.
+    against : str
+        What the rows call the other side.
+    """
+    return _drive_rows(ours, theirs, against) if name == "CalculiX" else _roller_rows(ours, theirs, against)
+
+
+def _drive_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
+    place: dict[str, Any] = {
+        "case": CASE, "crank_angle": CRANK_ANGLE, "model": "finite elements, coarse", "against": against,
+    }  # fmt: skip
+    kinds: dict[str, Kind] = {
+        "pin_load": "pin", "roller_load": "roller_outer", "roller_load_inner": "roller_inner", "pin_shaft_load": "hole",
+    }  # fmt: skip
+    rows = []
+    for name, kind in kinds.items():
+        own, other = np.array(ours[name]), np.array(theirs[name])
+        for part in np.flatnonzero((own > 0.0) | (other > 0.0)).tolist():
+            value, reference = float(own[part]), float(other[part])
+            difference = (value - reference) / float(other.max())
+            contact = contact_name(kind, part)
+            rows.append(
+                _row("load of a contact of the whole drive", value, reference, "N", difference, "load", contact=contact, **place)
+            )  # fmt: skip
+    value, reference = ours["wheel_angle"] * ARCSECONDS, theirs["wheel_angle"] * ARCSECONDS
+    return [*rows, _row("wheel angle", value, reference, '"', value - reference, "wheel", difference_unit='"', **place)]
+
+
+def _roller_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
+    rows = []
+    for roller in ROLLERS:
+        for quantity, own, other, unit, bound in zip(
+            ("pressure at mid-length", "approach"), ours[roller.name], theirs[roller.name], ("MPa", "mm"),
+            ("pressure", "approach"), strict=True,
+        ):  # fmt: skip
+            difference = own / other - 1.0
+            rows.append(
+                _row(f"{quantity}, {roller.name}", own, other, unit, difference, bound, model="half-space", against=against)
+            )  # fmt: skip
+    return rows
+
+
+def _row(
+    quantity: str, value: float, reference: float, unit: str, difference: float, bound: str, **place: Any
+) -> Row:  # fmt: skip
+    limit, reason = LIMITS[bound]
     return Row(
         level=2,
-        quantity=item["quantity"],
-        value=item["ours"],
-        reference=item["theirs"],
-        unit=item["unit"],
-        difference=(item["ours"] - item["theirs"]) / scale,
-        difference_unit='"' if item["bound"] == "wheel" else "",
+        quantity=quantity,
+        value=value,
+        reference=reference,
+        unit=unit,
+        difference=difference,
         limit=limit,
         reason=reason,
-        case=item.get("case", ""),
-        crank_angle=item.get("angle_rad"),
-        contact=item.get("contact", ""),
-        model=item["model"],
-        against=code,
+        **place,
     )
-
-
-def run_calculix() -> list[dict[str, Any]]:
-    """Solve the paper's drive with coarse elements, the same in both codes; return both answers."""
-    solution = solve_drive(load_drive("paper").cases[CASE], CRANK_ANGLE, scale=SIZE)
-    with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
-        answer = ask_calculix(solution, write_deck(solution, Path(folder) / "drive.inp"), find_calculix())
-    pairs, details = solution.model.pairs, solution.contacts.details
-    largest: dict[str, float] = {}
-    for pair, detail in zip(pairs, details, strict=True):
-        largest[pair.kind] = max(largest.get(pair.kind, 0.0), detail.load)
-    place = {"case": CASE, "angle_rad": CRANK_ANGLE, "model": "finite elements, coarse"}
-    found: list[dict[str, Any]] = []
-    for pair, detail in zip(pairs, details, strict=True):
-        theirs = answer.load.get(pair_name(pair), 0.0)
-        if detail.load <= 0.0 and theirs <= 0.0:
-            continue
-        found.append(
-            {
-                "quantity": "load of a contact of the whole drive",
-                "contact": pair_name(pair).lower().replace("_", " "),
-                "ours": detail.load,
-                "theirs": theirs,
-                "scale": largest[pair.kind],
-                "unit": "N",
-                "bound": "load",
-                **place,
-            }
-        )
-    found.append(
-        {
-            "quantity": "wheel angle",
-            "ours": solution.pose.wheel_angle * ARCSECONDS,
-            "theirs": answer.wheel_angle * ARCSECONDS,
-            "scale": 1.0,
-            "unit": '"',
-            "bound": "wheel",
-            **place,
-        }
-    )
-    return found
-
-
-def run_tamaas() -> list[dict[str, Any]]:
-    """Press an uncrowned and a logarithmic roller against a flat with both codes; return both answers."""
-    steel = Material(youngs_modulus=210e3, poisson_ratio=0.3)
-    modulus = contact_modulus(steel, steel)
-    relief = LogarithmicRelief(length=20.0, diameter=20.0)
-    crowned = ProfiledLineContactLaw.for_radii(relief, modulus, 10.0, 10.0)
-    cases: tuple[tuple[str, Any, float, float, float, tuple[int, int], Callable[[FloatArray], FloatArray]], ...] = (
-        ("uncrowned roller", LineContactLaw(11.8, modulus), 11.8, 2.0, 1500.0, (96, 512), np.zeros_like),
-        ("roller with ISO/TS 16281 profile", crowned, 20.0, 10.0, 40e3, (96, 384), relief.relief),
-    )
-    found: list[dict[str, Any]] = []
-    for name, law, length, radius, load, counts, drop in cases:
-        approach = float(approach_at_load(law, np.array([load]), radius)[0][0])
-        span = 3.4 * float(law.half_width(approach, radius))
-        pressure, theirs = _press(modulus, length, span, counts, radius, drop, load)
-        peak = float(law.mid_pressure(approach, radius))
-        for quantity, ours, other, unit, bound in (
-            (f"pressure at mid-length, {name}", peak, pressure, "MPa", "pressure"),
-            (f"approach, {name}", approach, theirs, "mm", "approach"),
-        ):
-            found.append(
-                {
-                    "quantity": quantity,
-                    "ours": ours,
-                    "theirs": other,
-                    "scale": other,
-                    "unit": unit,
-                    "bound": bound,
-                    "model": "half-space",
-                }
-            )
-    return found
-
-
-def _press(
-    modulus: float,
-    length: float,
-    span: float,
-    counts: tuple[int, int],
-    radius: float,
-    drop: Callable[[FloatArray], FloatArray],
-    load: float,
-) -> tuple[float, float]:
-    """Return pressure at mid-length and approach by tamaas: uniform cells, FFT of Boussinesq, conjugate gradients."""
-    import tamaas
-
-    tamaas.set_log_level(tamaas.LogLevel.error)
-    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [span, length], list(counts))
-    model.E, model.nu = modulus, 0.0
-    tamaas.ModelFactory.registerNonPeriodic(model, "free")
-    x, y = ((np.arange(n) + 0.5) * size / n - size / 2 for n, size in zip(counts, (span, length), strict=True))
-    surface = -(x[:, None] ** 2 / (2.0 * radius) + drop(y)[None, :])
-    solver = tamaas.PolonskyKeerRey(model, np.ascontiguousarray(surface), 1e-8)
-    solver.setIntegralOperator("free")
-    solver.max_iter = 5000
-    residual = float(solver.solve(load / (span * length)))
-    if not residual < 1e-8:
-        raise CycloError(f"tamaas did not converge: residual {residual:.1e}")
-    pressure = np.array(model.traction)
-    displacement = np.empty_like(pressure)
-    model.operators["free"](pressure, displacement)
-    loaded = pressure > 0.2 * pressure.max()
-    middle = pressure.shape[1] // 2
-    peak = float(pressure[:, middle - 1 : middle + 1].mean(axis=1).max())
-    return peak, float(np.mean((displacement - surface)[loaded]))
-
-
-RUNS: dict[str, Callable[[], list[dict[str, Any]]]] = {"CalculiX": run_calculix, "tamaas": run_tamaas}
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog=COMMAND, description="Let other codes solve the problems of level 2.")
-    parser.add_argument("codes", nargs="*", default=list(RUNS), help="default: all")
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent / STORED, help="default: the stored figures")
+    parser.add_argument("codes", nargs="*", default=list(CODES), help="default: all")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parent / STORED, help="default: the stored answers")
     arguments = parser.parse_args()
-    write_json(arguments.out, {code: RUNS[code]() for code in arguments.codes})
+    write_json(arguments.out, with_problems({name: CODES[name].theirs() for name in arguments.codes}))

@@ -143,7 +143,7 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
         ),
         *_bearing_rows(make, answer, reference, difference),
     ]  # fmt: skip
-    names: dict[Kind, str] = {"pin": "wheel pins", "roller_outer": "rollers", "shaft_pin": "shaft pins"}
+    names: dict[Kind, str] = {"pin": "wheel pins", "roller_outer": "rollers", "hole": "shaft pins"}
     for kind, name in names.items():
         ours, theirs = answer.loaded(kind), reference.loaded(kind)
         faint = _faint(answer, kind) + _faint(reference, kind)

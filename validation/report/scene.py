@@ -71,7 +71,7 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
         "race": _point(race),
         "pins": _circles(*parts["pin"][:2]),
         "rollers": _circles(*parts["roller_outer"][:2]),
-        "shafts": _circles(*parts["shaft_pin"][:2]),
+        "shafts": _circles(*parts["hole"][:2]),
         "contacts": contacts,
         "totals": {model: _totals(answer) for model, answer in answers.items()},
         "unknowns": compared.full.unknowns,
@@ -108,7 +108,7 @@ def _places(compared: ComparedPosition) -> dict[Kind, tuple[ComplexArray, FloatA
         "pin": (pins, place.wheel_pin_radii, -geometry.profile.normal(flank.parameter[0]) * turn),
         "roller_outer": (roller_centres, place.roller_radii, outward / np.abs(outward)),
         "roller_inner": (roller_centres, place.roller_radii, -rays),
-        "shaft_pin": (place.shaft_pin_centres, place.shaft_pin_radii, play / np.abs(play)),
+        "hole": (place.shaft_pin_centres, place.shaft_pin_radii, play / np.abs(play)),
     }
 
 
@@ -132,7 +132,7 @@ def _totals(answer: PositionAnswer) -> list[float | None]:
         _short(answer.disc_rotation * ARCSECONDS),
         float(answer.loaded("pin")),
         float(answer.loaded("roller_outer")),
-        float(answer.loaded("shaft_pin")),
+        float(answer.loaded("hole")),
     ]
 
 

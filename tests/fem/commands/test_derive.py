@@ -249,8 +249,124 @@ def test_other_datasets_are_refused(tmp_path):
 
     other = tmp_path / "other.nc"
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(other, engine="h5netcdf")
-    with pytest.raises(MeshError, match="holds no influence coefficients"):
+    with pytest.raises(MeshError, match="is no file of influence coefficients"):
         read_coefficients(other)
+
+
+def foreign(dataset):
+    """What another code would give: nothing on how it was derived, nothing that serves checking alone."""
+    used = dataset.drop_vars(
+        ["disc_resultant", "wide_station", "wide_half_width", "wide_approach"]
+        + [f"{body}_wide_approach" for body in ("pin", "roller", "race")]
+    )
+    kept = ("fingerprint", "plane", "thickness", "roller_radius")
+    used.attrs = {
+        name: value for name, value in dataset.attrs.items() if name in kept or name.endswith(("_modulus", "_ratio"))
+    }
+    return used
+
+
+def write(dataset, tmp_path):
+    path = tmp_path / "file.nc"
+    dataset.to_netcdf(path, engine="h5netcdf")
+    return str(path)
+
+
+def test_check_of_our_own_file(made, capsys):
+    assert run("--check", str(made[0]), "paper", "--case", "CS-6") == 0
+    out = capsys.readouterr().out
+    assert "FAILED" not in out
+    assert "not checked" not in out
+    for name in (
+        *NAMES,
+        "places of the stations on the drive's bodies",
+        "thickness and elastic constants of the drive",
+    ):
+        assert name in out
+    assert "at least 0.1 " in out  # a law without an upper bound
+
+
+def test_check_of_another_codes_file(dataset, tmp_path, capsys):
+    path = write(foreign(dataset), tmp_path)
+    assert run("--check", path) == 0
+    assert run("--check", path, "paper") == 0
+    out = capsys.readouterr().out
+    assert out.count("not checked: the file has no") == 2 * 6
+    assert "not checked: the file has no symmetry" in out
+    # What it does hold is checked: a softer roller is no cylinder.
+    wrong = foreign(dataset)
+    wrong["roller_approach"] = 1.01 * wrong["roller_approach"]
+    assert run("--check", write(wrong, tmp_path)) == 1
+    assert "FAILED" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("variable", "change", "law"),
+    [
+        ("station_x", 1e-3, "places of the stations on the drive's bodies"),
+        ("station_normal_x", 0.0, "normals of the stations on the drive's bodies"),
+        ("disc_youngs_modulus", 1.001, "thickness and elastic constants of the drive"),
+    ],
+)
+def test_a_file_that_only_claims_to_be_the_drives_is_found_out(variable, change, law, dataset, tmp_path, capsys):
+    wrong = foreign(dataset)
+    if variable == "station_x":
+        wrong[variable] = wrong[variable] + change
+    elif variable == "station_normal_x":
+        turned = (wrong["station_normal_x"] + 1j * wrong["station_normal_y"]).values * np.exp(0.01j)
+        wrong["station_normal_x"].values[:], wrong["station_normal_y"].values[:] = turned.real, turned.imag
+    else:
+        wrong.attrs[variable] *= change
+    assert run("--check", write(wrong, tmp_path), "paper") == 1
+    failed = [line for line in capsys.readouterr().out.splitlines() if line.endswith("FAILED")]
+    assert any(line.startswith(law) for line in failed)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d.drop_vars(["race_approach", "pin_half_width"]), "it lacks pin_half_width, race_approach$"),
+        (lambda d: d.drop_attrs(), "it lacks the attributes fingerprint, plane, thickness"),
+        (lambda d: d.assign(wide_station=("wide", [0])), "it lacks wide_half_width, wide_approach$"),
+        (lambda d: d.assign(station_x=("place", d["station_x"].values)), r"station_x has the dimensions \(place\)"),
+        (lambda d: d.isel(station_loaded=slice(5)), "station and station_loaded differ in length"),
+        (lambda d: d.assign(pin_approach=np.nan), "pin_approach holds values that are no finite numbers"),
+        (lambda d: d.assign(pin_approach="soft"), "pin_approach holds no numbers"),
+        (lambda d: d.assign(station_parameter=0.5 * d["station_parameter"]), "must be uniform over one turn"),
+        (lambda d: d.assign(station_boundary=-d["station_boundary"]), "station_boundary must be 0"),
+        (lambda d: d.assign(station_normal_x=2.0 * d["station_normal_x"]), "must be of unit length"),
+        (lambda d: d.assign(race_half_width=0.0), "race_half_width must be greater than 0"),
+        (lambda d: d.assign_attrs(plane="axial"), "plane = axial: must be strain or stress"),
+        (lambda d: d.assign_attrs(thickness=0.0), "thickness = 0.0: must be greater than 0"),
+        (lambda d: d.assign_attrs(disc_poisson_ratio="steel"), "disc_poisson_ratio = steel: must be at least 0"),
+        (lambda d: d.assign_attrs(symmetry="exact"), "symmetry = exact: must be a number"),
+    ],
+)
+def test_a_wrong_schema_is_one_line(change, message, dataset, tmp_path):
+    with pytest.raises(CycloError, match=message) as caught:
+        run("--check", write(change(foreign(dataset)), tmp_path))
+    assert "\n" not in str(caught.value)
+
+
+def test_check_of_another_drives_file(dataset, tmp_path):
+    wrong = foreign(dataset).assign_attrs(fingerprint="0" * 16)
+    path = write(wrong, tmp_path)
+    assert run("--check", path) == 0
+    with pytest.raises(CycloError, match=r"belongs to another drive \(\?, shape 0000000000000000\); paper has shape"):
+        run("--check", path, "paper")
+
+
+def test_check_derives_nothing(made, tmp_path):
+    with pytest.raises(CycloError, match="--size: has no meaning with --check"):
+        run("--check", str(made[0]), "--size", "0.5")
+    with pytest.raises(CycloError, match="give a drive file, or a file of coefficients with --check"):
+        run()
+    with pytest.raises(CycloError, match="no such file"):
+        run("--check", str(tmp_path / "none.nc"))
+    whole = made[0].read_bytes()
+    (tmp_path / "half.nc").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(CycloError, match="cannot be read"):
+        run("--check", str(tmp_path / "half.nc"))
 
 
 def test_help_is_light():

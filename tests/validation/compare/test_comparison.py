@@ -102,7 +102,7 @@ def test_positions(answer):
     second = 1.0 / ARCSECONDS
     other = replace(
         answer,
-        kinds=answer.kinds | {"shaft_pin": kind([0.0, 100.0, 380.0])},
+        kinds=answer.kinds | {"hole": kind([0.0, 100.0, 380.0])},
         bearing_radial=305.0,
         wheel_angle=answer.wheel_angle - 0.25 * second,
         disc_radial=0.013,
@@ -110,7 +110,7 @@ def test_positions(answer):
         disc_rotation=answer.disc_rotation + second,
     )
     found = compare_positions(other, answer)
-    assert found.worst_load == ("shaft_pin", 2, pytest.approx(-0.05))
+    assert found.worst_load == ("hole", 2, pytest.approx(-0.05))
     assert found.bearing_radial == pytest.approx(0.01)  # of the whole force, 500 N
     assert found.bearing_tangential == 0.0
     assert found.wheel_angle == pytest.approx(-0.25)

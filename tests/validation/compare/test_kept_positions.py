@@ -26,7 +26,7 @@ def summary_of(drive, angle):
         count = counts[name.split("_load")[0]]
         pressure = name.replace("load", "pressure_max")
         for key in (f"{name}_N", f"{pressure}_MPa", f"{name.replace('load', 'half_width')}_mm"):
-            content[key] = rng.uniform(0.0, 3e3, count).tolist()
+            content[key] = [rng.uniform(0.0, 3e3, count).tolist()]  # by disc
     return content
 
 
@@ -69,16 +69,20 @@ def test_another_drive_angle_or_setting_is_another_file(solved, paper_cases, tmp
     assert len(list(tmp_path.glob("*.json"))) == 6
 
 
-@pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": 1}', "another version"])
+@pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": 1}', "another version", "another code", "one digit"])
 def test_damaged_or_foreign_files_are_solved_again(damage, solved, paper_cases, tmp_path):
     drive = paper_cases["CS-1"]
     solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
     path = next(tmp_path.glob("*.json"))
     text = path.read_text(encoding="utf-8")
+    content = json.loads(text)
     if damage == "another version":
-        content = json.loads(text)
         content["key"]["version"] = "0.0.0"
-        damage = json.dumps(content)
+    elif damage == "another code":
+        content["key"]["code"] = "0" * 16
+    elif damage == "one digit":
+        content["summary"]["pin_load_N"][0][3] += 1.0
+    damage = json.dumps(content) if damage.startswith(("another", "one")) else damage
     path.write_text(damage, encoding="utf-8")
     solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
     assert len(solved) == 2

@@ -44,7 +44,7 @@ def test_contacts_lie_on_the_parts_and_push_on_the_disc(small_report):
     """Distance of contact and part centre is the radius; forces and bearing force balance as drawn."""
     data = embedded(small_report.read_text(encoding="utf-8"))
     for position in data["positions"]:
-        centres = {"pin": position["pins"], "roller_outer": position["rollers"], "shaft_pin": position["shafts"]}
+        centres = {"pin": position["pins"], "roller_outer": position["rollers"], "hole": position["shafts"]}
         total = 0j
         for contact in position["contacts"]:
             if contact["kind"] == "roller_inner":

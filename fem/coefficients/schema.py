@@ -1,0 +1,267 @@
+"""What a file of influence coefficients must hold to be used, and whose bodies it belongs to; whoever made it.
+
+A file of another finite-element code needs neither the attributes that say how ours was derived nor what serves only to
+check it (wider patches, resultants); what it does hold must have the shape that ``docs/coefficients.md`` describes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem.coefficients.laws import Check
+from fem.coefficients.stations import nominal_shape
+from fem.errors import MeshError
+from fem.shapes import DriveShapes
+from ltca.drive.parts import Drive
+from ltca.errors import CycloError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Dimensions of what is used; a scalar has none.
+NEEDED: dict[str, tuple[str, ...]] = {
+    "station_boundary": ("station",),
+    "station_parameter": ("station",),
+    "station_x": ("station",),
+    "station_y": ("station",),
+    "station_normal_x": ("station",),
+    "station_normal_y": ("station",),
+    "station_half_width": ("station",),
+    "disc_approach": ("station", "station_loaded"),
+    "pin_approach": (),
+    "pin_half_width": (),
+    "roller_approach": ("roller_end", "roller_end_loaded"),
+    "roller_half_width": ("roller_end",),
+    "race_angle": ("race_angle",),
+    "race_approach": ("race_angle",),
+    "race_half_width": (),
+}
+# Dimensions of what may be left out, in groups that come together.
+OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
+    {"disc_resultant": ("motion", "station")},
+    {"wide_station": ("wide",), "wide_half_width": ("wide",), "wide_approach": ("wide",)},
+    {"pin_wide_approach": ()},
+    {"roller_wide_approach": ()},
+    {"race_wide_approach": ()},
+)
+BODIES = ("disc", "pin", "roller", "race")
+POSITIVE_ATTRIBUTES = ("thickness", "roller_radius", *(f"{body}_youngs_modulus" for body in BODIES))
+STATEMENTS = ("symmetry", "rigid_residual", "convergence_estimate")
+POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in BODIES)
+# Interpolation takes six stations; less on a boundary would count some twice.
+FEWEST_STATIONS = 6
+# Parameters are uniform and normals of unit length up to what a file with seven digits keeps.
+UNIFORM = 1e-6
+
+
+def require_schema(dataset: xr.Dataset, source: str) -> None:
+    """Refuse a dataset that is no set of influence coefficients.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Content of a file.
+    source : str
+        Its name, for the message.
+
+    Raises
+    ------
+    MeshError
+        Naming everything that is missing or has the wrong form, in one line.
+    """
+    problems = [*_missing(dataset)] or [*_misshapen(dataset)] or [*_implausible(dataset)]
+    if problems:
+        raise MeshError(f"{source}: is no file of influence coefficients (docs/coefficients.md): {'; '.join(problems)}")
+
+
+def _missing(dataset: xr.Dataset) -> Iterator[str]:
+    variables = [name for name in NEEDED if name not in dataset.variables]
+    for group in OPTIONAL:
+        if any(name in dataset.variables for name in group):
+            variables += [name for name in group if name not in dataset.variables]
+    if variables:
+        yield f"it lacks {', '.join(variables)}"
+    attributes = [
+        name
+        for name in ("fingerprint", "plane", *POSITIVE_ATTRIBUTES, *POISSON_RATIOS)
+        if name not in dataset.attrs
+    ]  # fmt: skip
+    if attributes:
+        yield f"it lacks the attributes {', '.join(attributes)}"
+
+
+def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
+    for group in (NEEDED, *OPTIONAL):
+        for name, dimensions in group.items():
+            if name not in dataset.variables:
+                continue
+            variable = dataset[name]
+            if variable.dims != dimensions:
+                yield f"{name} has the dimensions ({', '.join(map(str, variable.dims))}): must be ({', '.join(dimensions)})"
+            elif variable.dtype.kind not in "iuf":
+                yield f"{name} holds no numbers"
+            elif not np.all(np.isfinite(variable.values)):
+                yield f"{name} holds values that are no finite numbers"
+    for rows, columns in (("station", "station_loaded"), ("roller_end", "roller_end_loaded")):
+        if dataset.sizes.get(rows) != dataset.sizes.get(columns):
+            yield f"{rows} and {columns} differ in length: {dataset.sizes.get(rows)} and {dataset.sizes.get(columns)}"
+    if dataset.sizes.get("roller_end", 2) != 2:
+        yield f"roller_end has length {dataset.sizes['roller_end']}: must be 2 (inner, outer)"
+
+
+def _implausible(dataset: xr.Dataset) -> Iterator[str]:
+    plane = dataset.attrs["plane"]
+    if plane not in ("strain", "stress"):
+        yield f"plane = {plane}: must be strain or stress"
+    for name in POSITIVE_ATTRIBUTES:
+        if not _number(dataset.attrs[name]) > 0.0:
+            yield f"{name} = {dataset.attrs[name]}: must be greater than 0"
+    for name in POISSON_RATIOS:
+        if not 0.0 <= _number(dataset.attrs[name]) < 0.5:
+            yield f"{name} = {dataset.attrs[name]}: must be at least 0 and less than 0.5"
+    for name in STATEMENTS:
+        if name in dataset.attrs and not _number(dataset.attrs[name]) >= 0.0:
+            yield f"{name} = {dataset.attrs[name]}: must be a number, at least 0"
+    for name in ("station_half_width", "pin_half_width", "roller_half_width", "race_half_width"):
+        if not np.all(dataset[name].values > 0.0):
+            yield f"{name} must be greater than 0"
+    yield from _misplaced(dataset)
+
+
+def _misplaced(dataset: xr.Dataset) -> Iterator[str]:
+    boundary = dataset["station_boundary"].values
+    numbers = np.unique(boundary)
+    if np.any(np.diff(boundary) < 0) or not np.array_equal(numbers, np.arange(len(numbers))) or len(numbers) < 3:
+        yield "station_boundary must be 0 (flank), 1 (bore), 2, 3, … (holes), in this order"
+        return
+    parameters = [(f"of boundary {k}", dataset["station_parameter"].values[boundary == k]) for k in numbers.tolist()]
+    for place, values in [*parameters, ("race_angle", dataset["race_angle"].values)]:
+        name = f"station_parameter {place}" if place != "race_angle" else place
+        count = len(values)
+        if count < FEWEST_STATIONS:
+            yield f"{name} has {count} values: must be at least {FEWEST_STATIONS}"
+        elif np.max(np.abs(values - 2.0 * np.pi * np.arange(count) / count)) > UNIFORM:
+            yield f"{name} must be uniform over one turn and begin with 0 (rad)"
+    length = np.hypot(dataset["station_normal_x"].values, dataset["station_normal_y"].values)
+    if np.max(np.abs(length - 1.0)) > UNIFORM:
+        yield "station_normal_x and station_normal_y must be of unit length"
+    if "wide_station" in dataset.variables:
+        wide = dataset["wide_station"].values
+        if wide.size == 0 or wide.dtype.kind == "f" or wide.min() < 0 or wide.max() >= dataset.sizes["station"]:
+            yield "wide_station must hold numbers of stations"
+
+
+def _number(value: object) -> float:
+    """Return an attribute as a number; not a number where it is none."""
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return float("nan")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Fit:
+    """How far stations lie from where a drive has them: largest distance (half-widths) and difference of normals."""
+
+    distance: float
+    normals: float
+
+
+def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
+    """Check that coefficients belong to the bodies of a drive.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of the right schema.
+    drive : Drive
+        The drive in the case they are for.
+    source : str
+        Name of the file, for the message.
+
+    Returns
+    -------
+    tuple of Check
+        Places and normals of the stations, thickness and elastic constants.
+
+    Raises
+    ------
+    CycloError
+        When the fingerprint is that of another drive, or the numbers of boundaries differ.
+    """
+    found = str(dataset.attrs["fingerprint"])
+    nominal = [nominal_shape(drive, keep_clearance=keep) for keep in (True, False)]
+    fitting = [shape for shape in nominal if shape.shape_fingerprint() == found]
+    if not fitting:
+        raise CycloError(
+            f"{source}: belongs to another drive ({dataset.attrs.get('drive', '?')}, shape {found}); {drive.name} has "
+            f"shape {drive.shape_fingerprint()}"
+        )
+    fits = [fit for fit in (_fit(dataset, shape) for shape in fitting) if fit is not None]
+    if not fits:
+        raise CycloError(
+            f"{source}: has stations on {len(np.unique(dataset['station_boundary'].values))} boundaries; flank, bore and "
+            f"holes of {drive.name} are {2 + drive.pin_shaft.number_of_pins}"
+        )
+    # With clearances or without: the better one is what the file was made for.
+    fit = min(fits, key=lambda fit: fit.distance)
+    return (
+        Check(
+            name="places of the stations on the drive's bodies",
+            value=fit.distance,
+            lowest=0.0,
+            highest=1e-3,
+            reason="in half-widths of a patch: coefficients change by that part of the near field's unit",
+        ),
+        Check(
+            name="normals of the stations on the drive's bodies",
+            value=fit.normals,
+            lowest=0.0,
+            highest=1e-3,
+            reason="loads and approaches are along them; a cosine changes by the square",
+        ),
+        Check(
+            name="thickness and elastic constants of the drive",
+            value=_constants(dataset, drive),
+            lowest=0.0,
+            highest=1e-6,
+            reason="relative; the logarithm of the near field is taken off with the drive's own",
+        ),
+    )
+
+
+def _fit(dataset: xr.Dataset, nominal: Drive) -> _Fit | None:
+    """Return how the stations fit a drive; None when it has other boundaries."""
+    curves = DriveShapes.of_drive(nominal).disc.curves
+    boundary = dataset["station_boundary"].values
+    if len(np.unique(boundary)) != len(curves):
+        return None
+    distance = normals = 0.0
+    for number, curve in enumerate(curves):
+        own = np.flatnonzero(boundary == number)
+        parameter = dataset["station_parameter"].values[own]
+        place = dataset["station_x"].values[own] + 1j * dataset["station_y"].values[own]
+        normal = dataset["station_normal_x"].values[own] + 1j * dataset["station_normal_y"].values[own]
+        away = np.abs(place - curve.points(parameter)) / dataset["station_half_width"].values[own]
+        distance = max(distance, float(np.max(away)))
+        normals = max(normals, float(np.max(np.abs(normal - curve.normals(parameter)))))
+    return _Fit(distance=distance, normals=normals)
+
+
+def _constants(dataset: xr.Dataset, drive: Drive) -> float:
+    materials = drive.materials
+    pairs = [
+        (dataset.attrs["thickness"], drive.disc.thickness),
+        (dataset.attrs["roller_radius"], drive.crank_bearing.roller_radius),
+    ]
+    for body, material in zip(
+        BODIES, (materials.disc, materials.wheel_pin, materials.roller, materials.inner_race), strict=True
+    ):
+        pairs.append((dataset.attrs[f"{body}_youngs_modulus"], material.youngs_modulus))
+        # 1 + ν, so that ν = 0 has a relative difference, too.
+        pairs.append((1.0 + float(dataset.attrs[f"{body}_poisson_ratio"]), 1.0 + material.poisson_ratio))
+    return max(abs(float(found) / own - 1.0) for found, own in pairs)

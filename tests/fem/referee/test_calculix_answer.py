@@ -1,0 +1,52 @@
+"""What is read from a .dat file of CalculiX: the last increment only, and none whose contacts pull."""
+
+import pytest
+
+from fem.referee.calculix import last_output, read_forces, read_pressures, read_wheel_turn
+from ltca.errors import CycloError
+
+
+def increment(pressures, turn, force):
+    """One increment as ccx 2.20 prints it: contact stresses, displacements, statistics of a pair."""
+    stresses = "\n".join(f"      3270          3 {value: .6E}  0.000000E+00  0.000000E+00" for value in pressures)
+    return f"""
+ contact stress (slave element+face,press,tang1,tang2) for all contact elements and time 0.1000000E+01
+
+{stresses}
+
+ displacements (vx,vy,vz) for set WHEEL and time  0.1000000E+01
+
+     39662 {turn: .6E}  0.000000E+00  0.000000E+00
+
+ statistics for slave set S_PIN_3, master set O_PIN_3 and time  0.1000000E+01
+
+   total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)
+
+   {force: .6E} -2.736185E+03  5.228434E-13 -4.878273E-03 -2.659323E-03 -1.741135E+05
+"""
+
+
+FIRST = increment([1243.9, -9439.7, 1285.2], -1.616355e-6, 1486.212)
+LAST = increment([1210.0, 7.7, 1290.0], -2.875991e-7, 1490.0)
+
+
+def test_the_last_increment_is_the_answer():
+    """Of an increment whose contacts still pulled the wheel's angle was taken, and of both the pressures: 0.33″ off ours."""
+    last = last_output(FIRST + LAST)
+    assert read_wheel_turn(last) == -2.875991e-7
+    assert read_pressures(last) == {(3270, 3): [1210.0, 7.7, 1290.0]}
+    assert list(read_forces(last)) == ["PIN_3"]
+    assert read_forces(last)["PIN_3"][0] == 1490.0
+    assert last_output(LAST) == last
+
+
+def test_contacts_that_pull_are_no_answer():
+    with pytest.raises(CycloError, match="contacts that pull: -9440 MPa"):
+        last_output(LAST + FIRST)
+    # ccx lets single points at the rim pull a little: 1 % of the largest pressure with four elements for two half-widths.
+    assert read_pressures(last_output(increment([1210.0, -22.9, 2061.3], 0.0, 1.0)))
+
+
+def test_a_file_without_contacts_is_one_error():
+    with pytest.raises(CycloError, match="no contact stresses"):
+        last_output("")

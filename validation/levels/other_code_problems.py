@@ -1,0 +1,260 @@
+"""Level 2, what is solved: each problem, its definition, our answer computed now, and how another code answers it.
+
+A definition is what both codes are given, so that an answer of the other code that was stored can be refused when the
+problem has changed since. Loads are lists by part, zeros included.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.drive.solution import FullSolution, solve_drive
+from fem.referee.calculix import ask_calculix
+from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
+from ltca.contact.length_profile import LogarithmicRelief
+from ltca.drive.parts import Drive, Material, contact_modulus
+from ltca.errors import CycloError
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
+from ltca.laws.series import approach_at_load
+from ltca.reading.drive_file import load_drive
+
+FloatArray = NDArray[np.float64]
+Answer = dict[str, Any]
+
+CASE, CRANK_ANGLE = "CS-1", 0.5
+# Two elements for each half-width, four pressures across a contact: with fewer our own answer depends on where the
+# vertices happen to lie (benchmarks/fem.py --ccx 6 4 3 2).
+SIZE = 4.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OtherCode:
+    """Another code and the problem it is given.
+
+    Attributes
+    ----------
+    name : str
+        Of the code.
+    installed : callable
+        Whether it can be asked here.
+    definition : callable
+        Everything that defines the problem, as plain numbers and texts.
+    ours, theirs : callable
+        Our answer, computed now, and the other code's.
+    """
+
+    name: str
+    installed: Callable[[], bool]
+    definition: Callable[[], dict[str, Any]]
+    ours: Callable[[], Answer]
+    theirs: Callable[[], Answer]
+
+    def fingerprint(self) -> str:
+        """Return a hash of the definition of the problem (hex, 16 digits)."""
+        text = json.dumps(self.definition(), sort_keys=True, allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def coarse_drive() -> Drive:
+    """Return the drive that CalculiX solves, too."""
+    return load_drive("paper").cases[CASE]
+
+
+def has_calculix() -> bool:
+    """Return whether ccx can be asked here."""
+    try:
+        find_calculix()
+    except CycloError:
+        return False
+    return True
+
+
+def define_drive() -> dict[str, Any]:
+    """Return what defines the drive problem: the drive, its position, its mesh, its penalty."""
+    drive = coarse_drive()
+    return {
+        "drive": drive.fingerprint(),
+        "crank_angle_rad": CRANK_ANGLE,
+        "wheel_moment_N_mm": drive.wheel_moment(),
+        "size": SIZE,
+        "plane": "strain",
+        "penalty": PENALTY_FACTOR,
+    }
+
+
+def our_drive() -> Answer:
+    """Solve the drive by our finite elements."""
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
+    contacts = solution.contacts
+    return {
+        "pin_load": contacts.pin_load.tolist(),
+        "roller_load": contacts.roller_load_outer.tolist(),
+        "roller_load_inner": contacts.roller_load_inner.tolist(),
+        "pin_shaft_load": contacts.pin_shaft_load.tolist(),
+        "wheel_angle": solution.pose.wheel_angle,
+    }
+
+
+def their_drive() -> Answer:
+    """Let CalculiX solve it on the same mesh."""
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
+    with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
+        answer = ask_calculix(solution, write_deck(solution, Path(folder) / "drive.inp"), find_calculix())
+    return {**_by_part(solution, answer.load), "wheel_angle": answer.wheel_angle}
+
+
+def _by_part(solution: FullSolution, load: dict[str, float]) -> Answer:
+    contacts = solution.contacts
+    found = {
+        "pin": ("pin_load", np.zeros_like(contacts.pin_load)),
+        "roller_outer": ("roller_load", np.zeros_like(contacts.roller_load_outer)),
+        "roller_inner": ("roller_load_inner", np.zeros_like(contacts.roller_load_inner)),
+        "hole": ("pin_shaft_load", np.zeros_like(contacts.pin_shaft_load)),
+    }
+    for pair in solution.model.pairs:
+        found[pair.kind][1][pair.index] = load.get(pair_name(pair), 0.0)
+    return {name: values.tolist() for name, values in found.values()}
+
+
+STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PressedRoller:
+    """A roller pressed against a flat.
+
+    Attributes
+    ----------
+    name : str
+        In rows.
+    length, radius : float
+        mm.
+    load : float
+        N.
+    span : float
+        Width of the other code's grid, some 3.4 half-widths, mm.
+    cells : tuple of int
+        Of that grid, across and along.
+    relief : LogarithmicRelief or None
+        Profile along the length; None for a cylinder.
+    """
+
+    name: str
+    length: float
+    radius: float
+    load: float
+    span: float
+    cells: tuple[int, int]
+    relief: LogarithmicRelief | None = None
+
+    @property
+    def modulus(self) -> float:
+        """E* of roller and flat, MPa."""
+        return contact_modulus(STEEL, STEEL)
+
+    def drop(self, place: FloatArray) -> FloatArray:
+        """Return how far the profile falls back at places along the length from the middle, mm."""
+        return np.zeros_like(place) if self.relief is None else np.asarray(self.relief.relief(place))
+
+    def solved(self) -> tuple[float, float]:
+        """Return our pressure at mid-length (MPa) and approach (mm)."""
+        law: LineContactLaw | ProfiledLineContactLaw
+        if self.relief is None:
+            law = LineContactLaw(self.length, self.modulus)
+        else:
+            law = ProfiledLineContactLaw.for_radii(self.relief, self.modulus, self.radius, self.radius)
+        approach = float(approach_at_load(law, np.array([self.load]), self.radius)[0][0])
+        return float(law.mid_pressure(approach, self.radius)), approach
+
+
+ROLLERS = (
+    PressedRoller(name="uncrowned roller", length=11.8, radius=2.0, load=1500.0, span=0.173, cells=(96, 512)),
+    PressedRoller(
+        name="roller with ISO/TS 16281 profile",
+        length=20.0,
+        radius=10.0,
+        load=40e3,
+        span=1.626,
+        cells=(96, 384),
+        relief=LogarithmicRelief(length=20.0, diameter=20.0),
+    ),
+)
+
+
+def has_tamaas() -> bool:
+    """Return whether tamaas can be asked here."""
+    return importlib.util.find_spec("tamaas") is not None
+
+
+def define_rollers() -> dict[str, Any]:
+    """Return what defines the rollers: sizes, load, E*, profile and grid."""
+    return {
+        roller.name: {
+            "length_mm": roller.length,
+            "radius_mm": roller.radius,
+            "load_N": roller.load,
+            "modulus_MPa": f"{roller.modulus:.9g}",
+            "cells": list(roller.cells),
+            "span_mm": roller.span,
+            "drop_mm": [f"{drop:.9g}" for drop in roller.drop(roller.length * np.array([0.0, 0.2, 0.4, 0.48, 0.4999]))],
+        }
+        for roller in ROLLERS
+    }
+
+
+def our_rollers() -> Answer:
+    """Press the rollers with our laws: peak pressure at mid-length and approach by roller."""
+    return {roller.name: list(roller.solved()) for roller in ROLLERS}
+
+
+def their_rollers() -> Answer:
+    """Let tamaas press them."""
+    return {roller.name: list(_press(roller)) for roller in ROLLERS}
+
+
+def _press(roller: PressedRoller) -> tuple[float, float]:
+    """Return pressure at mid-length and approach by tamaas: uniform cells, FFT of Boussinesq, conjugate gradients."""
+    import tamaas
+
+    length, span = roller.length, roller.span
+    tamaas.set_log_level(tamaas.LogLevel.error)
+    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [span, length], list(roller.cells))
+    model.E, model.nu = roller.modulus, 0.0
+    tamaas.ModelFactory.registerNonPeriodic(model, "free")
+    x, y = ((np.arange(n) + 0.5) * size / n - size / 2 for n, size in zip(roller.cells, (span, length), strict=True))
+    surface = -(x[:, None] ** 2 / (2.0 * roller.radius) + roller.drop(y)[None, :])
+    solver = tamaas.PolonskyKeerRey(model, np.ascontiguousarray(surface), 1e-8)
+    solver.setIntegralOperator("free")
+    solver.max_iter = 5000
+    residual = float(solver.solve(roller.load / (span * length)))
+    if not residual < 1e-8:
+        raise CycloError(f"tamaas did not converge: residual {residual:.1e}")
+    pressure = np.array(model.traction)
+    displacement = np.empty_like(pressure)
+    model.operators["free"](pressure, displacement)
+    loaded = pressure > 0.2 * pressure.max()
+    middle = pressure.shape[1] // 2
+    peak = float(pressure[:, middle - 1 : middle + 1].mean(axis=1).max())
+    return peak, float(np.mean((displacement - surface)[loaded]))
+
+
+CODES = {
+    code.name: code
+    for code in (
+        OtherCode(name="CalculiX", installed=has_calculix, definition=define_drive, ours=our_drive, theirs=their_drive),
+        OtherCode(
+            name="tamaas", installed=has_tamaas, definition=define_rollers, ours=our_rollers, theirs=their_rollers
+        ),
+    )
+}
