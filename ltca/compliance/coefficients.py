@@ -17,51 +17,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Clearance, Drive, Material
 from ltca.errors import CycloError, DriveError
+from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
-LAGRANGE_POINTS = 6
-
 NEEDED_VARIABLES = ("disc_approach", "pin_approach", "roller_approach", "race_approach", "station_boundary")
 NEEDED_ATTRIBUTES = ("shape", "clearances_left_out", "bearing_clearance", "pin_hole_clearance", "plane", "thickness")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Boundary:
-    """Stations of one closed boundary, uniform in a periodic parameter.
-
-    Attributes
-    ----------
-    first, count : int
-        Place of the stations in the matrix.
-    """
-
-    first: int
-    count: int
-
-    def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
-        """Return stations and weights of local Lagrange interpolation, shapes (…, 6).
-
-        Parameters
-        ----------
-        parameter : array
-            Places, rad, period 2π.
-        """
-        place = np.mod(parameter, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
-        cell = np.floor(place)
-        local = (place - cell)[..., None]
-        nodes = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
-        weights = np.ones((*place.shape, LAGRANGE_POINTS))
-        for one, node in enumerate(nodes):
-            for other in np.delete(nodes, one):
-                weights[..., one] *= (local[..., 0] - other) / (node - other)
-        stations = np.mod(cell[..., None].astype(np.intp) + nodes, self.count) + self.first
-        return stations, weights
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,6 +59,8 @@ class InfluenceCoefficients:
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
         Factor κ of −ln(distance) in each body, mm/N.
+    stress : StressCoefficients
+        Stress along the walls of the disc, where the file has it.
     """
 
     fingerprint: str
@@ -109,6 +78,7 @@ class InfluenceCoefficients:
     pin_logarithm: float
     roller_logarithm: float
     race_logarithm: float
+    stress: StressCoefficients = NO_STRESSES
 
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
         """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
@@ -310,6 +280,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
     race_half_width = np.full(angle.shape, float(data["race_half_width"].values))
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
     race = data["race_approach"].values + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
+    holes = tuple(stations(2 + k) for k in range(drive.pin_shaft.number_of_pins))
     return InfluenceCoefficients(
         fingerprint=drive.shape_fingerprint(),
         shared=shared,
@@ -317,7 +288,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
         thickness=thickness,
         flank=stations(0),
         bore=stations(1),
-        holes=tuple(stations(2 + k) for k in range(drive.pin_shaft.number_of_pins)),
+        holes=holes,
         disc=0.5 * (disc + disc.T),
         pin=float(data["pin_approach"].values + pin_logarithm * own),
         roller=roller,
@@ -326,6 +297,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
         pin_logarithm=pin_logarithm,
         roller_logarithm=roller_logarithm,
         race_logarithm=race_logarithm,
+        stress=read_stress_coefficients(data, path, (stations(0), stations(1), *holes)),
     )
 
 
