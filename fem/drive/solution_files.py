@@ -11,6 +11,7 @@ import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.contact_results import ContactResults
+from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.solution import FullSolution
 from fem.mesh.mesh_file import write_vtu
@@ -142,12 +143,14 @@ def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: st
     CycloError
         When the folder cannot be written to.
     """
+    stress = recover_disc_stress(solution)
     with whole_file(folder / "fem.nc") as part:
-        build_dataset(solution, case).to_netcdf(part, engine="h5netcdf")
+        build_dataset(solution, case).assign(stress_variables(stress)).to_netcdf(part, engine="h5netcdf")
     for field in fields:
         write_field(field, folder / f"{field.body.name}.vtu")
     with whole_file(folder / "summary.json") as part:
-        text = json.dumps(summarise(solution), indent=2, ensure_ascii=False, allow_nan=False)
+        content = summarise(solution) | summarise_stress(stress)
+        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
         part.write_text(text + "\n", encoding="utf-8")
 
 

@@ -258,7 +258,7 @@ def _unknown(response: Response, lobes: int) -> WallStresses:
     pins, rollers, holes = (
         np.full(load.shape, np.nan) for load in (response.pin_load, response.rollers.outer_load, response.hole_load)
     )
-    roots = np.full((pins.shape[0], lobes), np.nan)
+    roots = np.full((len(response.pin_load), lobes), np.nan)
     return WallStresses(
         root=roots,
         root_parameter=roots,
