@@ -223,7 +223,8 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     if missing:
         raise CycloError(f"{path}: is no coefficient file of this version; it lacks {', '.join(missing)}")
     shared = _require_same_bodies(path, data.attrs, drive)
-    return _coefficients_of_dataset(data, drive, shared=shared)
+    found = _coefficients_of_dataset(data, drive, shared=shared)
+    return replace(found, stress=read_stress_coefficients(data, path, (found.flank, found.bore, *found.holes)))
 
 
 def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive) -> bool:
@@ -280,7 +281,6 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
     race_half_width = np.full(angle.shape, float(data["race_half_width"].values))
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
     race = data["race_approach"].values + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
-    holes = tuple(stations(2 + k) for k in range(drive.pin_shaft.number_of_pins))
     return InfluenceCoefficients(
         fingerprint=drive.shape_fingerprint(),
         shared=shared,
@@ -288,7 +288,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
         thickness=thickness,
         flank=stations(0),
         bore=stations(1),
-        holes=holes,
+        holes=tuple(stations(2 + k) for k in range(drive.pin_shaft.number_of_pins)),
         disc=0.5 * (disc + disc.T),
         pin=float(data["pin_approach"].values + pin_logarithm * own),
         roller=roller,
@@ -297,7 +297,6 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
         pin_logarithm=pin_logarithm,
         roller_logarithm=roller_logarithm,
         race_logarithm=race_logarithm,
-        stress=read_stress_coefficients(data, path, (stations(0), stations(1), *holes)),
     )
 
 

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ContactPressures, Response
 from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
-from ltca.contact.hertz import line_half_width
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -168,9 +167,6 @@ def _place_contacts(
     # The approach of a shaft pin grows against its gradient by the displacement of the disc.
     toward = -(response.holes.gradient[..., 0] + 1j * response.holes.gradient[..., 1])
     holes = np.angle(toward) - turn
-    # Of a wall under a rigid pin, 1/E* is the compliance of the disc alone.
-    modulus = 2.0 / (np.pi * model.coefficients.thickness * model.coefficients.disc_logarithm)
-    hole_width = line_half_width(response.hole_load / model.coefficients.thickness, model.hole_radius, modulus)
     hole_points = place.hole_centres + place.hole_radii * np.exp(1j * holes)
     return (
         _PlacedContacts(
@@ -187,7 +183,7 @@ def _place_contacts(
             _PlacedContacts(
                 contacts=WallContacts(parameter=holes[:, own], load=response.hole_load[:, own]),
                 points=hole_points[:, own],
-                half_width=hole_width[:, own],
+                half_width=pressures.holes.half_width[:, own],
             )
             for own in (slice(k, k + 1) for k in range(holes.shape[1]))
         ),

@@ -185,7 +185,7 @@ LINE_DEPTH = 0.7861514
 """Its depth ζ in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
 
 
-def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> Array:
+def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> FloatArray:
     """Largest shear stress below a line contact in a body that carries a stress along its wall, MPa.
 
     In plane strain the shear stress on the axis is half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²)) (Johnson, Eq. 4.45 and 4.46), and a
