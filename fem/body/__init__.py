@@ -8,5 +8,6 @@ surface       Contact zones on meshed boundaries: the side that carries the pres
 condensation  Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
 free_body     Datum of a floating body: its displacement relative to the best-fit rigid motion of one boundary
 stress        Stress recovery: from nodal displacements to nodal Cauchy stresses
+wall_stress   Stress along a meshed boundary, from recovered nodal stresses
 ============  ============================================================
 """

@@ -19,6 +19,7 @@ from fem.body.elasticity import PlaneState, assemble_stiffness, rigid_modes, unk
 from fem.body.free_body import boundary_motion_loads, project_rigid_motions, refer_to_boundary
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.stations import RACE_ANGLES, DiscStations, patch_half_width
+from fem.coefficients.wall_strain import continue_under_patches, wall_modulus, wall_strain_measures
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
@@ -64,6 +65,9 @@ class DerivedDisc:
         Stations that also carry a patch twice as wide.
     wide_approach : array, shape (w,)
         Approach of the wide patch by its own load, mm/N.
+    stress : array, shape (stations, stations)
+        Stress along the wall at each station by a newton at each, tension positive, MPa/N; without what a patch does
+        right under itself (`fem.coefficients.wall_strain.continue_under_patches`).
     reciprocity : float
         Largest difference of "displacement at i by j" and "at j by i", of the largest approach.
     rigid_residual : float
@@ -77,6 +81,7 @@ class DerivedDisc:
     resultants: FloatArray
     wide_stations: IntArray
     wide_approach: FloatArray
+    stress: FloatArray
     reciprocity: float
     rigid_residual: float
     unknowns: int
@@ -226,16 +231,20 @@ def derive_disc(
     body = mesh_disc_for_stations(shape, stations, size)
     count = stations.count
     wide = np.arange(0, count, WIDE_STEP)
-    patches, wide_patches = [], []
+    patches, wide_patches, strains = [], [], []
     for index, curve in enumerate(shape.curves):
         own = np.flatnonzero(stations.boundary == index)
         patches.append(patch_loads(body, curve, stations.parameter[own], stations.half_width[own]))
+        strains.append(wall_strain_measures(body, curve, stations.parameter[own], stations.half_width[own]))
         also = wide[stations.boundary[wide] == index]
         if len(also):
             width = WIDE_RATIO * stations.half_width[also]
             wide_patches.append(patch_loads(body, curve, stations.parameter[also], width))
     motions = boundary_motion_loads(body, "bore")
-    loads = sp.hstack([*patches, *wide_patches, motions], format="csc")
+    # What measures the strain of a wall is a load that balances itself: its row of the compliance holds, by
+    # reciprocity, that strain under every patch. One factorisation serves both.
+    measures = wall_modulus(material, state) * sp.hstack(strains)
+    loads = sp.hstack([*patches, *wide_patches, measures, motions], format="csc")
     stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
     condensed = condense_body(body, stiffness, loads)
     modes = rigid_modes(body)
@@ -243,7 +252,8 @@ def derive_disc(
     resultants = condensed.resultants[:, :-3]
     referred = refer_to_boundary(condensed.compliance, resultants, 0.5 * (gram + gram.T))
     approach, own_resultants = referred[:count, :count], resultants[:, :count]
-    diagonal = np.diag(referred)[count:]
+    diagonal = np.diag(referred)[count : count + len(wide)]
+    stress = referred[count + len(wide) :, :count]
 
     sampled = np.unique(np.linspace(0, count - 1, SAMPLED).astype(int))
     displacement = condensed.displacement(np.eye(loads.shape[1])[:, sampled])
@@ -259,6 +269,7 @@ def derive_disc(
         resultants=own_resultants,
         wide_stations=wide,
         wide_approach=diagonal,
+        stress=continue_under_patches(stress, stations.boundary),
         reciprocity=float(reciprocity),
         rigid_residual=float(max(np.max(np.abs(left)) / np.max(np.abs(own_resultants)), datums)),
         unknowns=body.unknowns,

@@ -121,6 +121,7 @@ def derive_coefficients(
     }
     for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
         convergence[name] = _difference(own.approach, other.approach)
+    stress_convergence = _difference(disc.stress, coarse[0].stress)
     dataset = _label(places, disc, pin, roller, race)
     dataset.attrs.update(
         drive=drive.name,
@@ -138,6 +139,7 @@ def derive_coefficients(
         f"rollers and race {ROUND_SIZE:g} times that",
         convergence_estimate=max(convergence.values()),
         **{f"convergence_{name}": value for name, value in convergence.items()},
+        convergence_stress=stress_convergence,
         symmetry=max(body.reciprocity for body in fine),
         mirror=max(roller.mirror, race.mirror),
         rigid_residual=disc.rigid_residual,
@@ -186,6 +188,16 @@ def _label(
             ),
             "disc_resultant": variable(
                 ("motion", "station"), disc.resultants, "N, N, N mm", "force in x, y and moment of each unit load"
+            ),
+            "stress_station_boundary": variable(("stress_station",), places.boundary, "1", "as station_boundary"),
+            "stress_station_parameter": variable(("stress_station",), places.parameter, "rad", "as station_parameter"),
+            "stress_station_x": variable(("stress_station",), places.points.real, "mm", "place in the disc frame"),
+            "stress_station_y": variable(("stress_station",), places.points.imag, "mm", "place in the disc frame"),
+            "disc_stress": variable(
+                ("stress_station", "station_loaded"),
+                disc.stress,
+                "MPa/N",
+                "stress along the wall by a newton at a station, without what its patch does right under itself",
             ),
             "wide_station": variable(("wide",), wide, "1", "stations that also carry a wider patch"),
             "wide_half_width": variable(

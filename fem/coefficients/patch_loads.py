@@ -159,7 +159,7 @@ def patch_loads(body: BodyMesh, curve: Curve, parameters: FloatArray, half_width
             f"greater than 0 and less than {0.5 * LARGEST_SHARE * boundary.length:.4g} mm"
         )
     middle = boundary.arc_of(curve.points(parameters))
-    phi, weight, owner = _divide_patches(boundary, middle, width)
+    phi, weight, owner = divide_patches(boundary, middle, width)
     offset = width[owner] * np.sin(phi)
     edge, xi = boundary.coordinate_of(middle[owner] + offset)
     # p t ds = (2/π) cos²φ dφ
@@ -172,10 +172,24 @@ def patch_loads(body: BodyMesh, curve: Curve, parameters: FloatArray, half_width
     return sp.csc_matrix(sp.coo_matrix((values, (rows, columns)), shape=(body.unknowns, len(parameters))))
 
 
-def _divide_patches(
+def divide_patches(
     boundary: BoundaryArc, middle: FloatArray, width: FloatArray
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Return integration points φ, weights and patches: Gauss points between neighbouring vertices."""
+    """Divide patches at the vertices they cover.
+
+    Parameters
+    ----------
+    boundary : BoundaryArc
+        The boundary.
+    middle, width : array, shape (n,)
+        Arc length of the middle of each patch, and its half-width, mm.
+
+    Returns
+    -------
+    phi, weight, owner : array
+        Gauss points between neighbouring vertices, s = b sin φ from the middle of the patch, their weights for ∫ dφ, and
+        the patch of each.
+    """
     nodes, weights = GAUSS
     phis, steps, owners = [], [], []
     # Two turns of vertices, so that a patch over the first vertex finds those on both sides of it.

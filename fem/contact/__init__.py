@@ -10,6 +10,7 @@ unilateral         Unilateral contact on condensed bodies: pressures that never 
                    zero
 pressure_measures  What is read from the pressure unknowns of one contact: resultant, half-width, peak, means at the
                    vertices
+subsurface_shear   Largest shear stress below a contact, from recovered nodal stresses
 two_bodies         Two bodies pressed together along one direction: the smallest use of the contact machinery
 =================  ============================================================
 """

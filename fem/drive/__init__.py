@@ -19,6 +19,7 @@ contact_results    From contact unknowns to the numbers of each part: loads, pea
                    the disc
 solution           Full solution of a drive at one crank angle: coarse, graded anew, fine, checked
 fields             Fields of a full solution on the nodes of every body, in the fixed frame at the loaded pose
+disc_stress        Stress in the disc of a full solution: along flank, bore and hole walls, and below its contacts
 solution_files     Files of a full solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over
                    them all
 =================  ============================================================

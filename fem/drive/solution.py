@@ -66,6 +66,8 @@ class FullSolution:
         Element edge as a multiple of an eighth of each half-width.
     plane_state : {"strain", "stress"}
         Plane strain or plane stress.
+    fine_walls : bool
+        Whether the walls of the disc are meshed finely enough for the stress along them.
     pose_iterations : int
         Steps on the final meshes.
     seconds : dict of str to float
@@ -77,6 +79,7 @@ class FullSolution:
     contacts: ContactResults
     scale: float
     plane_state: PlaneState
+    fine_walls: bool
     pose_iterations: int
     seconds: dict[str, float]
 
@@ -103,8 +106,10 @@ class _Task:
     elastic_shaft_pins: bool
     approach: float
 
-    def condense(self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch) -> DriveModel:
-        meshes = mesh_drive(self.shapes, contacts, scale=scale)
+    def condense(
+        self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch, *, fine_walls: bool = False
+    ) -> DriveModel:
+        meshes = mesh_drive(self.shapes, contacts, scale=scale, fine_walls=fine_walls)
         pins = mesh_shaft_pins(self.shapes, contacts, scale) if self.elastic_shaft_pins else ()
         watch.lap("mesh")
         return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins)
@@ -150,6 +155,7 @@ def solve_drive(
     scale: float = 1.0,
     state: PlaneState = "strain",
     elastic_shaft_pins: bool = False,
+    fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
@@ -169,6 +175,8 @@ def solve_drive(
         Plane strain or plane stress.
     elastic_shaft_pins : bool
         Whether shaft pins yield, too; rigid circles on their springs by default.
+    fine_walls : bool
+        Whether the walls of the disc are meshed finely enough for the stress along them, whatever the scale.
     start : tuple of four floats, optional
         First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
     progress : callable, optional
@@ -220,7 +228,7 @@ def solve_drive(
         margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
         contacts = task.grade(crank_angle, place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
         say("meshes")
-        model = task.condense(contacts, scale * RESERVE, watch)
+        model = task.condense(contacts, scale * RESERVE, watch, fine_walls=fine_walls)
         watch.lap("assembly and factorisation")
         solution = solve_pose(model, task.moment, start=solution.pose, progress=say)
         watch.lap("contact and pose")
@@ -235,6 +243,7 @@ def solve_drive(
                 contacts=results,
                 scale=scale,
                 plane_state=state,
+                fine_walls=fine_walls,
                 pose_iterations=solution.iterations,
                 seconds=watch.seconds,
             )
@@ -278,6 +287,7 @@ def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str
             scale=previous.scale,
             state=previous.plane_state,
             elastic_shaft_pins=bool(model.shaft_pins),
+            fine_walls=previous.fine_walls,
             progress=progress,
         )
     watch.seconds["total"] = sum(watch.seconds.values())

@@ -15,6 +15,7 @@ import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.contact_results import ContactResults
+from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.model import DriveModel
 from fem.drive.solution import FullSolution
@@ -207,11 +208,12 @@ def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: st
         index.unlink(missing_ok=True)
     except OSError as error:
         raise CycloError(f"{index}: cannot be written: {error.strerror or error}") from error
+    stress = recover_disc_stress(solution)
     with whole_file(folder / "fem.nc") as part:
-        build_dataset(solution, case).to_netcdf(part, engine="h5netcdf")
+        build_dataset(solution, case).assign(stress_variables(stress)).to_netcdf(part, engine="h5netcdf")
     bodies = [write_field(field, folder / f"{field.body.name}.vtu") for field in fields]
     write_multi_block(bodies, index)
-    write_json(folder / "summary.json", summarise(solution))
+    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stress))
 
 
 def write_multi_block(bodies: list[Path], path: Path) -> Path:

@@ -2,22 +2,27 @@
 
 Modules in the order data passes:
 
-=================  ============================================================
-rollers            A roller between the races: two contact laws in series, its radial place eliminated (Eq. 52, 57,
-                   66)
-response           What a compliance model answers: loads of all contact pairs at a pose, their generalised force and
-                   its tangent
-pressures          Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their loads
-half_space         Half-space compliance: pairs that do not feel each other (the paper's model)
-grids              Contact grids solved inside every iteration of the equilibrium: the ``direct`` method
-coefficients       Influence coefficients of the bodies derived from finite elements: the file, and their values at
-                   any place
-near_field         Near fields of all contacts of a drive: the laws that `coupled` puts upon the body part
-coefficient_files  Where influence coefficients come from: files of the user's, or derived once for each distinct shape
-                   and kept
-beyond_near_field  What finite elements have beyond the near field of each contact itself: the diagonal of the body
-                   part C
-coupled            Loads of all contact pairs at a pose when the pairs feel each other through the bodies (`fe` and
-                   `hybrid`)
-=================  ============================================================
+===================  ============================================================
+rollers              A roller between the races: two contact laws in series, its radial place eliminated (Eq. 52, 57,
+                     66)
+response             What a compliance model answers: loads of all contact pairs at a pose, their generalised force and
+                     its tangent
+pressures            Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their
+                     loads
+half_space           Half-space compliance: pairs that do not feel each other (the paper's model)
+grids                Contact grids solved inside every iteration of the equilibrium: the ``direct`` method
+stress_coefficients  Stress along the walls of the disc by the loads on it: reading from the coefficient file, and the
+                     stress they give
+coefficients         Influence coefficients of the bodies derived from finite elements: the file, and their values at
+                     any place
+near_field           Near fields of all contacts of a drive: the laws that `coupled` puts upon the body part
+coefficient_files    Where influence coefficients come from: files of the user's, or derived once for each distinct
+                     shape and kept
+beyond_near_field    What finite elements have beyond the near field of each contact itself: the diagonal of the body
+                     part C
+coupled              Loads of all contact pairs at a pose when the pairs feel each other through the bodies (`fe` and
+                     `hybrid`)
+wall_stress          Stress in the disc under the loads found: along lobe roots, bore and hole walls, and in the wall
+                     under each contact
+===================  ============================================================
 """

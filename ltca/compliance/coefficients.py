@@ -17,51 +17,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Clearance, Drive, Material
 from ltca.errors import CycloError, DriveError
+from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
-LAGRANGE_POINTS = 6
-
 NEEDED_VARIABLES = ("disc_approach", "pin_approach", "roller_approach", "race_approach", "station_boundary")
 NEEDED_ATTRIBUTES = ("shape", "clearances_left_out", "bearing_clearance", "pin_hole_clearance", "plane", "thickness")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Boundary:
-    """Stations of one closed boundary, uniform in a periodic parameter.
-
-    Attributes
-    ----------
-    first, count : int
-        Place of the stations in the matrix.
-    """
-
-    first: int
-    count: int
-
-    def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
-        """Return stations and weights of local Lagrange interpolation, shapes (…, 6).
-
-        Parameters
-        ----------
-        parameter : array
-            Places, rad, period 2π.
-        """
-        place = np.mod(parameter, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
-        cell = np.floor(place)
-        local = (place - cell)[..., None]
-        nodes = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
-        weights = np.ones((*place.shape, LAGRANGE_POINTS))
-        for one, node in enumerate(nodes):
-            for other in np.delete(nodes, one):
-                weights[..., one] *= (local[..., 0] - other) / (node - other)
-        stations = np.mod(cell[..., None].astype(np.intp) + nodes, self.count) + self.first
-        return stations, weights
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,6 +59,8 @@ class InfluenceCoefficients:
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
         Factor κ of −ln(distance) in each body, mm/N.
+    stress : StressCoefficients
+        Stress along the walls of the disc, where the file has it.
     """
 
     fingerprint: str
@@ -109,6 +78,7 @@ class InfluenceCoefficients:
     pin_logarithm: float
     roller_logarithm: float
     race_logarithm: float
+    stress: StressCoefficients = NO_STRESSES
 
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
         """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
@@ -253,7 +223,8 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     if missing:
         raise CycloError(f"{path}: is no coefficient file of this version; it lacks {', '.join(missing)}")
     shared = _require_same_bodies(path, data.attrs, drive)
-    return _coefficients_of_dataset(data, drive, shared=shared)
+    found = _coefficients_of_dataset(data, drive, shared=shared)
+    return replace(found, stress=read_stress_coefficients(data, path, (found.flank, found.bore, *found.holes)))
 
 
 def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive) -> bool:

@@ -176,3 +176,37 @@ def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> Subs
     return SubsurfaceShear(
         max_shear=float(crest + 0.5 * slope * offset), depth=float(depths[top] * np.exp(offset)), x=place
     )
+
+
+LINE_SHEAR = 0.3002831
+"""Largest shear stress below a Hertz line contact by its peak pressure: the largest of ζ (1 − ζ/√(1 + ζ²))."""
+
+LINE_DEPTH = 0.7861514
+"""Its depth ζ in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
+
+
+def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> FloatArray:
+    """Largest shear stress below a line contact in a body that carries a stress along its wall, MPa.
+
+    In plane strain the shear stress on the axis is half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²)) (Johnson, Eq. 4.45 and 4.46), and a
+    stress along the wall adds to σx at every depth alike: half of it to the shear, wherever that is largest.
+
+    Parameters
+    ----------
+    peak_pressure : array_like
+        p0 of the contact, MPa.
+    wall_stress : array_like
+        Stress along the wall at the contact but for the contact's own, tension positive, MPa.
+
+    Returns
+    -------
+    ndarray
+        Zero where nothing presses.
+
+    Examples
+    --------
+    >>> float(line_contact_shear(1000.0, -20.0).round(2))
+    290.28
+    """
+    pressure = np.asarray(peak_pressure, dtype=float)
+    return np.where(pressure > 0.0, LINE_SHEAR * pressure + 0.5 * np.asarray(wall_stress, dtype=float), 0.0)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.compliance.coefficients import Boundary, InfluenceCoefficients
+from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
+from ltca.geometry.boundary_stations import Boundary
 from validation.compare.comparison import Kind, PositionAnswer, PositionDifference, compare_positions
 from validation.compare.finite_element_positions import FullPosition
 from validation.compare.model_positions import MODELS, answers_of, engine_of

@@ -8,11 +8,12 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import Boundary, load_coefficients, without_coupling
+from ltca.compliance.coefficients import load_coefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.errors import DriveError
+from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.pairs import ContactGeometry
 
 ANGLES = np.array([0.0, 0.5, 1.7, 4.0])

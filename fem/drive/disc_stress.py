@@ -1,0 +1,160 @@
+"""Stress in the disc of a full solution: along flank, bore and hole walls, and below its contacts.
+
+A place on a wall is *clear* when it is farther than four half-widths from every loaded contact on that wall; the largest
+tensile stresses are those of clear places. Below contacts the shear stress is looked for where the mesh resolves it: at
+over 5 % of the largest load of their kind.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.stress import recover_stress
+from fem.body.wall_stress import WallStress, stress_along_wall
+from fem.contact.subsurface_shear import largest_shear_below
+from fem.drive.contact_results import PairResult
+from fem.drive.model import ContactPair
+from fem.drive.solution import FINE_SHARE, FullSolution
+
+FloatArray = NDArray[np.float64]
+
+CLEAR_HALF_WIDTHS = 4.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiscStress:
+    """Stress in the disc.
+
+    Attributes
+    ----------
+    walls : tuple of WallStress
+        Flank, bore, then each hole, frame of the disc.
+    clear : tuple of array of bool
+        Which nodes of each wall are clear of its contacts.
+    root_stress : array, shape (lobes,)
+        Largest tensile stress along the flank about each root, from crest to crest; root k lies at θ = 2πk/z_C. MPa, not
+        a number where nothing is clear.
+    bore_stress : float
+        Along the bore, MPa.
+    hole_stress : array, shape (z_PS,)
+        Along each hole wall, MPa.
+    pin_shear, roller_shear, hole_shear : array
+        Largest shear stress in the plane below the contacts of wheel pins, rollers in the bore and shaft pins, MPa; zero
+        below 5 % of the largest load of the kind.
+    """
+
+    walls: tuple[WallStress, ...]
+    clear: tuple[NDArray[np.bool_], ...]
+    root_stress: FloatArray
+    bore_stress: float
+    hole_stress: FloatArray
+    pin_shear: FloatArray
+    roller_shear: FloatArray
+    hole_shear: FloatArray
+
+
+def recover_disc_stress(solution: FullSolution) -> DiscStress:
+    """Return the stress in the disc of a full solution."""
+    model, state = solution.model, solution.plane_state
+    body, shape = model.meshes.disc, model.shapes.disc
+    displacement = model.disc.displacement(solution.state.contact.pressure[: model.disc.compliance.shape[0]])
+    stress = recover_stress(body, displacement, model.drive.materials.disc, state=state)
+    loaded = [
+        (pair, detail, *_centre_of_pressure(pair, detail))
+        for pair, detail in zip(model.pairs, solution.contacts.details, strict=True)
+        if detail.load > 0.0 and pair.kind != "roller_inner"
+    ]
+    walls = tuple(stress_along_wall(body, stress, curve) for curve in shape.curves)
+    clear = []
+    for wall in walls:
+        far = np.ones(len(wall.points), dtype=bool)
+        for pair, detail, place, _ in loaded:
+            if pair.zone.curve.name == wall.name:
+                far &= np.abs(wall.points - place) > CLEAR_HALF_WIDTHS * detail.half_width
+        clear.append(far)
+    shear = {
+        "pin": np.zeros(len(solution.contacts.pin_load)),
+        "roller_outer": np.zeros(len(solution.contacts.roller_load_outer)),
+        "hole": np.zeros(len(solution.contacts.pin_shaft_load)),
+    }
+    for pair, detail, place, outward in loaded:
+        if detail.share > FINE_SHARE:
+            shear[pair.kind][pair.index], _ = largest_shear_below(body, stress, place, -outward, detail.half_width)
+    lobes = round(shape.flank.profile.reduction_ratio) - 1
+    flank, bore, *holes = zip(walls, clear, strict=True)
+    nearest = np.mod(np.rint(flank[0].parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
+    return DiscStress(
+        walls=walls,
+        clear=tuple(clear),
+        root_stress=np.array([_largest(flank[0], flank[1] & (nearest == root)) for root in range(lobes)]),
+        bore_stress=_largest(*bore),
+        hole_stress=np.array([_largest(*hole) for hole in holes]),
+        pin_shear=shear["pin"],
+        roller_shear=shear["roller_outer"],
+        hole_shear=shear["hole"],
+    )
+
+
+def _centre_of_pressure(pair: ContactPair, detail: PairResult) -> tuple[complex, complex]:
+    """Return the centre of pressure on the exact wall and the outward normal there, frame of the disc."""
+    arc = pair.zone.arc
+    edge = int(np.clip(np.searchsorted(arc, detail.middle) - 1, 0, pair.zone.edge_count - 1))
+    along = (detail.middle - arc[edge]) / (arc[edge + 1] - arc[edge])
+    points, _ = pair.zone.points(np.array([edge]), np.array([along]))
+    place, normal = pair.zone.exact(points)
+    return complex(place[0]), complex(normal[0])
+
+
+def _largest(wall: WallStress, among: NDArray[np.bool_]) -> float:
+    return float(np.max(wall.stress[among])) if among.any() else float("nan")
+
+
+def summarise_stress(stress: DiscStress) -> dict[str, Any]:
+    """Return what ``summary.json`` says about the stress in the disc; None for what is no number."""
+
+    def plain(values: FloatArray) -> list[float | None]:
+        return [float(value) if np.isfinite(value) else None for value in values]
+
+    return {
+        "root_stress_MPa": plain(stress.root_stress),
+        "bore_stress_MPa": plain(np.array([stress.bore_stress]))[0],
+        "hole_stress_MPa": plain(stress.hole_stress),
+        "pin_shear_max_MPa": plain(stress.pin_shear),
+        "roller_shear_max_outer_MPa": plain(stress.roller_shear),
+        "pin_shaft_shear_max_MPa": plain(stress.hole_shear),
+    }
+
+
+def stress_variables(stress: DiscStress) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
+    """Return the stress in the disc as variables of ``fem.nc``."""
+    boundary = np.concatenate([np.full(len(wall.parameter), number) for number, wall in enumerate(stress.walls)])
+
+    def per_node(values: list[Any], unit: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
+        return ("wall_node",), np.concatenate(values), {"units": unit, "long_name": text}
+
+    def per_part(part: str, values: FloatArray, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
+        dimensions = ("case", "disc", *(("crank",) if part == "roller" else ()), "position", *((part,) if part else ()))
+        spread = np.reshape(values, (1,) * (len(dimensions) - np.ndim(values)) + np.shape(values))
+        return dimensions, spread, {"units": "MPa", "long_name": text}
+
+    largest, below = "largest tensile stress along {}, clear of contacts", "largest shear stress in the disc below {}"
+    return {
+        "wall_boundary": per_node([boundary], "1", "0 flank, 1 bore, 2 + k hole k"),
+        "wall_parameter": per_node([wall.parameter for wall in stress.walls], "rad", "θ of Eq. 1, or polar angle"),
+        "wall_stress": per_node(
+            [wall.stress for wall in stress.walls], "MPa", "stress along the wall, tension positive"
+        ),
+        "wall_clear": per_node(
+            [clear.astype(int) for clear in stress.clear], "1", "1 beyond four half-widths of contacts"
+        ),
+        "root_stress": per_part("lobe", stress.root_stress, largest.format("the flank about each root")),
+        "bore_stress": per_part("", np.asarray(stress.bore_stress), largest.format("the bore")),
+        "hole_stress": per_part("hole", stress.hole_stress, largest.format("the hole wall")),
+        "pin_shear_max": per_part("pin", stress.pin_shear, below.format("wheel pins")),
+        "roller_shear_max_outer": per_part("roller", stress.roller_shear, below.format("rollers")),
+        "pin_shaft_shear_max": per_part("hole", stress.hole_shear, below.format("shaft pins")),
+    }

@@ -1,0 +1,144 @@
+r"""Stress along the walls of the disc by the loads on it: reading from the coefficient file, and the stress they give.
+
+At a wall without load the stress has one component, along the wall. It is linear in the loads of all contacts: the
+coefficients hold it at stations of flank, bore and hole walls, for a newton at each station of the influence coefficients
+(format in docs/coefficients.md). Right under a contact the wall carries the contact's own pressure along itself, too; that part
+is not in the coefficients, so what they give varies smoothly along the wall and with the place of the load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.errors import CycloError
+from ltca.geometry.boundary_stations import Boundary
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+
+VARIABLES = ("disc_stress", "stress_station_boundary", "stress_station_parameter")
+FEWEST_STATIONS = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StressCoefficients:
+    """Stress along the walls at stations, for a newton at each station of the influence coefficients.
+
+    Attributes
+    ----------
+    walls : tuple of Boundary
+        Stress stations of flank, bore and each hole; empty where a file has no stresses.
+    loaded : tuple of Boundary
+        Stations of the loads, in the same order.
+    stress : array, shape (stress stations, stations)
+        Tension positive, MPa/N.
+    """
+
+    walls: tuple[Boundary, ...]
+    loaded: tuple[Boundary, ...]
+    stress: FloatArray
+
+    @property
+    def available(self) -> bool:
+        """Whether there are any."""
+        return bool(self.walls)
+
+
+NO_STRESSES = StressCoefficients(walls=(), loaded=(), stress=np.zeros((0, 0)))
+"""Of a file without stresses."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WallContacts:
+    """Contacts of one wall.
+
+    Attributes
+    ----------
+    parameter : array, shape (positions, contacts)
+        Places: θ on the flank, polar angles in the disc frame on bore and holes, rad.
+    load : array, shape (positions, contacts)
+        Into the disc, N.
+    """
+
+    parameter: FloatArray
+    load: FloatArray
+
+
+def read_stress_coefficients(data: xr.Dataset, path: Path, loaded: tuple[Boundary, ...]) -> StressCoefficients:
+    """Return the stress coefficients of a file, `NO_STRESSES` where it has none.
+
+    Parameters
+    ----------
+    data : Dataset
+        Content of the file.
+    path : Path
+        Its name, for messages.
+    loaded : tuple of Boundary
+        Its stations: flank, bore, holes.
+
+    Raises
+    ------
+    CycloError
+        When the stresses are there in part, are no numbers, or do not fit the stations.
+    """
+    there = [name for name in VARIABLES if name in data]
+    if not there:
+        return NO_STRESSES
+    missing = [name for name in VARIABLES if name not in data]
+    if missing:
+        raise CycloError(f"{path}: has {', '.join(there)} but lacks {', '.join(missing)}")
+    stress = np.asarray(data["disc_stress"].values, dtype=float)
+    boundary = data["stress_station_boundary"].values.astype(int)
+    parameter = np.asarray(data["stress_station_parameter"].values, dtype=float)
+    stations = sum(own.count for own in loaded)
+    if stress.shape != (boundary.size, stations):
+        raise CycloError(
+            f"{path}: disc_stress has the shape {stress.shape}: must be {boundary.size} stress stations by {stations} stations"
+        )
+    if not np.all(np.isfinite(stress)):
+        raise CycloError(
+            f"{path}: disc_stress holds {np.count_nonzero(~np.isfinite(stress))} values that are no numbers"
+        )
+    walls = []
+    for number in range(len(loaded)):
+        rows = np.flatnonzero(boundary == number)
+        first, count = (int(rows[0]), rows.size) if rows.size else (0, 0)
+        expected = 2.0 * np.pi * np.arange(count) / max(count, 1)
+        if (
+            count < FEWEST_STATIONS
+            or not np.array_equal(rows, first + np.arange(count))
+            or not np.allclose(parameter[rows], expected, atol=1e-6)
+        ):
+            raise CycloError(
+                f"{path}: stress stations of boundary {number}: must be at least {FEWEST_STATIONS}, one after the other, "
+                "uniform in their parameter from 0"
+            )
+        walls.append(Boundary(first=first, count=count))
+    return StressCoefficients(walls=tuple(walls), loaded=loaded, stress=stress)
+
+
+def evaluate_wall_stress(coefficients: StressCoefficients, contacts: tuple[WallContacts, ...]) -> FloatArray:
+    """Return the stress along the walls at all stress stations, shape (positions, stress stations), MPa.
+
+    Parameters
+    ----------
+    coefficients : StressCoefficients
+        Of the disc.
+    contacts : tuple of WallContacts
+        Of flank, bore and each hole. Loads in equilibrium get one answer whatever balanced the unit loads when the
+        coefficients were derived.
+    """
+    positions = contacts[0].load.shape[0]
+    rows = np.arange(positions)[:, None, None]
+    loads = np.zeros((positions, coefficients.stress.shape[1]))
+    for boundary, own in zip(coefficients.loaded, contacts, strict=True):
+        stations, weights = boundary.weights(own.parameter)
+        np.add.at(loads, (rows, stations), weights * own.load[..., None])
+    return np.asarray(loads @ coefficients.stress.T)

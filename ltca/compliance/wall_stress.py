@@ -1,0 +1,268 @@
+"""Stress in the disc under the loads found: along lobe roots, bore and hole walls, and in the wall under each contact.
+
+Along a wall the stress is reported where the wall is *clear*: farther than four half-widths from every loaded contact on
+it. Nearer the contact's own stresses rule (`ltca.contact.subsurface`). The stress in the wall right under a contact, its
+own pressure left out, is what the disc adds to them: half of it to the largest shear stress below the surface.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.response import ContactPressures, Response
+from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+CLEAR_HALF_WIDTHS = 4.0
+"""A wall is clear of a contact beyond this many of its half-widths."""
+
+REFINEMENT = 4
+"""Places on a wall for each stress station. On the paper's disc the largest stresses are then within 0.3 % (roots), 0.2 %
+(bore) and 1.1 % (holes) of those from twice the stations."""
+
+CHUNK = 128
+"""Positions evaluated at once: distances of all places from all contacts stay small."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WallProfile:
+    """Stress along one wall of the disc.
+
+    Attributes
+    ----------
+    parameter : array, shape (places,)
+        θ on the flank, polar angle in the disc frame on bore and holes, rad.
+    stress : array, shape (positions, places)
+        Tension positive, MPa; under a contact without the contact's own pressure.
+    clear : array of bool, shape (positions, places)
+        Farther than four half-widths from every loaded contact on the wall.
+    """
+
+    parameter: FloatArray
+    stress: FloatArray
+    clear: NDArray[np.bool_]
+
+    def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> tuple[FloatArray, FloatArray]:
+        """Return the largest clear stress of each position and its parameter; not a number where nothing is clear.
+
+        Parameters
+        ----------
+        places : array of bool or slice
+            Which places count, all by default.
+        """
+        parameter = self.parameter[places]
+        stress = np.where(self.clear[:, places], self.stress[:, places], -np.inf)
+        best = np.argmax(stress, axis=1)
+        value = np.take_along_axis(stress, best[:, None], axis=1)[:, 0]
+        found = np.isfinite(value)
+        return np.where(found, value, np.nan), np.where(found, parameter[best], np.nan)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WallStresses:
+    """Largest tensile stresses along the walls of the disc, and stresses under its contacts, MPa.
+
+    All are not a number where the coefficient file has no stresses. The stress along a wall is the largest one of the
+    clear places, tension positive; it is negative where all of them are compressed, and not a number where none is clear.
+
+    Attributes
+    ----------
+    root, root_parameter : array, shape (positions, lobes)
+        Along the flank about each lobe root, from crest to crest, and where, θ, rad. Root k lies at θ = 2πk/z_C.
+    bore, bore_parameter : array, shape (positions,)
+        Along the bore, and where, polar angle in the disc frame, rad.
+    hole, hole_parameter : array, shape (positions, z_PS)
+        Along each hole wall, and where, polar angle about its centre in the disc frame, rad.
+    pin_contact : array, shape (positions, z_P)
+        In the flank under each wheel pin, along the wall, the contact's own pressure left out; where the pin would
+        touch, if it is open.
+    roller_contact : array, shape (positions, n_BR)
+        In the bore under each roller.
+    hole_contact : array, shape (positions, z_PS)
+        In each hole wall under its shaft pin.
+    """
+
+    root: FloatArray
+    root_parameter: FloatArray
+    bore: FloatArray
+    bore_parameter: FloatArray
+    hole: FloatArray
+    hole_parameter: FloatArray
+    pin_contact: FloatArray
+    roller_contact: FloatArray
+    hole_contact: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _PlacedContacts:
+    """Contacts of one wall with what decides how near they are."""
+
+    contacts: WallContacts
+    points: ComplexArray
+    half_width: FloatArray
+
+
+def wall_stresses(
+    model: CoupledCompliance, response: Response, pressures: ContactPressures, disc_rotation: FloatArray
+) -> WallStresses:
+    """Return the largest stresses along the walls and the stresses under the contacts.
+
+    Parameters
+    ----------
+    model : CoupledCompliance
+        The model that answered.
+    response : Response
+        Its loads.
+    pressures : ContactPressures
+        ``model.pressures(response)``.
+    disc_rotation : array, shape (positions,)
+        Rotation of the disc, rad: ``pose[:, 2]``.
+    """
+    positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
+    if not model.coefficients.stress.available:
+        return _unknown(response, lobes)
+    placed = _place_contacts(model, response, pressures, disc_rotation)
+    parts = [
+        _reduce(model, _take(placed, rows), lobes)
+        for rows in np.array_split(np.arange(positions), max(1, -(-positions // CHUNK)))
+    ]
+    return WallStresses(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+
+
+def wall_profiles(
+    model: CoupledCompliance,
+    response: Response,
+    pressures: ContactPressures,
+    disc_rotation: FloatArray,
+    *,
+    refinement: int = REFINEMENT,
+) -> tuple[WallProfile, ...]:
+    """Return the stress along flank, bore and each hole wall; none where the coefficients have no stresses.
+
+    Parameters
+    ----------
+    model, response, pressures, disc_rotation
+        As for `wall_stresses`.
+    refinement : int
+        Places for each stress station, the first of them on it.
+    """
+    if not model.coefficients.stress.available:
+        return ()
+    return _profiles(model, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
+
+
+def _place_contacts(
+    model: CoupledCompliance, response: Response, pressures: ContactPressures, disc_rotation: FloatArray
+) -> tuple[_PlacedContacts, ...]:
+    """Return the contacts of flank, bore and each hole in the frame of the disc."""
+    place, turn = model.geometry.placement, disc_rotation[:, None]
+    flank, rollers = response.flank, response.rollers
+    bore = np.angle(rollers.outer_direction) - turn
+    # The approach of a shaft pin grows against its gradient by the displacement of the disc.
+    toward = -(response.holes.gradient[..., 0] + 1j * response.holes.gradient[..., 1])
+    holes = np.angle(toward) - turn
+    hole_points = place.hole_centres + place.hole_radii * np.exp(1j * holes)
+    return (
+        _PlacedContacts(
+            contacts=WallContacts(parameter=flank.parameter, load=response.pin_load),
+            points=model.geometry.profile.flank(flank.parameter),
+            half_width=pressures.pins.half_width,
+        ),
+        _PlacedContacts(
+            contacts=WallContacts(parameter=bore, load=rollers.outer_load),
+            points=place.bore_radius * np.exp(1j * bore),
+            half_width=pressures.outer.half_width,
+        ),
+        *(
+            _PlacedContacts(
+                contacts=WallContacts(parameter=holes[:, own], load=response.hole_load[:, own]),
+                points=hole_points[:, own],
+                half_width=pressures.holes.half_width[:, own],
+            )
+            for own in (slice(k, k + 1) for k in range(holes.shape[1]))
+        ),
+    )
+
+
+def _take(placed: tuple[_PlacedContacts, ...], rows: NDArray[np.intp]) -> tuple[_PlacedContacts, ...]:
+    return tuple(
+        _PlacedContacts(
+            contacts=WallContacts(parameter=own.contacts.parameter[rows], load=own.contacts.load[rows]),
+            points=own.points[rows],
+            half_width=own.half_width[rows],
+        )
+        for own in placed
+    )
+
+
+def _profiles(
+    model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], refinement: int
+) -> tuple[tuple[WallProfile, ...], FloatArray]:
+    """Return the profiles of all walls, and the stress at the stations."""
+    place, coefficients = model.geometry.placement, model.coefficients.stress
+    stress = evaluate_wall_stress(coefficients, tuple(own.contacts for own in placed))
+    profiles = []
+    for number, (wall, own) in enumerate(zip(coefficients.walls, placed, strict=True)):
+        parameter = wall.parameters(refinement)
+        if number == 0:
+            points = model.geometry.profile.flank(parameter)
+        elif number == 1:
+            points = place.bore_radius * np.exp(1j * parameter)
+        else:
+            points = place.hole_centres[number - 2] + place.hole_radii[number - 2] * np.exp(1j * parameter)
+        clear = np.ones((stress.shape[0], parameter.size), dtype=bool)
+        for contact in range(own.points.shape[1]):
+            reach = np.where(own.contacts.load[:, contact] > 0.0, CLEAR_HALF_WIDTHS * own.half_width[:, contact], -1.0)
+            clear &= np.abs(points - own.points[:, contact, None]) > reach[:, None]
+        profiles.append(WallProfile(parameter=parameter, stress=wall.refined(stress, refinement), clear=clear))
+    return tuple(profiles), stress
+
+
+def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes: int) -> dict[str, FloatArray]:
+    """Return the fields of `WallStresses` of some positions."""
+    profiles, stress = _profiles(model, placed, REFINEMENT)
+    flank, bore, *holes = profiles
+    nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
+    roots = [flank.largest(nearest == root) for root in range(lobes)]
+    hole = [wall.largest() for wall in holes]
+    bore_stress, bore_parameter = bore.largest()
+    under = []
+    for wall, own in zip(model.coefficients.stress.walls, placed, strict=True):
+        stations, weights = wall.weights(own.contacts.parameter)
+        rows = np.arange(stress.shape[0])[:, None, None]
+        under.append(np.sum(stress[rows, stations] * weights, axis=-1))
+    return {
+        "root": np.stack([value for value, _ in roots], axis=1),
+        "root_parameter": np.stack([parameter for _, parameter in roots], axis=1),
+        "bore": bore_stress,
+        "bore_parameter": bore_parameter,
+        "hole": np.stack([value for value, _ in hole], axis=1),
+        "hole_parameter": np.stack([parameter for _, parameter in hole], axis=1),
+        "pin_contact": under[0],
+        "roller_contact": under[1],
+        "hole_contact": np.concatenate(under[2:], axis=1),
+    }
+
+
+def _unknown(response: Response, lobes: int) -> WallStresses:
+    pins, rollers, holes = (
+        np.full(load.shape, np.nan) for load in (response.pin_load, response.rollers.outer_load, response.hole_load)
+    )
+    roots = np.full((len(response.pin_load), lobes), np.nan)
+    return WallStresses(
+        root=roots,
+        root_parameter=roots,
+        bore=roots[:, 0],
+        bore_parameter=roots[:, 0],
+        hole=holes,
+        hole_parameter=holes,
+        pin_contact=pins,
+        roller_contact=rollers,
+        hole_contact=holes,
+    )

@@ -1,0 +1,65 @@
+"""Stations of a closed boundary, uniform in a periodic parameter, and the interpolation between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+LAGRANGE_POINTS = 6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Boundary:
+    """Stations of one closed boundary, uniform in a periodic parameter.
+
+    Attributes
+    ----------
+    first, count : int
+        Place of the stations in the matrix.
+    """
+
+    first: int
+    count: int
+
+    def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+        """Return stations and weights of local Lagrange interpolation, shapes (…, 6).
+
+        Parameters
+        ----------
+        parameter : array
+            Places, rad, period 2π.
+        """
+        place = np.mod(parameter, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
+        cell = np.floor(place)
+        local = (place - cell)[..., None]
+        nodes = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
+        weights = np.ones((*place.shape, LAGRANGE_POINTS))
+        for one, node in enumerate(nodes):
+            for other in np.delete(nodes, one):
+                weights[..., one] *= (local[..., 0] - other) / (node - other)
+        stations = np.mod(cell[..., None].astype(np.intp) + nodes, self.count) + self.first
+        return stations, weights
+
+    def refined(self, values: FloatArray, times: int) -> FloatArray:
+        """Return values at `times` as many uniform places, by Fourier series, shape (…, times · count).
+
+        Parameters
+        ----------
+        values : array, shape (…, all stations)
+            At the stations of all boundaries; those of this one are taken.
+        times : int
+            How many places for each station, the first of them on it.
+        """
+        spectrum = np.fft.rfft(values[..., self.first : self.first + self.count], axis=-1)
+        if self.count % 2 == 0 and times > 1:
+            # The highest order of an even number stands for both signs.
+            spectrum[..., -1] *= 0.5
+        return np.asarray(np.fft.irfft(spectrum, n=times * self.count, axis=-1) * times)
+
+    def parameters(self, times: int = 1) -> FloatArray:
+        """Return the parameters of the places of `refined`, rad."""
+        return 2.0 * np.pi * np.arange(times * self.count) / (times * self.count)
