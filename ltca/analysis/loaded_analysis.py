@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.half_width_guard import check_half_widths
+from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
 from ltca.frozen_arrays import freeze
+from ltca.geometry.pairs import DISC_ROTATION
 
 FloatArray = NDArray[np.float64]
 
@@ -38,6 +41,8 @@ class LoadedAnalysis:
         Pressures and half-widths at that torque.
     bearing_radial, bearing_tangential : array, shape (positions,)
         Bearing force on the disc along the eccentricity and 90° ahead, N.
+    wall_stresses : WallStresses or None
+        Stresses along the walls of the disc at that torque; None where bodies are half-spaces and have no walls.
     """
 
     drive: Drive
@@ -49,6 +54,7 @@ class LoadedAnalysis:
     pressures: ContactPressures
     bearing_radial: FloatArray
     bearing_tangential: FloatArray
+    wall_stresses: WallStresses | None
 
 
 def analyse(
@@ -107,7 +113,14 @@ def analyse(
         pressures=freeze(pressures),
         bearing_radial=freeze(push.real),
         bearing_tangential=freeze(push.imag),
+        wall_stresses=freeze(_wall_stresses(prepared.model, full, pressures)),
     )
+
+
+def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: ContactPressures) -> WallStresses | None:
+    if not isinstance(model, CoupledCompliance):
+        return None
+    return wall_stresses(model, full.response, pressures, full.pose[:, DISC_ROTATION])
 
 
 def check_positions(crank_angle: FloatArray) -> FloatArray:

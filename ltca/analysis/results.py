@@ -31,6 +31,7 @@ DIMENSIONS = {
     "pin": ("disc", "position", "pin"),
     "roller": ("disc", "crank", "position", "roller"),
     "hole": ("disc", "position", "hole"),
+    "lobe": ("disc", "position", "lobe"),
 }
 # name: (what it belongs to, unit, description)
 VARIABLES: dict[str, tuple[str, str, str]] = {
@@ -72,9 +73,17 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "iterations": ("drive", "1", "Newton iterations at the torque of the run"),
 }
 
+# What bodies with walls have besides: engines on derived coefficients.
+WALL_VARIABLES: dict[str, tuple[str, str, str]] = {
+    "root_stress": ("lobe", "MPa", "largest tensile stress along the flank about each lobe root, clear of contacts"),
+    "bore_stress": ("disc", "MPa", "largest tensile stress along the bore, clear of contacts"),
+    "hole_stress": ("hole", "MPa", "largest tensile stress along the wall of each hole, clear of contacts"),
+}
+
 
 def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
     """Quantities of one case, of one disc on one crank: (position,) or (position, pair)."""
+    walls = analysis.wall_stresses
     full, light = analysis.full, analysis.light
     contacts, pressures = full.response, analysis.pressures
     displacement = disc_displacement(full.pose) * np.exp(-1j * full.crank_angle)
@@ -112,7 +121,7 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "disc_rotation": full.pose[:, DISC_ROTATION],
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
-    }
+    } | ({} if walls is None else {"root_stress": walls.root, "bore_stress": walls.bore, "hole_stress": walls.hole})
 
 
 def _spread(values: Any, kind: str) -> Any:
@@ -218,7 +227,9 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     per_case = [_values(analysis) for analysis in analyses.values()]
     first = next(iter(analyses.values()))
     variables = {}
-    for name, (kind, unit, description) in VARIABLES.items():
+    for name, (kind, unit, description) in (VARIABLES | WALL_VARIABLES).items():
+        if name not in per_case[0]:
+            continue
         stacked = np.stack([_spread(values[name], kind) for values in per_case])
         variables[name] = (("case", *DIMENSIONS[kind]), stacked, {"units": unit, "long_name": description})
     dataset = xr.Dataset(
