@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from importlib.metadata import entry_points, version
+from importlib.metadata import entry_points
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
 from ltca.output.progress import progress
+from ltca.output.provenance import code_hash, code_version
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
@@ -31,9 +32,13 @@ PROCESSES = 2
 
 
 def cached_file(drive: Drive, plane: str = "strain") -> Path:
-    """Return where the coefficients of a drive's shape are kept: under ``$XDG_CACHE_HOME`` or ``~/.cache``."""
+    """Return where the coefficients of a drive's shape are kept: under ``$XDG_CACHE_HOME`` or ``~/.cache``.
+
+    The folder carries version and hash of the code that derived them: other code derives its own.
+    """
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "cyclo" / version("cyclo-ltca") / f"coefficients-{drive.shape_fingerprint()}-{plane}.nc"
+    made_by = f"{code_version()}-{code_hash('ltca', 'fem')}"
+    return base / "cyclo" / made_by / f"coefficients-{drive.shape_fingerprint()}-{plane}.nc"
 
 
 def find_coefficients(

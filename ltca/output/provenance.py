@@ -28,18 +28,15 @@ def code_hash(*packages: str) -> str:
     Returns
     -------
     str
-        Of relative paths and contents of all source and data files, independent of where they lie.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        When a package is not installed.
+        Of relative paths and contents of all source and data files, independent of where they lie; a package that is
+        not installed counts by its absence.
     """
     digest = hashlib.sha256()
     for package in packages:
         spec = find_spec(package)
         if spec is None or not spec.submodule_search_locations:
-            raise ModuleNotFoundError(f"no package {package}")
+            digest.update(f"{package} is not installed".encode())
+            continue
         root = Path(next(iter(spec.submodule_search_locations)))
         for path in sorted(root.rglob("*"), key=lambda path: path.relative_to(root).as_posix()):
             if path.suffix in SOURCES and path.is_file():

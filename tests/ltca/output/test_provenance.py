@@ -40,5 +40,4 @@ def test_packages_count():
     assert code_hash("ltca") != code_hash("ltca", "fem")
     assert len(code_hash("ltca")) == 16
     assert code_version()
-    with pytest.raises(ModuleNotFoundError):
-        code_hash("no_such_package")
+    assert code_hash("ltca", "no_such_package") not in (code_hash("ltca"), code_hash("ltca", "fem"))
