@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from fem.coefficients.file import read_coefficients, write_coefficients
 from fem.errors import MeshError
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.drive.parts import Clearance, Drive
+from ltca.output.provenance import code_hash
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,13 +77,11 @@ def coefficients_of(
     CycloError
         When meshing fails or the file cannot be written.
     """
-    path = folder / f"{drive.shape_fingerprint()}_{plane}_{size:g}.nc"
+    # The code that derived them is in the name: what older code kept is never compared.
+    path = folder / f"{drive.shape_fingerprint()}_{plane}_{size:g}_{code_hash('fem', 'ltca')}.nc"
     try:
         dataset = read_coefficients(path)
-        fits = dataset.attrs.get("version") == version("cyclo-ltca")
     except MeshError:
-        fits = False
-    if not fits:
         derived = derive_coefficients(drive, case=case, size=size, state=plane, progress=progress)
         write_coefficients(derived, path)
         dataset = read_coefficients(path)

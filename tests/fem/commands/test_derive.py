@@ -201,7 +201,7 @@ def test_failure_leaves_the_old_file(tmp_path, monkeypatch):
         def to_netcdf(self, target, engine):
             raise OSError(28, "No space left on device")
 
-    with pytest.raises(MeshError, match="No space left"):
+    with pytest.raises(CycloError, match="No space left"):
         write_coefficients(Unwritable(), path)
     assert path.read_text() == "old"
     assert [entry.name for entry in tmp_path.iterdir()] == ["c.nc"]
