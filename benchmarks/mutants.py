@@ -19,6 +19,7 @@ import multiprocessing
 import os
 import py_compile
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -34,7 +35,7 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[_variable] = "1"
 os.environ.setdefault("MPLBACKEND", "Agg")
 
-from mutation.covered_lines import CoverageMap, map_file, read_part, test_files, write_part
+from mutation.covered_lines import CoverageMap, fingerprints, map_file, read_part, test_files, write_part
 from mutation.formulas import PACKAGES, Mutant, draw_mutants
 from mutation.processes import in_fork, warm_up
 
@@ -70,22 +71,31 @@ class Chosen:
             self.failed.append(f"{report.nodeid} (import)")
 
 
-def own_tree() -> Path:
-    """Return this process's copy of the tree, made when it is first asked for."""
+def copy_tree(source: Path, to: Path) -> None:
+    """Copy what git knows or would know of a tree: what is edited meanwhile changes nothing."""
+    words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(words, cwd=source, capture_output=True, text=True, check=True).stdout.splitlines()
+    for name in listed:
+        if (source / name).is_file():
+            (to / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source / name, to / name)
+
+
+def prepare(snapshot: Path) -> None:
+    """Give this process a tree of its own and import what every run needs."""
     global _tree
-    if _tree is None:
-        warm_up()
-        _tree = Path(tempfile.mkdtemp(prefix="mutants-tree-"))
-        words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
-        listed = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
-        for name in listed:
-            if (ROOT / name).is_file():
-                (_tree / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(ROOT / name, _tree / name)
-        for package in PACKAGES:
-            # By content: a broken file differs from its neighbour in time by nothing.
-            mode = py_compile.PycInvalidationMode.CHECKED_HASH
-            compileall.compile_dir(_tree / package, quiet=1, invalidation_mode=mode)
+    _tree = Path(tempfile.mkdtemp(prefix="own-", dir=snapshot.parent))
+    shutil.copytree(snapshot, _tree, dirs_exist_ok=True)
+    for package in PACKAGES:
+        # By content: a broken file differs from its neighbour in time by nothing.
+        mode = py_compile.PycInvalidationMode.CHECKED_HASH
+        compileall.compile_dir(_tree / package, quiet=1, invalidation_mode=mode)
+    warm_up()
+
+
+def own_tree() -> Path:
+    """Return this process's copy of the tree."""
+    assert _tree is not None
     return _tree
 
 
@@ -93,7 +103,9 @@ def map_one(path: str, *, slow: bool) -> tuple[str, dict[str, Any] | None, str]:
     """Return the part of the map that a test file gives, or its last words."""
     tree = own_tree()
     how, answer = in_fork(partial(map_file, tree, path, slow=slow), tree, seconds=MAP_SECONDS)
-    return path, (answer if how == "done" else None), ("" if how == "done" else f"{how}: {answer[-300:]}")
+    if how != "done":
+        return path, None, f"{how}: {answer[-300:]}"
+    return path, {"made_of": fingerprints(tree, path, answer["lines"]), "slow": slow, **answer}, ""
 
 
 def run_tests(names: list[str]) -> dict[str, Any]:
@@ -149,9 +161,9 @@ def _looks(tests: list[tuple[str, float]]) -> Iterable[tuple[list[str], float]]:
     return [look for look in looks if look[0]]
 
 
-def make_map(folder: Path, pool: Any, *, slow: bool) -> CoverageMap:
+def make_map(tree: Path, folder: Path, pool: Any, *, slow: bool) -> CoverageMap:
     """Return the map of covered lines, made where it is missing or no longer holds."""
-    found = {path: read_part(folder, ROOT, path, slow=slow) for path in test_files(ROOT)}
+    found = {path: read_part(folder, tree, path, slow=slow) for path in test_files(tree)}
     parts = {path: part for path, part in found.items() if part is not None}
     left = [path for path in found if path not in parts]
     for number, (path, part, trouble) in enumerate(pool.imap_unordered(partial(map_one, slow=slow), left), start=1):
@@ -160,7 +172,8 @@ def make_map(folder: Path, pool: Any, *, slow: bool) -> CoverageMap:
             continue
         bad = [name for name, (_, outcome) in part["tests"].items() if outcome == "failed"]
         print(f"map {number}/{len(left)}: {path}{f' FAILS unbroken: {bad}' if bad else ''}", flush=True)
-        parts[path] = write_part(folder, ROOT, path, part, slow=slow)
+        parts[path] = part
+        write_part(folder, path, part)
     return CoverageMap.of_parts(parts.values())
 
 
@@ -209,18 +222,28 @@ def main() -> int:
     parser.add_argument("--map-only", action="store_true", help="make the map and stop")
     parser.add_argument("--out", type=Path, default=Path("out/mutants"), help="map and log; default out/mutants")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped; the log goes on from here"))
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
+        tree = Path(folder) / "tree"
+        copy_tree(ROOT, tree)
+        entries = break_one_by_one(tree, arguments)
+    return 0 if entries is None else report(entries)
+
+
+def break_one_by_one(tree: Path, arguments: argparse.Namespace) -> list[dict[str, Any]] | None:
+    """Return what the tests say of the mutants drawn; None when only the map was wanted."""
     log = arguments.out / "log.jsonl"
-    packages = tuple(arguments.package or PACKAGES)
-    drawn = draw_mutants(ROOT, packages, arguments.count, arguments.seed)
-    with multiprocessing.get_context("spawn").Pool(arguments.processes) as pool:
-        covered = make_map(arguments.out / "map", pool, slow=arguments.slow)
+    drawn = draw_mutants(tree, tuple(arguments.package or PACKAGES), arguments.count, arguments.seed)
+    context = multiprocessing.get_context("spawn")
+    with context.Pool(arguments.processes, initializer=prepare, initargs=(tree,)) as pool:
+        covered = make_map(tree, arguments.out / "map", pool, slow=arguments.slow)
         if arguments.map_only:
-            return 0
+            return None
         known = read_log(log)
         if arguments.again:
             known = {key: entry for key, entry in known.items() if entry["outcome"].startswith("killed")}
         left = [mutant for mutant in drawn if mutant.key not in known]
-        jobs = [(mutant, [(name, covered.seconds[name]) for name in covered.tests_of(mutant, ROOT)]) for mutant in left]
+        jobs = [(mutant, [(name, covered.seconds[name]) for name in covered.tests_of(mutant, tree)]) for mutant in left]
         with log.open("a", encoding="utf-8") as stream:
             for number, entry in enumerate(pool.imap_unordered(try_mutant, jobs), start=1):
                 stream.write(json.dumps(entry, ensure_ascii=False) + "\n")
@@ -231,13 +254,7 @@ def main() -> int:
                     f"{entry['before']!r} → {entry['after']!r} {entry['by']}",
                     flush=True,
                 )
-        pool.map(_leave, range(arguments.processes), chunksize=1)
-    return report([known[mutant.key] for mutant in drawn if mutant.key in known])
-
-
-def _leave(_: int) -> None:
-    if _tree is not None:
-        shutil.rmtree(_tree, ignore_errors=True)
+    return [known[mutant.key] for mutant in drawn if mutant.key in known]
 
 
 if __name__ == "__main__":

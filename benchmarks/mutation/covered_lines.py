@@ -100,6 +100,8 @@ def map_file(tree: Path, path: str, *, slow: bool) -> dict[str, Any]:
     data = watch.get_data()
     lines: dict[str, dict[int, list[int]]] = {}
     for measured in data.measured_files():
+        if not measured.endswith(".py"):  # templates of pages
+            continue
         own: dict[int, list[int]] = {}
         for line, contexts in data.contexts_by_lineno(measured).items():
             users = {user for context in contexts for user in plugin.uses.get(context, [context])}
@@ -195,12 +197,10 @@ def read_part(folder: Path, tree: Path, path: str, *, slow: bool) -> dict[str, A
     return part if holds else None
 
 
-def write_part(folder: Path, tree: Path, path: str, part: dict[str, Any], *, slow: bool) -> dict[str, Any]:
-    """Keep a part of the map and return it with what it was made of."""
+def write_part(folder: Path, path: str, part: dict[str, Any]) -> None:
+    """Keep a part of the map."""
     folder.mkdir(parents=True, exist_ok=True)
-    whole = {"made_of": fingerprints(tree, path, part["lines"]), "slow": slow, **part}
-    _place(folder, path).write_text(json.dumps(whole), encoding="utf-8")
-    return whole
+    _place(folder, path).write_text(json.dumps(part), encoding="utf-8")
 
 
 def _place(folder: Path, path: str) -> Path:

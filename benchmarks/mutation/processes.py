@@ -6,6 +6,7 @@ A fork works in a tree of its own choice, has limits on time and memory, and han
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import importlib
 import json
 import os
@@ -22,10 +23,11 @@ from typing import Any
 WARM = (
     "numpy", "numpy.testing", "scipy.linalg", "scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.optimize",
     "scipy.interpolate", "scipy.integrate", "scipy.special", "scipy.stats", "scipy.spatial", "skfem", "meshio", "xarray",
-    "h5netcdf", "h5py", "pydantic", "pint", "threadpoolctl", "jinja2", "rich.progress", "matplotlib.figure", "pytest",
-    "hypothesis",
+    "h5netcdf", "h5py", "pydantic", "pint", "threadpoolctl", "jinja2", "rich.progress", "matplotlib.figure",
+    "pytest", "hypothesis",
 )  # fmt: skip
 MEMORY = 8 * 2**30
+PARENT_DEATH_SIGNAL = 1  # of prctl, Linux
 
 
 def warm_up() -> None:
@@ -82,6 +84,7 @@ def _stand_in(work: Callable[[], Any], tree: Path, folder: Path, answer: Path, w
     code = 1
     try:
         os.setpgid(0, 0)
+        ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL)
         resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 5))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         stream = os.open(words, os.O_WRONLY | os.O_CREAT)
