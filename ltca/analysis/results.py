@@ -15,6 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
@@ -239,6 +240,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
             **provenance(drive_name, first.drive, drive_file),
             **first.engine.options,
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
+            **_bodies(analyses),
         },
     )
     # At unrelieved ends the largest pressure is singular: it is that of an end cell of this length.
@@ -250,6 +252,14 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     ):
         dataset[name].attrs["end_cell_mm"] = pressures.end_cell
     return dataset
+
+
+def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int]]:
+    """Whether the coefficients of each case are its own or, on somebody's word, those of bodies that differ a little."""
+    models = [analysis.model for analysis in analyses.values()]
+    if not all(isinstance(model, CoupledCompliance) for model in models):
+        return {}
+    return {"shared_coefficients": [int(m.coefficients.shared) for m in models if isinstance(m, CoupledCompliance)]}
 
 
 def provenance(drive_name: str, drive: Drive, drive_file: str | None = None) -> dict[str, str]:

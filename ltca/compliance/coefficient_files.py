@@ -151,16 +151,14 @@ def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, In
 
 
 def _kept(drive: Drive, plane: str) -> InfluenceCoefficients | None:
-    """Return the coefficients in the cache; None where there are none, or a damaged or old file that has to be made again."""
+    """Return the coefficients in the cache; None where there are none, or a damaged file that has to be made again."""
     path = cached_file(drive, plane)
     if not path.exists():
         return None
     try:
-        found = load_coefficients(path, drive)
+        return load_coefficients(path, drive)
     except CycloError:
         return None
-    # The first files of this version had no stresses.
-    return found if found.stress.available else None
 
 
 def _derive_missing(cases: Mapping[str, Drive], plane: str) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
@@ -201,8 +202,17 @@ def test_run_of_cases_of_different_bodies(derived, tmp_path, capsys):
         assert case[key] is None
     assert case["max_pin_pressure_mid_MPa"] > 500.0
     anywhere = [line for line in told.out.splitlines() if line.startswith("  anywhere")]
-    assert len(anywhere) == 4
+    assert len(anywhere) == 6  # pins, rollers and shaft pins of two runs
     assert all(line.split()[-1] == "–" for line in anywhere)
+
+
+def test_results_say_when_coefficients_are_shared(paper_cases, tmp_path):
+    path = write(paper_cases["CS-1"], tmp_path / "shared.nc", clearances_left_out=1)
+    words = ["run", "paper", "--case", "CS-1", "--case", "CS-6", "--angles", "0.5", "--compliance", "hybrid"]
+    assert main([*words, "--coefficients", str(path), "--no-figures", "--out", str(tmp_path)]) == 0
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as results:
+        assert results.attrs["shared_coefficients"].tolist() == [0, 1]
+        assert np.all(results["pin_pressure_max"] >= results["pin_pressure_mid"])
 
 
 def test_half_spaces_take_no_coefficients(tmp_path, capsys):
