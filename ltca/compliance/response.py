@@ -152,7 +152,11 @@ class Start:
     def replaced(self, rows: NDArray[np.intp] | NDArray[np.bool_], other: Start) -> Start:
         """Return a copy with some positions taken from another start, given for just these."""
         fresh = Start(parameter=self.parameter.copy(), share=self.share.copy(), warm_start=self.warm_start.copy())
-        fresh.parameter[rows], fresh.share[rows], fresh.warm_start[rows] = other.parameter, other.share, other.warm_start
+        fresh.parameter[rows], fresh.share[rows], fresh.warm_start[rows] = (
+            other.parameter,
+            other.share,
+            other.warm_start,
+        )
         return fresh
 
 
