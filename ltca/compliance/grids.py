@@ -35,7 +35,7 @@ FloatArray = NDArray[np.float64]
 
 PLACES = 4096
 """Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
-which errs by 1e-6 of the curvature (a half of (2π/4096)²/4), the load by a tenth of that."""
+which errs by 3e-7 of what the curvature swings ((2π/4096)²/8), the load by a tenth of that."""
 
 SeparationOf = Callable[[int, int], Separation]
 """The separation of a pair, by position and pair."""

@@ -9,6 +9,7 @@ pressure_cells  Contact of two half-spaces over a rectangular patch: grid, solut
 length_profile  Profiles of rollers and pins along their length: what crowning and relief take away from the cylinder
 generator       Generator of a roller or pin as the drive defines it: crown, logarithmic relief and end relief added
                 up
+grid_ladder     Ladder of the contact grids: their shapes, and which of them a contact is solved on
 tracked_grid    One contact on its own grid, solved again and again while the bodies move
 end_pressure    The largest pressure of a contact and how much it exceeds the one at mid-width
 free_end        Free ends: bodies that stop where the contact stops are no half-spaces

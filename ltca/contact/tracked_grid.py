@@ -5,10 +5,9 @@ by patch length, on a ladder of 5 %) with unit length, and one small set of matr
 Where the edge of the contact falls within a cell moves the load of 12 cells per half-width by less than 1e-4 (measured
 in ``tests/ltca/contact/test_tracked_grid.py``).
 
-**A load depends on approach, radius and place alone**, never on what was solved before. The rung of a contact follows
-from the half-width expected at its approach; in a tenth of a rung about the boundary of two rungs both are solved and
-share the contact, so its load is continuous with its slope and Newton's method ends. The separation of a flank is
-interpolated between places of a fixed ladder.
+**A load depends on approach, radius and place alone**, never on what was solved before. The grids of a contact follow
+from the half-width expected at its approach (`ltca.contact.grid_ladder`); where two share it its load is continuous
+with its slope, so Newton's method ends. The separation of a flank is interpolated between places of a fixed ladder.
 
 While the same cells touch, pressure is linear in the approach and in the way from one place of that ladder to the
 next, p = δ A⁻¹1 − A⁻¹h, known without another factorisation. A `GridPiece` holds what that takes. It is a value:
@@ -19,40 +18,40 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.generator import SummedProfile, generator_profile
-from ltca.contact.pressure_cells import PatchGrid, PatchSolution, expected_half_width, graded_edges
+from ltca.contact.grid_ladder import (
+    RUNG,
+    SHADES,
+    GridRung,
+    find_cylinder_cells,
+    find_patch_length,
+    find_reach_place,
+    find_share_slopes,
+    find_shares,
+    find_width_place,
+    unit_grid,
+)
+from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Drive, contact_modulus
+from ltca.frozen_arrays import freeze
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 Departure = Callable[[FloatArray], FloatArray]
 
 CELLS = 12
-RUNG = 0.05
-"""Step of the ladder in ln(half-width)."""
-BLEND = 0.05
-"""Part of a rung about each boundary over which the grids on both sides share a contact: they differ by 1e-4 in the
-load, so the share adds 1 % to its slope, and a tenth of all contacts costs two grids."""
-SHADES = 5
-"""Parts of a rung by which the contact cells of cylinders are kept to start from."""
 FIT = 0.08
 """Largest misfit of ln(half-width) before a contact solved once (`solve_fitted`) changes its rung."""
 
-END_GRADING = 2.5
-"""Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
-errs by 1e-4 in the load with 12 cells."""
 END_STRETCH = 0.01
 """Part of the length over which the largest pressure is averaged, see `ltca.contact.end_pressure`."""
 
-_ROOM = 1.6  # an unrelieved end bulges by up to 1.56 of the half-width at mid-width (ltca.contact.pressure_cells)
-_FREE_GRADING = 1.25  # of contacts that end within a profile, where pressure falls to zero by itself
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
@@ -138,40 +137,6 @@ class ContactKinds:
                 cells=cells,
             ),
         )
-
-
-@cache
-def unit_grid(rung: int, reach_rung: int, *, cells: int, symmetric: bool) -> PatchGrid:
-    """Return the grid of unit length on a rung; its influence matrix is kept with it.
-
-    Parameters
-    ----------
-    rung : int
-        ln(half-width/length) in steps of `RUNG`.
-    reach_rung : int
-        How far a profiled contact ends before the body does, ln(body length/patch length) in steps of `RUNG`.
-    cells : int
-        Cells over the half-width and over half the length.
-    symmetric : bool
-        Positive half in x, or both.
-    """
-    half_width = float(np.exp(rung * RUNG))
-    share = float(np.exp(-8.0 * reach_rung * RUNG))
-    grading = _FREE_GRADING + share * (END_GRADING - _FREE_GRADING)
-    count = int(np.ceil(_ROOM * cells))
-    x = half_width / cells * np.arange(count + 1.0)
-    return PatchGrid(
-        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
-        y_edges=graded_edges(1.0, cells, grading),
-        symmetric_x=symmetric,
-    )
-
-
-class GridRung(NamedTuple):
-    """Shape of a grid, see `unit_grid`."""
-
-    rung: int
-    reach_rung: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -271,13 +236,17 @@ def press(kind: ContactKind, separation: Separation, approach: float, start: Seq
     start : sequence of GridPiece
         Pieces of a neighbouring pose: they make it faster and change nothing.
     """
-    shares = _shares(kind, separation.effective_radius, approach)
-    slopes = {} if len(shares) == 1 else _share_slopes(kind, separation.effective_radius, approach)
+    shares = find_shares(kind.length, kind.generator, separation.effective_radius, approach)
+    slopes = (
+        {}
+        if len(shares) == 1
+        else find_share_slopes(kind.length, kind.generator, separation.effective_radius, approach)
+    )
     load = stiffness = 0.0
     pieces = []
     for rung, share in shares.items():
         piece = _settle(kind, rung, separation, approach, start)
-        length = _patch_length(kind, rung)
+        length = find_patch_length(kind.length, rung.reach_rung)
         scale = kind.contact_modulus * length * _grid(kind, rung).images / np.pi
         taken = float(piece.load_taken[: separation.weights.size] @ separation.weights)
         own = scale * length * (approach / length * piece.load_rate - taken)
@@ -293,9 +262,9 @@ def recover_patches(
     """Return the pressures of a contact on each of its grids and the share of each; arguments as for `press`."""
     patches = []
     weights = separation.weights
-    for rung, share in _shares(kind, separation.effective_radius, approach).items():
+    for rung, share in find_shares(kind.length, kind.generator, separation.effective_radius, approach).items():
         piece = _settle(kind, rung, separation, approach, start)
-        closing = approach / _patch_length(kind, rung)
+        closing = approach / find_patch_length(kind.length, rung.reach_rung)
         solved = UnilateralSolution(
             pressure=np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0),
             active=piece.active,
@@ -321,12 +290,12 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
         Separation in mm over the distance along the tangent in mm.
     """
     separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
-    reach = int(np.floor(_reach_place(kind, approach)))
-    rung = GridRung(round(_width_place(kind, reach, effective_radius, approach)), reach)
+    reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
+    rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
     patch, active = None, _expected_cells(kind, rung, effective_radius, approach)
     for _ in range(2):
         if patch is not None:
-            place = float(np.log(patch.half_width / _patch_length(kind, rung))) / RUNG
+            place = float(np.log(patch.half_width / find_patch_length(kind.length, rung.reach_rung))) / RUNG
             if patch.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:
                 break
             rung = GridRung(round(place), reach)
@@ -334,7 +303,7 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
         areas = _scaled_areas(kind, rung)
         solved = solve_unilateral_contact(
             _grid(kind, rung).influence,
-            (approach / _patch_length(kind, rung) - unit) * areas,
+            (approach / find_patch_length(kind.length, rung.reach_rung) - unit) * areas,
             start=active,
             load_direction=areas,
         )
@@ -347,7 +316,7 @@ def _settle(
     kind: ContactKind, rung: GridRung, separation: Separation, approach: float, start: Sequence[GridPiece]
 ) -> GridPiece:
     """The piece of one grid that holds at an approach: one of the start if it does, else solved from it."""
-    weights, closing = separation.weights, approach / _patch_length(kind, rung)
+    weights, closing = separation.weights, approach / find_patch_length(kind.length, rung.reach_rung)
     areas = _scaled_areas(kind, rung)
     active = None
     for piece in start:
@@ -373,72 +342,18 @@ def _settle(
     opening = influence[:, inside] @ found.rate[inside] - np.column_stack([areas, units * areas[:, None]])
     opening[inside] = 0.0
     load = areas @ found.rate
-    return GridPiece(
+    piece = GridPiece(
         grid=rung,
         place=separation.place,
-        active=_read_only(found.active),
-        rate=_read_only(found.rate[:, 0]),
-        opening_rate=_read_only(opening[:, 0]),
-        taken=_read_only(found.rate[:, 1:]),
-        opening_taken=_read_only(opening[:, 1:]),
+        active=found.active,
+        rate=found.rate[:, 0],
+        opening_rate=opening[:, 0],
+        taken=found.rate[:, 1:],
+        opening_taken=opening[:, 1:],
         load_rate=float(load[0]),
-        load_taken=_read_only(load[1:]),
+        load_taken=load[1:],
     )
-
-
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
-    array = np.ascontiguousarray(array)
-    array.flags.writeable = False
-    return array
-
-
-def _smooth_step(part: float) -> float:
-    part = min(max(part, 0.0), 1.0)
-    return part * part * (3.0 - 2.0 * part)
-
-
-def _shares(kind: ContactKind, radius: float, approach: float) -> dict[GridRung, float]:
-    """Grids of a contact and the part of its load that each gives: one, two near a boundary of rungs, four at most."""
-    reach_place = _reach_place(kind, approach)
-    reach = int(np.floor(reach_place))
-    # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one leaves
-    # when the shorter has room enough.
-    over = _smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
-    found: dict[GridRung, float] = {}
-    for number, part in ((reach, over), (reach - 1, 1.0 - over)):
-        if part > 0.0:
-            place = _width_place(kind, number, radius, approach)
-            below = int(np.floor(place))
-            above = _smooth_step((place - below - 0.5) / BLEND + 0.5)
-            if above < 1.0:
-                found[GridRung(below, number)] = part * (1.0 - above)
-            if above > 0.0:
-                found[GridRung(below + 1, number)] = part * above
-    return found
-
-
-def _share_slopes(kind: ContactKind, radius: float, approach: float) -> dict[GridRung, float]:
-    """Derivatives of the shares by the approach, 1/mm: they weigh differences of 1e-4, a difference quotient will do."""
-    step = 1e-6 * approach
-    before, after = (_shares(kind, radius, approach + sign * step) for sign in (-1.0, 1.0))
-    return {rung: (after.get(rung, 0.0) - before.get(rung, 0.0)) / (2.0 * step) for rung in before | after}
-
-
-def _reach_place(kind: ContactKind, approach: float) -> float:
-    """How far a profiled contact ends before the body does, in rungs."""
-    if kind.generator is None:
-        return 0.0
-    return max(0.0, float(np.log(0.5 * kind.length / kind.generator.overlap_half_length(approach))) / RUNG)
-
-
-def _width_place(kind: ContactKind, reach_rung: int, radius: float, approach: float) -> float:
-    """Expected half-width by patch length, in rungs."""
-    length = kind.length * float(np.exp(-reach_rung * RUNG))
-    return float(np.log(expected_half_width(length, radius, approach) / length)) / RUNG
-
-
-def _patch_length(kind: ContactKind, rung: GridRung) -> float:
-    return kind.length * float(np.exp(-rung.reach_rung * RUNG))
+    return freeze(piece)
 
 
 def _grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
@@ -451,7 +366,7 @@ def _scaled_areas(kind: ContactKind, rung: GridRung) -> FloatArray:
 
 def _unit_separations(kind: ContactKind, rung: GridRung, separation: Separation) -> FloatArray:
     """Mean separation of every cell at the places of a separation, by patch length, shape (cells, places)."""
-    grid, length = _grid(kind, rung), _patch_length(kind, rung)
+    grid, length = _grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
     points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
     units = np.empty((*grid.shape, separation.weights.size))
     for number in range(units.shape[2]):
@@ -467,7 +382,7 @@ def _patch_solution(
     kind: ContactKind, rung: GridRung, unit: FloatArray, approach: float, solved: UnilateralSolution
 ) -> PatchSolution:
     """A dimensionless solution in mm and MPa."""
-    shape, length = _grid(kind, rung), _patch_length(kind, rung)
+    shape, length = _grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
     grid = PatchGrid(
         x_edges=shape.x_edges * length,
         y_edges=shape.y_edges * length,
@@ -490,25 +405,7 @@ def _patch_solution(
 def _expected_cells(kind: ContactKind, rung: GridRung, radius: float, approach: float) -> BoolArray:
     """Contact cells to start from when nothing is known: those of the cylinder of the expected half-width."""
     if kind.generator is None:
-        width = round(SHADES * _width_place(kind, rung.reach_rung, radius, approach))
-        return _cylinder_cells(width, rung.rung, kind.cells, kind.symmetric)
+        width = round(SHADES * find_width_place(kind.length, rung.reach_rung, radius, approach))
+        return find_cylinder_cells(width, rung.rung, kind.cells, kind.symmetric)
     grid = _grid(kind, rung)
     return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1])
-
-
-@cache
-def _cylinder_cells(width: int, rung: int, cells: int, symmetric: bool) -> BoolArray:
-    """Contact cells on the grid of a rung of the cylinder whose expected half-width is `width` in parts of a rung."""
-    half_width = float(np.exp(width * RUNG / SHADES))
-    size = half_width  # √(ρδ)
-    for _ in range(10):
-        size *= half_width / expected_half_width(1.0, size, size)
-    grid = unit_grid(rung, 0, cells=cells, symmetric=True)
-    x = grid.x_edges
-    separation = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * size)
-    found = solve_unilateral_contact(
-        grid.influence,
-        ((size - separation)[:, None] * grid.areas).ravel(),
-        start=np.repeat(grid.x_centres < half_width, grid.shape[1]),
-    ).active.reshape(grid.shape)
-    return _read_only((found if symmetric else np.concatenate([found[::-1], found])).ravel())

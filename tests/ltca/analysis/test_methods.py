@@ -60,16 +60,6 @@ def test_direct_agrees_with_tables_in_six_cases(case):
     compare_direct(CASES[case], position_angles(8) + 0.1)
 
 
-def test_direct_does_not_depend_on_its_start():
-    """From first contact as from the tables: grids on neighbouring rungs of the ladder differ by 0.01 % in load."""
-    drive, angle = CASES["CS-4"], np.array([1.3])
-    grids = GridCompliance.of_drive(drive)
-    near = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), angle, drive.wheel_moment())
-    warm = solve_equilibrium(grids, angle, drive.wheel_moment(), near.pose)
-    cold = solve_equilibrium(grids, angle, drive.wheel_moment())
-    assert apart(warm.response, cold.response) < 2e-4
-
-
 @pytest.mark.slow
 def test_grid_halved():
     """Mid pressure moves by less than 0.3 %, load by less than 0.05 % (measured 0.04 %, 0.01 %)."""
@@ -99,8 +89,8 @@ def test_paper_on_grids_agrees_with_direct():
     direct = analyse(drive, angle, engine=HalfSpace(method="direct"))
     theirs = analyse(drive, angle, engine=HalfSpace(method="paper", contacts="grids"))
     assert theirs.engine.contacts == "grids"
-    # Rungs of the ladder may differ, as from different starts.
-    assert apart(direct.full.response, theirs.full.response) < 2e-4
+    # Loads follow from the pose alone; the paper's finite-difference tangents end at the same residual.
+    assert apart(direct.full.response, theirs.full.response) < 1e-7
 
 
 def test_paper_answers_at_the_actual_crank_angle():

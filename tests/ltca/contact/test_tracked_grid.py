@@ -8,17 +8,15 @@ import numpy as np
 import pytest
 
 from ltca.contact.generator import generator_profile
+from ltca.contact.grid_ladder import BLEND, RUNG, unit_grid
 from ltca.contact.pressure_cells import PatchGrid, solve_patch
 from ltca.contact.tracked_grid import (
-    BLEND,
-    RUNG,
     ContactKind,
     ContactKinds,
     Separation,
     press,
     recover_patches,
     solve_fitted,
-    unit_grid,
 )
 from ltca.drive.parts import LengthProfile, Material, Materials
 

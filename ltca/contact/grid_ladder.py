@@ -1,0 +1,164 @@
+"""Ladder of the contact grids: their shapes, and which of them a contact is solved on.
+
+Half-width and reach of a contact are looked up on ladders of 5 %, so one small set of influence matrices serves all
+contacts. The rung follows from the half-width *expected* at the approach, never from what was solved before; about the
+boundary of two rungs both grids share the contact, so that its load is continuous with its slope.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.contact.generator import SummedProfile
+from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
+from ltca.contact.unilateral import solve_unilateral_contact
+from ltca.frozen_arrays import freeze
+
+BoolArray = NDArray[np.bool_]
+
+RUNG = 0.05
+"""Step of the ladder in ln(half-width)."""
+BLEND = 0.05
+"""Part of a rung about each boundary over which the grids on both sides share a contact: they differ by 1e-4 in the
+load, so the share adds 1 % to its slope, and one contact in twenty costs two grids."""
+SHADES = 5
+"""Parts of a rung by which the contact cells of cylinders are kept to start from."""
+
+END_GRADING = 2.5
+"""Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
+errs by 1e-4 in the load with 12 cells."""
+_ROOM = 1.6  # an unrelieved end bulges by up to 1.56 of the half-width at mid-width (ltca.contact.pressure_cells)
+_FREE_GRADING = 1.25  # of contacts that end within a profile, where pressure falls to zero by itself
+
+
+class GridRung(NamedTuple):
+    """Shape of a grid, see `unit_grid`."""
+
+    rung: int
+    reach_rung: int
+
+
+@cache
+def unit_grid(rung: int, reach_rung: int, *, cells: int, symmetric: bool) -> PatchGrid:
+    """Return the grid of unit length on a rung; its influence matrix is kept with it.
+
+    Parameters
+    ----------
+    rung : int
+        ln(half-width/length) in steps of `RUNG`.
+    reach_rung : int
+        How far a profiled contact ends before the body does, ln(body length/patch length) in steps of `RUNG`.
+    cells : int
+        Cells over the half-width and over half the length.
+    symmetric : bool
+        Positive half in x, or both.
+    """
+    half_width = float(np.exp(rung * RUNG))
+    share = float(np.exp(-8.0 * reach_rung * RUNG))
+    grading = _FREE_GRADING + share * (END_GRADING - _FREE_GRADING)
+    count = int(np.ceil(_ROOM * cells))
+    x = half_width / cells * np.arange(count + 1.0)
+    return PatchGrid(
+        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
+        y_edges=graded_edges(1.0, cells, grading),
+        symmetric_x=symmetric,
+    )
+
+
+def _smooth_step(part: float) -> float:
+    part = min(max(part, 0.0), 1.0)
+    return part * part * (3.0 - 2.0 * part)
+
+
+def find_shares(
+    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
+) -> dict[GridRung, float]:
+    """Return the grids of a contact and the part of its load that each gives.
+
+    Mostly there is one; two near a boundary of rungs, four at most. Shares and their slopes are continuous.
+
+    Parameters
+    ----------
+    length : float
+        Length of the contact line, mm.
+    generator : SummedProfile or None
+        Crown and relief along it.
+    effective_radius, approach : float
+        ρ and δ, mm.
+    """
+    reach_place = find_reach_place(length, generator, approach)
+    reach = int(np.floor(reach_place))
+    # A patch a little too long only has idle cells, one too short would cut the contact off: the longer one leaves
+    # when the shorter has room enough.
+    over = _smooth_step((reach_place - reach) / BLEND) if reach > 0 else 1.0
+    found: dict[GridRung, float] = {}
+    for number, part in ((reach, over), (reach - 1, 1.0 - over)):
+        if part > 0.0:
+            place = find_width_place(length, number, effective_radius, approach)
+            below = int(np.floor(place))
+            above = _smooth_step((place - below - 0.5) / BLEND + 0.5)
+            if above < 1.0:
+                found[GridRung(below, number)] = part * (1.0 - above)
+            if above > 0.0:
+                found[GridRung(below + 1, number)] = part * above
+    return found
+
+
+def find_share_slopes(
+    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
+) -> dict[GridRung, float]:
+    """Return the derivatives of the shares by the approach, 1/mm; arguments as for `find_shares`.
+
+    They weigh differences of 1e-4, so a difference quotient will do.
+    """
+    step = 1e-6 * approach
+    before, after = (find_shares(length, generator, effective_radius, approach + sign * step) for sign in (-1.0, 1.0))
+    return {rung: (after.get(rung, 0.0) - before.get(rung, 0.0)) / (2.0 * step) for rung in before | after}
+
+
+def find_reach_place(length: float, generator: SummedProfile | None, approach: float) -> float:
+    """Return how far a contact ends before the body does, in rungs: ln(body length/overlap) by `RUNG`."""
+    if generator is None:
+        return 0.0
+    return max(0.0, float(np.log(0.5 * length / generator.overlap_half_length(approach))) / RUNG)
+
+
+def find_width_place(length: float, reach_rung: int, effective_radius: float, approach: float) -> float:
+    """Return the expected half-width by patch length, its logarithm in rungs."""
+    patch = find_patch_length(length, reach_rung)
+    return float(np.log(expected_half_width(patch, effective_radius, approach) / patch)) / RUNG
+
+
+def find_patch_length(length: float, reach_rung: int) -> float:
+    """Return the length of the patch, mm, on a rung of its reach."""
+    return length * float(np.exp(-reach_rung * RUNG))
+
+
+@cache
+def find_cylinder_cells(width: int, rung: int, cells: int, symmetric: bool) -> BoolArray:
+    """Return the contact cells of a cylinder, to start from.
+
+    Parameters
+    ----------
+    width : int
+        ln(expected half-width/length) of the cylinder in parts (`SHADES`) of a rung.
+    rung, cells, symmetric :
+        The grid, see `unit_grid`.
+    """
+    half_width = float(np.exp(width * RUNG / SHADES))
+    size = half_width  # √(ρδ)
+    for _ in range(10):
+        size *= half_width / expected_half_width(1.0, size, size)
+    grid = unit_grid(rung, 0, cells=cells, symmetric=True)
+    x = grid.x_edges
+    separation = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * size)
+    found = solve_unilateral_contact(
+        grid.influence,
+        ((size - separation)[:, None] * grid.areas).ravel(),
+        start=np.repeat(grid.x_centres < half_width, grid.shape[1]),
+    ).active.reshape(grid.shape)
+    return freeze((found if symmetric else np.concatenate([found[::-1], found])).ravel())
