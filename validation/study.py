@@ -18,6 +18,7 @@ from validation.compare.derived_coefficients import coefficients_of, nominal_coe
 from validation.compare.finite_element_positions import FullPosition, Settings, solve_position
 from validation.levels.closed_forms import check_closed_forms
 from validation.levels.coefficients import check_file, halved_mesh_row
+from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.flexible_disc import FlexibilityEffect, flexibility_rows, full_solution_rows, study_case
 from validation.levels.model_laws import compare_models
 from validation.levels.other_codes import asked_codes
@@ -195,7 +196,8 @@ def _model_rows(
 ) -> list[Row]:
     """Return the rows of level 5."""
     first, last = next(iter(plan.drives)), list(plan.drives)[-1]
-    rows = [row for items in compared.values() for item in items for row in compare_position_rows(item)]
+    positions = [item for items in compared.values() for item in items]
+    rows = [row for item in positions for row in (*compare_position_rows(item), *disc_stress_rows(item))]
     _, stress = coefficients_of(plan.drives[first], first, folder, plane="stress", progress=say)
     rows += compare_models(plan.drives[first], first, np.array(plan.crank_angles), coefficients[first], stress)
     shared = nominal_coefficients_of(plan.drives[last], last, folder, progress=say)

@@ -7,10 +7,12 @@ comparison                One position of a drive as any model answers it, and h
                           are defined here
 derived_coefficients      Coefficients of the discs that a validation needs, each derived once and kept as a file of
                           its own
-finite_element_positions  Full finite-element solutions of chosen positions, each kept as a file of its own as soon
-                          as it is there
 model_positions           The LTCA's answer to the same positions, with each compliance model, in the form of
                           `validation.compare.comparison`
+disc_stresses             Stress in the disc as full finite elements and as each compliance model have it, and how
+                          they differ
+finite_element_positions  Full finite-element solutions of chosen positions, each kept as a file of its own as soon
+                          as it is there
 compared_positions        Every chosen position answered by full finite elements and by each compliance model, and
                           their differences
 ========================  ============================================================

@@ -12,6 +12,7 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.geometry.boundary_stations import Boundary
 from validation.compare.comparison import Kind, PositionAnswer, PositionDifference, compare_positions
+from validation.compare.disc_stresses import DiscStressDifference, compare_stresses, stresses_of
 from validation.compare.finite_element_positions import FullPosition
 from validation.compare.model_positions import MODELS, answers_of, engine_of
 
@@ -35,6 +36,8 @@ class ComparedPosition:
     station_distance : dict of str to array
         By kind, how far each contact on the disc lies from the nearest station of the coefficients, in spacings
         (0 on a station, 0.5 midway).
+    stress : dict of str to DiscStressDifference
+        By compliance model that knows the stress in the disc, model less full solution.
     """
 
     drive: Drive
@@ -42,6 +45,7 @@ class ComparedPosition:
     answers: dict[str, PositionAnswer]
     differences: dict[str, PositionDifference]
     station_distance: dict[Kind, FloatArray]
+    stress: dict[str, DiscStressDifference]
 
 
 def compare_case(
@@ -66,6 +70,7 @@ def compare_case(
     angles = np.array([position.crank_angle for position in positions])
     analyses = {model: analyse(drive, angles, engine=engine_of(model, coefficients)) for model in MODELS}
     answers = {model: answers_of(analysis) for model, analysis in analyses.items()}
+    stresses = {model: found for model, analysis in analyses.items() if (found := stresses_of(analysis))}
     distances = _station_distances(analyses["fe"], coefficients)
     return [
         ComparedPosition(
@@ -74,6 +79,7 @@ def compare_case(
             answers={model: found[row] for model, found in answers.items()},
             differences={model: compare_positions(found[row], full.answer) for model, found in answers.items()},
             station_distance={kind: values[row] for kind, values in distances.items()},
+            stress={model: compare_stresses(found[row], full.stress) for model, found in stresses.items()},
         )
         for row, full in enumerate(positions)
     ]

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from fem.body.elasticity import PlaneState
+from fem.drive.disc_stress import recover_disc_stress
 from fem.drive.fields import recover_fields
 from fem.drive.solution import FullSolution, solve_drive
 from fem.drive.solution_files import summarise
@@ -25,8 +26,9 @@ from ltca.drive.parts import Drive
 from ltca.output.files import write_json
 from ltca.output.provenance import code_hash, code_version
 from validation.compare.comparison import KindAnswer, PositionAnswer
+from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content, stress_content
 
-FORMAT = 2
+FORMAT = 3
 PICTURES = ("von_mises", "deformed", "contacts")
 PICTURE_SIDE = 1200
 
@@ -59,6 +61,8 @@ class FullPosition:
         rad.
     answer : PositionAnswer
         Loads, pressures, pose.
+    stress : DiscStressAnswer
+        Stress in the disc.
     residual : float
         Largest unbalanced force, N.
     unknowns : int
@@ -72,6 +76,7 @@ class FullPosition:
     case: str
     crank_angle: float
     answer: PositionAnswer
+    stress: DiscStressAnswer
     residual: float
     unknowns: int
     seconds: float
@@ -125,12 +130,14 @@ def solve_position(
     images = tuple(path.with_suffix("") / f"{name}.png" for name in PICTURES)
     content = _read(path, key)
     if content is None or (pictures and not all(image.exists() for image in images)):
-        solution = solve_drive(drive, crank_angle, scale=settings.size, state=settings.plane, progress=progress)
+        solution = solve_drive(
+            drive, crank_angle, scale=settings.size, state=settings.plane, fine_walls=True, progress=progress
+        )
         if pictures:
             _draw(solution, settings, title, path.with_suffix(""))
         if content is None:
-            summary = summarise(solution)
-            content = {"key": key, "checksum": _checksum(summary), "summary": summary}
+            answer = {"summary": summarise(solution), "stress": stress_content(recover_disc_stress(solution))}
+            content = {"key": key, "checksum": _checksum(answer), **answer}
             write_json(path, content)
             content = _read(path, key)
     assert content is not None
@@ -139,6 +146,7 @@ def solve_position(
         case=case,
         crank_angle=crank_angle,
         answer=answer_of_summary(summary),
+        stress=answer_of_content(content["stress"]),
         residual=float(summary["equilibrium_residual_N"]),
         unknowns=int(summary["dof"]),
         seconds=float(summary["seconds"]),
@@ -172,11 +180,12 @@ def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
         return None
     if not isinstance(content, dict) or content.get("key") != key:
         return None
-    return content if content.get("checksum") == _checksum(content.get("summary")) else None
+    answer = {name: content.get(name) for name in ("summary", "stress")}
+    return content if content.get("checksum") == _checksum(answer) else None
 
 
-def _checksum(summary: object) -> str:
-    return hashlib.sha256(json.dumps(summary, sort_keys=True).encode()).hexdigest()
+def _checksum(answer: object) -> str:
+    return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()
 
 
 def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path) -> None:

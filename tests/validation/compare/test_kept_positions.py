@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import validation.compare.finite_element_positions as kept
+from fem.body.wall_stress import WallStress
+from fem.drive.disc_stress import DiscStress
 from ltca.errors import ConvergenceError
 from validation.compare.finite_element_positions import Settings, solve_position
 
@@ -30,6 +32,16 @@ def summary_of(drive, angle):
     return content
 
 
+def stress_of(solution):
+    wall = WallStress(
+        name="flank", parameter=np.array([0.0, 1.0]), points=np.array([1.0, 1j]), stress=np.array([3.0, 0.1])
+    )
+    return DiscStress(
+        walls=(wall,), clear=(np.array([True, False]),), root_stress=np.array([3.0, np.nan]), bore_stress=1.5,
+        hole_stress=np.ones(8), pin_shear=np.arange(14.0), roller_shear=np.zeros(11), hole_shear=np.zeros(8),
+    )  # fmt: skip
+
+
 @pytest.fixture
 def solved(monkeypatch):
     """Replace the solver by one that counts its calls."""
@@ -41,6 +53,7 @@ def solved(monkeypatch):
 
     monkeypatch.setattr(kept, "solve_drive", solve)
     monkeypatch.setattr(kept, "summarise", lambda solution: summary_of(*solution))
+    monkeypatch.setattr(kept, "recover_disc_stress", stress_of)
     return calls
 
 
@@ -56,6 +69,11 @@ def test_a_finished_position_is_not_solved_again(solved, paper_cases, tmp_path):
     along = complex(-0.01, -0.02) * np.exp(-1j * ANGLE)
     assert first.answer.disc_radial == pytest.approx(along.real)
     assert first.answer.disc_tangential == pytest.approx(along.imag)
+    np.testing.assert_array_equal(again.stress.stress[0], [3.0, 0.1])
+    np.testing.assert_array_equal(again.stress.clear[0], [True, False])
+    # What is no number stays none through the file, where it is null.
+    np.testing.assert_array_equal(again.stress.largest["flank"], [3.0, np.nan])
+    np.testing.assert_array_equal(again.stress.shear["pin"], np.arange(14.0))
 
 
 def test_another_drive_angle_or_setting_is_another_file(solved, paper_cases, tmp_path, vary):

@@ -1,0 +1,71 @@
+"""Level 5, stress in the disc: the LTCA's, from its loads and the stress coefficients, against the full solution's own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from validation.compare.compared_positions import ComparedPosition
+from validation.compare.comparison import contact_name
+from validation.compare.disc_stresses import REGIONS, ComparedStress, Region
+from validation.levels.positions import FULL
+from validation.rows import Row
+
+WALL_LIMIT, SHEAR_LIMIT = 2e-2, 3e-2
+
+REASONS = {
+    "wall": "of the largest stress along a wall; meshes of their own, contacts farther than four half-widths, nodal "
+    "stress linear between nodes",
+    "shear": "Hertz' stresses of half-planes on the disc's own: a hole 60 half-widths wide bends by 1 %",
+}
+CAUSE = "loads of half-spaces of finite length, full FE is plane strain: informs only"
+NAMES: dict[Region, str] = {"flank": "the flank", "bore": "the bore", "holes": "the hole walls"}
+PARTS: dict[Region, str] = {"flank": "lobe roots", "bore": "bore", "holes": "holes"}
+
+
+def disc_stress_rows(compared: ComparedPosition) -> list[Row]:
+    """Return the rows of one position, all models that know the stress in the disc.
+
+    Parameters
+    ----------
+    compared : ComparedPosition
+        The position.
+    """
+    rows = []
+    for model, difference in compared.stress.items():
+        rows += [
+            _row(compared, model, f"stress along {NAMES[region]}, worst station", difference.stations[region], "wall")
+            for region in REGIONS
+        ]
+        rows += [
+            _row(compared, model, f"largest tensile stress, {PARTS[region]}, worst", difference.largest[region], "wall")
+            for region in REGIONS
+        ]
+        for kind, contacts in difference.shear.items():
+            rows += [
+                _row(compared, model, "largest shear stress in the disc below a contact", found, "shear",
+                     contact=contact_name(kind, number))
+                for number, found in contacts.items()
+            ]  # fmt: skip
+    return rows
+
+
+def _row(
+    compared: ComparedPosition, model: str, quantity: str, found: ComparedStress, reason: str, **place: Any
+) -> Row:
+    bounded = model == "fe"
+    limit = WALL_LIMIT if reason == "wall" else SHEAR_LIMIT
+    return Row(
+        level=5,
+        quantity=quantity,
+        value=found.value,
+        reference=found.reference,
+        unit="MPa",
+        difference=found.difference,
+        limit=limit if bounded else None,
+        reason=REASONS[reason] if bounded else CAUSE,
+        case=compared.full.case,
+        crank_angle=compared.full.crank_angle,
+        model=model,
+        against=FULL,
+        **({"contact": found.place} | place),
+    )
