@@ -151,7 +151,7 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders, known_orders
     from ltca.errors import DriveError
-    from ltca.geometry.first_contact import WHEEL_ANGLE
+    from ltca.geometry.pairs import WHEEL_ANGLE
 
     engine = engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
