@@ -14,11 +14,11 @@ from math import ceil, gcd
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE, disc_displacement
 from ltca.geometry.placement import Placement, position_angles
 
 FloatArray = NDArray[np.float64]
@@ -146,7 +146,7 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray) -> str | None:
     enough = next(count for count in range(2 * RESOLVED, 2 * RESOLVED + teeth) if gcd(count, teeth) == 1)
     phases = f"{found.distinct_mesh_phases} phase{'s' if found.distinct_mesh_phases > 1 else ''}"
     return (
-        f"{found.positions} positions see {phases} of the mesh of {teeth} teeth: means and extremes over them say little of "
+        f"{found.positions} positions see {phases} of the mesh of {teeth} teeth: values over them alone say little of "
         f"the turn; take at least {enough} over it, a number that shares no factor with {teeth}"
     )
 
@@ -170,21 +170,20 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
     Notes
     -----
     Rollers come back to their places after many turns only, so a turn ends elsewhere than it began: both ends belong
-    to it.
+    to it. On grids, a hundred times as dear, the places of the extremes are those found on tables, and only they are
+    solved.
     """
     drive, given = analysis.drive, analysis.full.crank_angle
     if not is_full_turn(given):
         raise ValueError("extremes are refined over full turns, 2πk/N with more than one position")
-    passages = passages_per_turn(drive)
-    full = _Stage.of(analysis.full, _full_signals(analysis.full, analysis.pressures), passages)
-    light = _Stage.of(analysis.light, _wheel_signals(analysis.light), passages)
-    wanted = scan_angles(given.size, passages)
-    wanted_light = wanted
-    for _ in range(ROUNDS + 1):
-        _solve(analysis, full, light, wanted, wanted_light)
-        wanted, wanted_light = full.search.promising(), light.search.promising()
-        if wanted.size + wanted_light.size == 0:
-            break
+    if analysis.engine.options["contacts"] == "grids":
+        near, near_light = _searched(analyse(drive, given, analysis.torque))
+        full, light = _stages(analysis)
+        places, light_places = near.search.places(), near_light.search.places()
+        start = np.concatenate([near.start(places), near_light.start(light_places)])
+        _solve(analysis, full, light, places, light_places, start)
+    else:
+        full, light = _searched(analysis)
     found, found_light = full.search.largest(), light.search.largest()
     return Extremes(
         ptp_transmission_error=found["wheel_angle"] + found["wheel_angle_negative"],
@@ -201,6 +200,27 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
         added_positions=full.search.angle.size - given.size,
         added_light_positions=light.search.angle.size - given.size,
     )
+
+
+def _stages(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
+    passages = passages_per_turn(analysis.drive)
+    return (
+        _Stage.of(analysis.full, _full_signals(analysis.full, analysis.pressures), passages),
+        _Stage.of(analysis.light, _wheel_signals(analysis.light), passages),
+    )
+
+
+def _searched(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
+    """Fill the turn up and search it, both torques together."""
+    full, light = _stages(analysis)
+    places = light_places = scan_angles(analysis.full.crank_angle.size, passages_per_turn(analysis.drive))
+    for _ in range(ROUNDS + 1):
+        start = np.concatenate([full.start(places), light.start(light_places)])
+        _solve(analysis, full, light, places, light_places, start)
+        places, light_places = full.search.promising(), light.search.promising()
+        if places.size + light_places.size == 0:
+            break
+    return full, light
 
 
 def passages_per_turn(drive: Drive) -> int:
@@ -256,6 +276,11 @@ class PeakSearch:
     def largest(self) -> dict[str, float]:
         """Return the largest value of every group."""
         return {name: float(np.max(self.values[:, columns])) for name, (columns, _) in self.groups.items()}
+
+    def places(self) -> FloatArray:
+        """Return where the largest values of the groups are, ascending, rad."""
+        rows = [np.argmax(np.max(self.values[:, columns], axis=1)) for columns, _ in self.groups.values()]
+        return np.asarray(self.angle[np.unique(rows)])
 
     def promising(self) -> FloatArray:
         """Return the places where an extreme may be larger than every sample by more than `GAIN`, ascending, rad."""
@@ -342,15 +367,21 @@ class _Stage:
 
 
 def _turned(pose: FloatArray, angle: FloatArray) -> FloatArray:
-    place = (pose[:, 0] + 1j * pose[:, 1]) * np.exp(1j * angle)
-    return np.column_stack([place.real, place.imag, pose[:, 2:]])
+    place = disc_displacement(pose) * np.exp(1j * angle)
+    return np.column_stack([place.real, place.imag, pose[:, ROTATIONS]])
 
 
-def _solve(analysis: LoadedAnalysis, full: _Stage, light: _Stage, angles: FloatArray, light_angles: FloatArray) -> None:
+def _solve(
+    analysis: LoadedAnalysis,
+    full: _Stage,
+    light: _Stage,
+    angles: FloatArray,
+    light_angles: FloatArray,
+    start: FloatArray,
+) -> None:
     """Balance new positions of both torques in one batch and give them to their stages."""
     joined = np.concatenate([angles, light_angles])
     moment = np.repeat([full.moment, light.moment], [angles.size, light_angles.size])
-    start = np.concatenate([full.start(angles), light.start(light_angles)])
     found = solve_equilibrium(analysis.model, joined, moment, start)
     if angles.size:
         signals = _full_signals(found, analysis.model.pressures(found.response))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.geometry.first_contact import backlash
@@ -24,8 +25,24 @@ OF_RANGES = (
 """What needs more than one position."""
 
 
+REFINED = {
+    "ptp_tangential_bearing_load_N": ("ptp_tangential_bearing_load", 1.0),
+    "max_bearing_load_N": ("max_bearing_load", 1.0),
+    "max_pin_load_N": ("max_pin_load", 1.0),
+    "max_pin_pressure_mid_MPa": ("max_pin_pressure_mid", 1.0),
+    "max_pin_pressure_max_MPa": ("max_pin_pressure_max", 1.0),
+    "max_roller_load_N": ("max_roller_load", 1.0),
+    "max_roller_pressure_mid_MPa": ("max_roller_pressure_mid", 1.0),
+    "max_roller_pressure_max_MPa": ("max_roller_pressure_max", 1.0),
+    "max_pin_shaft_load_N": ("max_pin_shaft_load", 1.0),
+    "ptp_transmission_error_arcsec": ("ptp_transmission_error", ARCSEC),
+    "ptp_transmission_error_light_arcsec": ("ptp_transmission_error_light", ARCSEC),
+}
+"""Extremes that are refined over full turns, under ``refined_`` and these names: where they stand, and their unit."""
+
+
 def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
-    """Return the scalars of one case; means and peaks run over its positions.
+    """Return the scalars of one case; means and peaks run over its positions, refined extremes over the whole turn.
 
     Parameters
     ----------
@@ -35,7 +52,8 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     Returns
     -------
     dict of str to (float or None)
-        The keys of ``summary.json``, their units in their names; None where the engine cannot say a value.
+        The keys of ``summary.json``, their units in their names; None where the engine or the positions cannot say a
+        value, as positions that are no full turn say nothing of it.
     """
     geometry = ContactGeometry.of_drive(analysis.drive)
     full, contacts = analysis.full, analysis.full.response
@@ -75,6 +93,23 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         "ptp_transmission_error_light_arcsec": np.ptp(analysis.light.pose[:, WHEEL_ANGLE]) * ARCSEC,
         "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
     }
+    values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _refined(analysis: LoadedAnalysis) -> dict[str, float]:
+    found = refine_extremes(analysis) if is_full_turn(analysis.full.crank_angle) else None
+    return {
+        f"refined_{key}": np.nan if found is None else factor * getattr(found, name)
+        for key, (name, factor) in REFINED.items()
+    }
+
+
+def _sampling(found: Sampling) -> dict[str, float]:
+    return {
+        "positions": found.positions,
+        "positions_per_mesh_period": found.positions_per_mesh_period,
+        "distinct_mesh_phases": found.distinct_mesh_phases,
+    }

@@ -98,6 +98,7 @@ def execute(arguments: argparse.Namespace) -> int:
             fields.to_netcdf(part, engine="h5netcdf", encoding=packed)
         files.append("pressure.nc")
     print(_table(summaries))
+    print(_sampling(cases, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
         _draw(dataset, fields, cases, out / "figures")
@@ -231,6 +232,23 @@ def _table(summaries: dict[str, dict[str, float | None]]) -> str:
     lines = [" " * 40 + "".join(f"{name:>{width}}" for name in summaries)]
     for title, key, unit, form in ROWS:
         head = f"{title}{f' [{unit}]' if unit else ''}"
-        values = [case[key] for case in summaries.values()]
+        values = [_refined(case, key) for case in summaries.values()]
         lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
     return "\n".join(lines)
+
+
+def _refined(summary: dict[str, float | None], key: str) -> float | None:
+    """The value over the whole turn where there is one, over the positions otherwise."""
+    refined = summary.get(f"refined_{key}")
+    return summary[key] if refined is None else refined
+
+
+def _sampling(cases: dict[str, Drive], angles: FloatArray) -> str:
+    """What the values stand for: which positions, and whether they see the mesh."""
+    from ltca.analysis.extremes import is_full_turn, sampling_warning
+
+    many = f"{angles.size} positions" if angles.size > 1 else "1 position"
+    whole = is_full_turn(angles)
+    lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
+    warnings = {sampling_warning(drive, angles) for drive in cases.values()} - {None}
+    return "\n".join([*lines, *(f"warning: {text}" for text in sorted(map(str, warnings)))])

@@ -30,6 +30,11 @@ SINGLE_POSITIONS = 256
 """Positions of a batch whose drives are solved one by one, some ten times as dear each."""
 
 
+def positions_together(engine: Engine) -> int:
+    """Return how many positions make a batch on an engine."""
+    return BATCH_POSITIONS if engine.batches else SINGLE_POSITIONS
+
+
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A study, the same whoever computes it.
@@ -54,6 +59,8 @@ class Study:
         What was asked for, as text: the study file or the options of the command.
     drive_file : str
         Text of the drive file; empty for the first case written as one.
+    batch_positions : int
+        Positions solved together, see `positions_together`.
     """
 
     name: str
@@ -65,6 +72,7 @@ class Study:
     engine: Engine = field(default_factory=HalfSpace)
     definition: str = ""
     drive_file: str = ""
+    batch_positions: int = BATCH_POSITIONS
 
     @property
     def settings(self) -> BatchSettings:
@@ -76,7 +84,7 @@ class Study:
     @property
     def batch_samples(self) -> int:
         """Samples of a batch; batches are cut the same way whoever solves them."""
-        return max(1, (BATCH_POSITIONS if self.engine.batches else SINGLE_POSITIONS) // self.positions)
+        return max(1, self.batch_positions // self.positions)
 
     @property
     def batches(self) -> int:

@@ -40,7 +40,7 @@ from ltca.errors import DriveError
 from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor, check_samples
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
-from ltca.studies.study import Study
+from ltca.studies.study import Study, positions_together
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
 KEYS = {"drive", "case", "positions", "quantities", "design", "factors"}
@@ -118,6 +118,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     reader.check()
     assert design is not None
     varied = "case" in design.names
+    used: Engine = HalfSpace() if engine is None else engine
     cases = tuple((file.cases if varied else {next(iter(selected)): base}).items())
     return Study(
         name=file.name if varied else f"{file.name} {cases[0][0]}",
@@ -126,7 +127,8 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         positions=positions,
         quantities=check_quantities(names),
         near_nominal=False,
-        engine=HalfSpace() if engine is None else engine,
+        engine=used,
+        batch_positions=positions_together(used),
         definition=json.dumps(table, ensure_ascii=False),
         drive_file=file.text,
     )

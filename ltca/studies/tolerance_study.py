@@ -9,7 +9,7 @@ from ltca.drive.tolerances import Factors
 from ltca.reading.drive_file import DriveFile
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
-from ltca.studies.study import Study
+from ltca.studies.study import Study, positions_together
 
 
 def tolerance_study(
@@ -51,6 +51,7 @@ def tolerance_study(
     """
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
+    used: Engine = HalfSpace() if engine is None else engine
     kept = DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities)
     asked = {"case": name, "samples": samples, "positions": positions, "seed": seed, "design": sequence}
     return Study(
@@ -62,7 +63,8 @@ def tolerance_study(
         positions=positions,
         quantities=kept,
         near_nominal=True,
-        engine=HalfSpace() if engine is None else engine,
+        engine=used,
+        batch_positions=positions_together(used),
         definition=json.dumps({"study": "tolerances", **asked, "quantities": kept}, ensure_ascii=False),
         drive_file=file.text,
     )

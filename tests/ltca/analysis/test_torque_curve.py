@@ -7,11 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import Hybrid
 from ltca.analysis.torque_curve import LOST_MOTION, SMALLEST, STIFF_FROM, torque_curve
+from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 from ltca.geometry.play import rigid_play
+from ltca.reading.changes import with_fields
 
 ANGLES = np.array([0.1, 0.35])
 
@@ -84,6 +87,38 @@ def test_figures_are_those_of_single_torques(paper_cases):
     np.testing.assert_allclose(found.lost_motion, wheel(0.03) - wheel(-0.03), rtol=1e-8)
     clockwise, ccw = 0.5 * 377_300.0 / (wheel(-0.5) - wheel(-1.0)), 0.5 * 377_300.0 / (wheel(1.0) - wheel(0.5))
     np.testing.assert_allclose(found.stiffness, np.stack([clockwise, ccw], axis=1), rtol=1e-7)
+
+
+def test_stiffness_is_that_of_the_whole_drive(paper_cases):
+    """Each of two discs carries half: dT/dφ of the output is that of one disc twice, by two separate balances.
+
+    At twice the torque each disc does what one disc alone did: the same wind-up, twice the stiffness, play unchanged.
+    """
+    one = paper_cases["CS-3"]
+    two = with_fields(one, {"disc.number_of_discs": 2})
+    assert two.disc.torque_share == 0.5
+    found = torque_curve(two, ANGLES, points=2)
+    model = HalfSpaceCompliance.of_drive(one)
+    half, full = (solve_equilibrium(model, ANGLES, 0.5 * part * 377_300.0).pose[:, WHEEL_ANGLE] for part in (0.5, 1.0))
+    # balanced to 1e-9 of the load over the stiffness, 1e-12 rad of 1e-4 rad
+    np.testing.assert_allclose(found.stiffness[:, 1], 0.5 * 377_300.0 / (full - half), rtol=1e-7)
+    assert found.torque[-1] == pytest.approx(377_300.0)
+    heavy = torque_curve(with_fields(two, {"load.torque": 754_600.0}), ANGLES, points=2)
+    alone = torque_curve(one, ANGLES, points=2)
+    np.testing.assert_allclose(heavy.wheel_angle, alone.wheel_angle, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(heavy.stiffness, 2.0 * alone.stiffness, rtol=1e-7)
+    np.testing.assert_allclose(heavy.torque, 2.0 * alone.torque, rtol=1e-14)
+
+
+def test_compliance_is_passed_on(paper_cases):
+    """Hybrid without coupling is the half-space; bodies that yield make the drive softer."""
+    drive = paper_cases["CS-3"]
+    plain = torque_curve(drive, ANGLES[:1], points=2)
+    nothing = without_coupling(drive)
+    alone = torque_curve(drive, ANGLES[:1], points=2, engine=Hybrid(coefficients=nothing, hole_near_field=False))
+    np.testing.assert_allclose(alone.wheel_angle, plain.wheel_angle, rtol=0.0, atol=1e-11)
+    walls = torque_curve(drive, ANGLES[:1], points=2, engine=Hybrid(coefficients=nothing))
+    assert np.all(walls.stiffness < plain.stiffness)
 
 
 def test_backlash_is_the_play_of_rigid_parts(paper_cases):

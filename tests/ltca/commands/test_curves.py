@@ -10,9 +10,10 @@ import pytest
 
 import ltca.commands.curves as curves
 import ltca.figures.curve_figures as curve_figures
-from ltca.analysis import loaded_analysis
+from ltca.analysis import engines, loaded_analysis, transmission_error_orders as orders
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
+from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 
@@ -161,3 +162,89 @@ def test_life_is_printed_as_it_is_kept(told):
     assert kept["million_turns"] == pytest.approx(ratio ** (10.0 / 3.0), rel=1e-9)
     assert kept["hours"] == pytest.approx(kept["million_turns"] * 1e6 / 1500.0 / 60.0, rel=1e-12)
     assert f"{kept['hours']:.0f} h at 1500 turns a minute" in text
+
+
+def coarse_curves(monkeypatch, out, *words):
+    """A run with one angle, 44 positions and the first orders only, without figures; return curves.json."""
+    monkeypatch.setattr(curves, "ANGLES", 1)
+    monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
+    monkeypatch.setattr(
+        orders, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
+    )
+    assert main(["curves", "paper", "--turns", "1", "--no-figures", "--out", str(out), *words]) == 0
+    return json.loads((out / "curves.json").read_text(encoding="utf-8"))
+
+
+def test_all_cases_are_there(monkeypatch, tmp_path, capsys, paper_cases):
+    """All but the last case given were dropped."""
+    kept = coarse_curves(monkeypatch, tmp_path / "all")
+    assert list(kept["cases"]) == list(paper_cases)
+    printed = capsys.readouterr().out
+    safeties = re.findall(r"safety ([\d.]+) against", printed)
+    for (name, case), safety in zip(kept["cases"].items(), safeties, strict=True):
+        assert f"paper {name}, half-space: torque curve" in printed
+        assert case["drive"] == f"paper {name}"
+        analysis = analyse(paper_cases[name], 2.0 * np.pi * np.arange(44) / 44)
+        assert case["pressure_safety"]["largest_MPa"] == pytest.approx(analysis.pressures.pins.mid.max(), rel=1e-9)
+        assert safety == f"{case['pressure_safety']['safety']:.3f}"
+    # one alone stands as it did, and says the same
+    alone = coarse_curves(monkeypatch, tmp_path / "one", "--case", "CS-4")
+    assert alone == kept["cases"]["CS-4"]
+    two = coarse_curves(monkeypatch, tmp_path / "two", "--case", "CS-4", "--case", "CS-2")
+    assert two["cases"] == {name: kept["cases"][name] for name in ("CS-4", "CS-2")}
+
+
+def test_figures_of_several_cases_have_their_names(monkeypatch, tmp_path):
+    stems = []
+    monkeypatch.setattr(curve_figures, "_save", lambda figure, stem: stems.append(stem.name) or stem)
+    monkeypatch.setattr(curves, "ANGLES", 1)
+    monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
+    monkeypatch.setattr(
+        orders, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
+    )
+    words = ["curves", "paper", "--turns", "1", "--out", str(tmp_path), "--case", "CS-1"]
+    assert main([*words, "--case", "CS-2"]) == 0
+    assert stems == [
+        f"{name}_{case}"
+        for case in ("CS-1", "CS-2")
+        for name in ("torque_curve", "transmission_error_orders", "flank_pressure")
+    ]
+
+
+def test_compliance_is_passed_on(monkeypatch, tmp_path):
+    """It was half-space without a word. Without coupling and hole walls `hybrid` is the half-space, in everything."""
+    plain = coarse_curves(monkeypatch, tmp_path / "plain", "--case", CASE)
+    asked = []
+
+    def nothing(drive, *given, **options):
+        asked.append(drive)
+        return without_coupling(drive)
+
+    monkeypatch.setattr(engines, "find_coefficients", nothing)
+    words = ["--case", CASE, "--compliance", "hybrid"]
+    hybrid = coarse_curves(monkeypatch, tmp_path / "hybrid", *words, "--no-hole-near-field")
+    assert len(asked) == 1
+    assert (hybrid["compliance"], hybrid["hole_near_field"], plain["compliance"]) == ("hybrid", "no", "half-space")
+    wheels = (np.array(kept["torque_curve"]["wheel_angle_rad"]) for kept in (hybrid, plain))
+    np.testing.assert_allclose(*wheels, rtol=0.0, atol=1e-11)  # 1e-9 of the load over the stiffness
+    # powers of 4.5 of loads that agree to 1e-7
+    assert hybrid["bearing_life"]["million_turns"] == pytest.approx(plain["bearing_life"]["million_turns"], rel=1e-5)
+    assert hybrid["pressure_safety"]["largest_MPa"] == pytest.approx(plain["pressure_safety"]["largest_MPa"], rel=1e-6)
+    soft = coarse_curves(monkeypatch, tmp_path / "soft", *words)
+    stiffness = (np.min(kept["torque_curve"]["stiffness_N_mm_per_rad"]) for kept in (soft, plain))
+    assert next(stiffness) < 0.999 * next(stiffness)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--coefficients", "c.nc"], "coefficients: has no effect with compliance half-space"),
+        (["--no-hole-near-field"], "hole_near_field: has no effect with compliance half-space"),
+        (["--compliance", "fe", "--coefficients", "missing.nc"], "missing.nc: cannot be read as a coefficient file"),
+        (["--case", "CS-1", "--case", "CS-9"], "case 'CS-9' is not defined"),
+    ],
+)
+def test_what_has_no_effect_is_refused(words, message, tmp_path, capsys):
+    assert main(["curves", "paper", *words, "--out", str(tmp_path)]) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -15,9 +16,13 @@ import pytest
 import xarray as xr
 from pyarrow import parquet
 
+import ltca
+from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficients import without_coupling
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
+from ltca.output.provenance import code_hash
 from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.execution.storage import StudyFolder
@@ -27,7 +32,7 @@ from ltca.studies.run_study import run_study
 from ltca.studies.study import Study, run_batch
 from ltca.studies.tolerance_study import tolerance_study
 
-POSITIONS = 512  # four samples a batch: many batches in little time
+POSITIONS = 16
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +41,8 @@ def paper():
 
 
 def small_study(paper, samples=30, quantities=("ptp_transmission_error", "max_pin_load"), positions=POSITIONS):
-    return tolerance_study(paper, case="CS-6", samples=samples, positions=positions, seed=4, quantities=quantities)
+    study = tolerance_study(paper, case="CS-6", samples=samples, positions=positions, seed=4, quantities=quantities)
+    return replace(study, batch_positions=4 * positions)
 
 
 @pytest.fixture(scope="module")
@@ -97,11 +103,47 @@ def test_the_dataset_holds_what_was_drawn_and_found(paper, reference):
         assert list(data["factor"].values) == list(study.design.names)
         np.testing.assert_array_equal(data["factor_value"].values, study.design.rows(0, 12))
         np.testing.assert_array_equal(data["max_pin_load"].values[4:8], run_batch(study, 1).values[:, 1])
-        assert data["max_pin_load"].attrs["units"] == "N"
         assert not data["failed"].values.any()
         table = parquet.read_table(reference.table).to_pydict()
         np.testing.assert_array_equal(table["ptp_transmission_error"], data["ptp_transmission_error"].values)
     assert not (reference.path / "batches").exists()
+
+
+def test_files_say_what_they_hold_and_what_made_them(paper, reference):
+    """Units as in runs, of the drawn numbers too; drive, study, code and engine; no clock and no folder."""
+    study = small_study(paper, samples=12)
+    schema = parquet.read_schema(reference.table)
+    with xr.open_dataset(reference.results, engine="h5netcdf") as data:
+        assert data["ptp_transmission_error"].attrs["units"] == "arcsec"
+        assert data["max_pin_load"].attrs["units"] == "N"
+        units = dict(zip(data["factor"].values.tolist(), data["factor_units"].values.tolist(), strict=True))
+        attributes = dict(data.attrs)
+    assert units["disc.runout.angle"] == "rad"
+    assert units["pin_wheel.pin_errors.radial.3"] == "mm"
+    for name in schema.names:
+        metadata = schema.field(name).metadata
+        assert metadata.keys() == {b"units", b"description"}, name
+        assert metadata[b"units"].decode() == {
+            **units, "sample": "1", "message": "", "ptp_transmission_error": "arcsec", "max_pin_load": "N"
+        }[name]  # fmt: skip
+    assert load_drive(write_text(reference.path / "again.toml", attributes["drive_file"])).cases == paper.cases
+    (reference.path / "again.toml").unlink()
+    definition = json.loads(attributes["study_definition"])
+    assert (definition["samples"], definition["seed"], definition["case"]) == (12, 4, "CS-6")
+    assert attributes["version"] == ltca.__version__
+    assert attributes["code_hash"] == code_hash("ltca")
+    assert attributes["Conventions"].startswith("CF-")
+    assert (attributes["compliance"], attributes["fingerprint"]) == ("half-space", study.fingerprint())
+    told = json.loads((reference.path / "summary.json").read_text(encoding="utf-8"))
+    assert told["units"] == {"ptp_transmission_error": "arcsec", "max_pin_load": "N"}
+    # thousands of N and tens of arcsec, not 1e-4 rad
+    assert 10.0 < told["quantities"]["ptp_transmission_error"]["mean"] < 100.0
+    assert str(reference.path).encode() not in reference.results.read_bytes() + reference.table.read_bytes()
+
+
+def write_text(path, text):
+    path.write_text(text, encoding="utf-8")
+    return path
 
 
 @pytest.mark.slow
@@ -127,11 +169,13 @@ def test_resume_solves_what_is_left_and_no_more(paper, reference, tmp_path):
     again = run_study(study, folder, Workers(), resume=True)
     assert again.solved_positions == 0
     same_files(folder, reference)
+    with pytest.raises(CycloError, match="compliance, coefficients or the code differ"):
+        folder.prepare(replace(study, engine=Hybrid(coefficients=without_coupling(paper.cases["CS-6"]))), resume=True)
     with pytest.raises(CycloError, match="no study to resume"):
         StudyFolder(path=tmp_path / "empty").prepare(study, resume=True)
 
 
-def test_whatever_the_results_depend_on_is_in_the_fingerprint(paper):
+def test_whatever_the_results_depend_on_is_in_the_fingerprint(paper, tmp_path):
     """Else --resume would mix two studies."""
     study = small_study(paper)
     wider = {**paper.tolerances}
@@ -144,9 +188,35 @@ def test_whatever_the_results_depend_on_is_in_the_fingerprint(paper):
         replace(study, design=replace(study.design, seed=5)),
         replace(study, design=replace(study.design, sequence="sobol")),
         replace(study, cases=(("CS-5", paper.cases["CS-5"]),)),
+        replace(study, engine=Hybrid()),
+        replace(study, engine=PlaneStrain()),
+        replace(study, engine=Hybrid(hole_near_field=False)),
+        replace(study, engine=Hybrid(coefficients=without_coupling(paper.cases["CS-6"]))),
     ]
-    assert len({item.fingerprint() for item in [study, *others]}) == 8
+    assert len({item.fingerprint() for item in [study, *others]}) == 12
+    one, two = (write_text(tmp_path / name, name) for name in ("one.nc", "two.nc"))
+    files = [replace(study, engine=Hybrid(coefficients=path)) for path in (one, two)]
+    assert len({item.fingerprint() for item in (study, *files)}) == 3
+    same = write_text(tmp_path / "same.nc", "one.nc")
+    assert replace(study, engine=Hybrid(coefficients=same)).fingerprint() == files[0].fingerprint()
     assert small_study(paper).fingerprint() == study.fingerprint()
+
+
+def test_damaged_and_foreign_batches_are_solved_again(paper, tmp_path):
+    """Cut off, a flipped bit, no archive at all, or of a study with another seed."""
+    study, folder = small_study(paper, samples=20), StudyFolder(path=tmp_path)
+    other = replace(study, design=replace(study.design, seed=5))
+    folder.prepare(study, resume=False)
+    for number in range(5):
+        folder.store(other if number == 3 else study, run_batch(study, number))
+    kept = sorted((tmp_path / "batches").glob("*.npz"))
+    assert len(kept) == 5
+    kept[0].write_bytes(kept[0].read_bytes()[:-300])
+    whole = bytearray(kept[1].read_bytes())
+    whole[len(whole) // 2] ^= 8
+    kept[1].write_bytes(whole)
+    kept[2].write_bytes(b"nothing")
+    assert folder.prepare(study, resume=True) == [0, 1, 2, 3]
 
 
 def bad_sweep(paper):
@@ -192,9 +262,9 @@ def test_sample_drive_file_is_the_sample(paper, tmp_path):
 
 
 @pytest.mark.slow
-def test_local_pool_survives_a_killed_worker(paper, reference, tmp_path):
-    """SIGKILL for a worker after the first batch: the pool is built anew, the results are the same."""
-    study, folder = small_study(paper, samples=12), StudyFolder(path=tmp_path)
+def test_local_pool_survives_a_killed_worker(paper, tmp_path):
+    """SIGKILL for a worker after the first of many batches: the pool is built anew, the results are the same."""
+    study, folder = small_study(paper, samples=200), StudyFolder(path=tmp_path / "disturbed")
     before = children()
     killed = False
     for result in solve_batches(study, folder.prepare(study, resume=False), Workers(processes=2)):
@@ -205,7 +275,9 @@ def test_local_pool_survives_a_killed_worker(paper, reference, tmp_path):
             killed = True
     assert killed
     run_study(study, folder, Workers(), resume=True)
-    same_files(folder, reference)
+    straight = StudyFolder(path=tmp_path / "straight")
+    run_study(study, straight, Workers())
+    same_files(folder, straight)
 
 
 def command(pid):
@@ -266,7 +338,7 @@ def test_killed_study_resumes_to_the_same_dataset(paper, tmp_path):
 def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
     """A scheduler and two workers as separate processes; one of them is killed in the middle."""
     pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
-    study = small_study(paper, samples=32)
+    study = small_study(paper, samples=200)
     quiet = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     address_file = tmp_path / "scheduler.json"
     base = [sys.executable, "-m"]
@@ -310,7 +382,7 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
 
         found = run_study(study, folder, Workers(scheduler=address), advance=advance)
         assert workers[0].wait(timeout=10) == -signal.SIGKILL
-        assert sum(done) == 32
+        assert sum(done) == 200
         assert not found.failures
     finally:
         # Workers first: one whose scheduler is gone waits for it to come back.
