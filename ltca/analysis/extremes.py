@@ -53,6 +53,8 @@ class Extremes:
         N.
     max_pin_pressure_mid, max_pin_pressure_max, max_roller_pressure_mid, max_roller_pressure_max : float
         MPa; not a number where the engine cannot say it.
+    max_pin_shaft_pressure_mid, max_pin_shaft_pressure_max : float
+        MPa; likewise.
     added_positions, added_light_positions : int
         Positions solved beyond the given ones, at either torque.
     """
@@ -68,6 +70,8 @@ class Extremes:
     max_pin_pressure_max: float
     max_roller_pressure_mid: float
     max_roller_pressure_max: float
+    max_pin_shaft_pressure_mid: float
+    max_pin_shaft_pressure_max: float
     added_positions: int
     added_light_positions: int
 
@@ -197,6 +201,8 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
         max_pin_pressure_max=found["pin_largest"],
         max_roller_pressure_mid=found["roller_mid"],
         max_roller_pressure_max=found["roller_largest"],
+        max_pin_shaft_pressure_mid=found["hole_mid"],
+        max_pin_shaft_pressure_max=found["hole_largest"],
         added_positions=full.search.angle.size - given.size,
         added_light_positions=light.search.angle.size - given.size,
     )
@@ -414,4 +420,6 @@ def _full_signals(found: Equilibrium, pressures: ContactPressures) -> dict[str, 
         "pin_largest": pressures.pins.largest,
         "roller_mid": np.hstack([outer.mid, inner.mid]),
         "roller_largest": np.hstack([outer.largest, inner.largest]),
+        "hole_mid": pressures.holes.mid,
+        "hole_largest": pressures.holes.largest,
     }

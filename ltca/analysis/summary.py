@@ -35,6 +35,8 @@ REFINED = {
     "max_roller_pressure_mid_MPa": ("max_roller_pressure_mid", 1.0),
     "max_roller_pressure_max_MPa": ("max_roller_pressure_max", 1.0),
     "max_pin_shaft_load_N": ("max_pin_shaft_load", 1.0),
+    "max_pin_shaft_pressure_mid_MPa": ("max_pin_shaft_pressure_mid", 1.0),
+    "max_pin_shaft_pressure_max_MPa": ("max_pin_shaft_pressure_max", 1.0),
     "ptp_transmission_error_arcsec": ("ptp_transmission_error", ARCSEC),
     "ptp_transmission_error_light_arcsec": ("ptp_transmission_error_light", ARCSEC),
 }
@@ -93,10 +95,22 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         "ptp_transmission_error_light_arcsec": np.ptp(analysis.light.pose[:, WHEEL_ANGLE]) * ARCSEC,
         "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
     }
+    if analysis.wall_stresses is not None:
+        walls = analysis.wall_stresses
+        values |= {
+            "max_root_stress_MPa": _largest(walls.root),
+            "max_bore_stress_MPa": _largest(walls.bore),
+            "max_hole_stress_MPa": _largest(walls.hole),
+        }
     values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _largest(values: FloatArray) -> float:
+    """Largest of what is known; not a number where nothing is."""
+    return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
 
 
 def _refined(analysis: LoadedAnalysis) -> dict[str, float]:

@@ -227,10 +227,18 @@ ROWS = (
 )
 
 
+WALL_ROWS = (
+    ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
+    ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),
+    ("  along the bore", "max_bore_stress_MPa", "MPa", "{:.1f}"),
+)
+
+
 def _table(summaries: dict[str, dict[str, float | None]]) -> str:
     width = max(10, *(len(name) + 2 for name in summaries))
     lines = [" " * 40 + "".join(f"{name:>{width}}" for name in summaries)]
-    for title, key, unit, form in ROWS:
+    walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
+    for title, key, unit, form in (*ROWS, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [_refined(case, key) for case in summaries.values()]
         lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))

@@ -144,6 +144,9 @@ QUANTITIES: dict[str, Quantity] = {
     "max_pin_shaft_load": _quantity(
         "N", "largest load of a shaft pin", lambda b: b.by_sample(b.full.response.hole_load).max(axis=1)
     ),
+    "max_pin_shaft_pressure_mid": _quantity(
+        "MPa", "largest pressure of a shaft pin at mid-width", lambda b: b.by_sample(b.pressures.holes.mid).max(axis=1)
+    ),
     "mean_bearing_load": _quantity("N", "bearing load, mean", lambda b: np.hypot(*b.bearing).mean(axis=1)),
     "max_bearing_load": _quantity("N", "bearing load, largest", lambda b: np.hypot(*b.bearing).max(axis=1)),
     "mean_radial_bearing_load": _quantity("N", "radial bearing load, mean", lambda b: b.bearing[0].mean(axis=1)),

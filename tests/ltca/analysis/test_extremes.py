@@ -101,6 +101,8 @@ def extremes_of(analysis):
         "max_pin_pressure_max": pressures.pins.largest.max(),
         "max_roller_pressure_mid": max(pressures.outer.mid.max(), pressures.inner.mid.max()),
         "max_roller_pressure_max": max(pressures.outer.largest.max(), pressures.inner.largest.max()),
+        "max_pin_shaft_pressure_mid": pressures.holes.mid.max(),
+        "max_pin_shaft_pressure_max": pressures.holes.largest.max(),
     }
 
 
