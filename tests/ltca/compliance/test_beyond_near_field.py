@@ -13,15 +13,43 @@ import pytest
 from ltca.compliance.beyond_near_field import finite_length_approach
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.contact.hertz import cylinder_approach, half_plane_approach, line_half_width, strip_approach
+from ltca.drive.parts import Material, Materials
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.testing.closed_form_bodies import CROSS_SHARE
 
 ANGLES = np.array([0.0, 0.5])
-STEEL = (206_000.0, 0.3)
-PLANE = 206_000.0 / 0.91
-"""E/(1 − ν²)."""
 DEPTH = 60.0
 ROLLER = 5.0
+# Of each body another, so that none can stand for another.
+MATERIALS = Materials(
+    disc=Material(youngs_modulus=120_000.0, poisson_ratio=0.33),
+    wheel_pin=Material(youngs_modulus=206_000.0, poisson_ratio=0.3),
+    roller=Material(youngs_modulus=300_000.0, poisson_ratio=0.26),
+    inner_race=Material(youngs_modulus=190_000.0, poisson_ratio=0.28),
+)
+BODIES = {"pin": ("disc", "wheel_pin"), "outer": ("disc", "roller"), "inner": ("inner_race", "roller")}
+
+
+def constants(body):
+    """E and ν of a body."""
+    material = getattr(MATERIALS, body)
+    return material.youngs_modulus, material.poisson_ratio
+
+
+def plane_modulus(body):
+    """E/(1 − ν²)."""
+    modulus, ratio = constants(body)
+    return modulus / (1.0 - ratio**2)
+
+
+def width_of(kind, line, radius):
+    """Hertz's half-width of a pair of bodies."""
+    return line_half_width(line, radius, 1.0 / sum(1.0 / plane_modulus(body) for body in BODIES[kind]))
+
+
+@pytest.fixture
+def mixed(paper_cases):
+    return {name: replace(drive, materials=MATERIALS) for name, drive in paper_cases.items()}
 
 
 def widened(drive, width, roller_share=1.0):
@@ -43,7 +71,7 @@ def pair_approaches(model, drive):
     A roller's two loads push it from both ends: each end yields to the other's load as well.
     """
     response = solve_equilibrium(model, ANGLES, drive.wheel_moment()).response
-    rollers, scale = response.rollers, 1.0 / (np.pi * PLANE * drive.crank_bearing.roller_length)
+    rollers, scale = response.rollers, 1.0 / (np.pi * plane_modulus("roller") * drive.crank_bearing.roller_length)
     across = 2.0 * CROSS_SHARE * scale
     kinds = {
         "pin": (response.pin_load, response.flank.approach, response.flank.effective_radius),
@@ -59,30 +87,32 @@ def pair_approaches(model, drive):
 
 def closed_forms(kind, load, radius, drive):
     """Approach of the pair in plane strain: two half-planes, or a half-plane and a squeezed cylinder."""
-    line = load / drive.disc.thickness
-    width = line_half_width(line, radius, 0.5 * PLANE)
-    plane = half_plane_approach(line, width, DEPTH, *STEEL)
-    return plane + (plane if kind == "pin" else cylinder_approach(line, width, ROLLER, *STEEL))
+    line, (first, second) = load / drive.disc.thickness, BODIES[kind]
+    width = width_of(kind, line, radius)
+    below = half_plane_approach(line, width, DEPTH, *constants(first))
+    if kind == "pin":
+        return below + half_plane_approach(line, width, DEPTH, *constants(second))
+    return below + cylinder_approach(line, width, ROLLER, *constants(second))
 
 
 @pytest.mark.parametrize("half_width", [0.05, 0.2])
-def test_plane_strain_is_johnsons_whatever_the_patches(half_width, paper_cases, closed_form):
+def test_plane_strain_is_johnsons_whatever_the_patches(half_width, mixed, closed_form):
     """The patch of the file, its own logarithm and self-energy, must leave no trace in the approach of a contact."""
-    drive = paper_cases["CS-6"]
+    drive = mixed["CS-6"]
     model = CoupledCompliance.of_drive(drive, closed_form(drive, half_width=half_width, depth=DEPTH), "plane-strain")
     for kind, (load, approach, radius) in pair_approaches(model, drive).items():
         # the inner contact's law is inverted to 1e-9, and the balance holds to that
         np.testing.assert_allclose(approach, closed_forms(kind, load, radius, drive), rtol=1e-7, err_msg=kind)
 
 
-def test_half_spaces_tend_to_plane_strain_with_the_width(paper_cases, closed_form):
+def test_half_spaces_tend_to_plane_strain_with_the_width(mixed, closed_form):
     """What is taken off is what the law holds: approaches differ by end effects alone, less the wider the drive.
 
     A 2 % smaller subtraction or one without the self-energy of the patch (a quarter of some 7 units) shifts them by 3 %.
     """
     worst = []
     for width in (1.0, 16.0, 256.0):
-        drive = widened(paper_cases["CS-1"], width)
+        drive = widened(mixed["CS-1"], width)
         model = CoupledCompliance.of_drive(drive, closed_form(drive, depth=DEPTH), "half-space")
         pairs = pair_approaches(model, drive).items()
         worst.append(
@@ -91,28 +121,29 @@ def test_half_spaces_tend_to_plane_strain_with_the_width(paper_cases, closed_for
                 for kind, (load, approach, radius) in pairs
             )
         )
-    # 0.65, 0.36 and 0.20 % as they fade like one over the logarithm of the width
+    # 0.62, 0.35 and 0.19 % as they fade like one over the logarithm of the width
     assert worst[0] < 1e-2
     assert worst[2] < 3e-3
     assert worst[2] < 0.7 * worst[1] < 0.5 * worst[0]
 
 
-def test_short_rollers_press_like_short_rollers(paper_cases, closed_form):
+def test_short_rollers_press_like_short_rollers(mixed, closed_form):
     """Two thirds as long on a wide disc: the roller yields like one of its own length, the disc by what the shorter load
     adds to that over its whole thickness (Lundberg's strips, both averaged alike)."""
-    drive = widened(paper_cases["CS-1"], 256.0, roller_share=2.0 / 3.0)
+    drive = widened(mixed["CS-1"], 256.0, roller_share=2.0 / 3.0)
     model = CoupledCompliance.of_drive(drive, closed_form(drive, depth=DEPTH), "half-space")
     load, approach, radius = pair_approaches(model, drive)["outer"]
     thickness, length = drive.disc.thickness, drive.crank_bearing.roller_length
-    short, whole = (line_half_width(load / size, radius, 0.5 * PLANE) for size in (length, thickness))
+    short, whole = (width_of("outer", load / size, radius) for size in (length, thickness))
+    disc = plane_modulus("disc")
     expected = (
-        cylinder_approach(load / length, short, ROLLER, *STEEL)
-        + half_plane_approach(load / thickness, whole, DEPTH, *STEEL)
-        + strip_approach(load / length, short, length, PLANE)[1]
-        - strip_approach(load / thickness, whole, thickness, PLANE)[1]
+        cylinder_approach(load / length, short, ROLLER, *constants("roller"))
+        + half_plane_approach(load / thickness, whole, DEPTH, *constants("disc"))
+        + strip_approach(load / length, short, length, disc)[1]
+        - strip_approach(load / thickness, whole, thickness, disc)[1]
     )
-    # Lundberg's means are those of an even load: 3 % of what half-spaces hold, of which a third is left here
-    np.testing.assert_allclose(approach, expected, rtol=0.015)
+    # Lundberg's means are those of an even load; what they err by nearly cancels between both lengths (0.04 % measured)
+    np.testing.assert_allclose(approach, expected, rtol=2e-3)
     even = closed_forms("outer", load, radius, drive)
     assert np.all(approach > 1.2 * even)
 
