@@ -117,7 +117,7 @@ def walk():
             yield pytest.param(model, path, id=f"{model}-{path}", marks=[pytest.mark.slow] if dear else [])
 
 
-@pytest.mark.parametrize(("model", "path"), walk())
+@pytest.mark.parametrize(("model", "path"), list(walk()))
 def test_every_field_is_used_or_refused(model, path, models, answers):
     base, answer = models[model]
     base, change = change_of(base, path)
