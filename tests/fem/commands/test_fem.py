@@ -158,14 +158,14 @@ def test_pictures(tmp_path):
 def test_pictures_without_gl(monkeypatch, tmp_path):
     """matplotlib draws the same scenes where pyvista must not be tried."""
     from fem.pictures.offscreen import rendering_problem
-    from fem.pictures.scene import Lines, Panel, Patch, render
+    from fem.pictures.scene import Lines, Panel, Triangles, render
 
     monkeypatch.setenv("CYCLO_NO_PYVISTA", "1")
     rendering_problem.cache_clear()
     corners = np.array([0.0, 1.0, 1j, 1.0 + 1j])
-    patch = Patch(points=corners, faces=np.array([[0, 1, 2], [1, 3, 2]]), values=np.arange(4.0))
+    patch = Triangles(points=corners, faces=np.array([[0, 1, 2], [1, 3, 2]]), values=np.arange(4.0))
     lines = Lines(points=corners[None, [0, 1, 3]])
-    panel = Panel(title="square", centre=0.5 + 0.5j, half_side=1.0, patches=(patch,), lines=(lines,), label="value")
+    panel = Panel(title="square", centre=0.5 + 0.5j, half_side=1.0, triangles=(patch,), lines=(lines,), label="value")
     assert "CYCLO_NO_PYVISTA" in render(tmp_path / "square.png", [panel, panel], side=300)
     assert (tmp_path / "square.png").stat().st_size > 2_000
     rendering_problem.cache_clear()
