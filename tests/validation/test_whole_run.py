@@ -1,4 +1,8 @@
-"""The whole validation with real finite elements on coarse meshes: all levels, interrupted and resumed."""
+"""The whole validation with real finite elements: all levels, interrupted and resumed; no row may fail.
+
+With full FE at the default size this is the gate of the paper's drive: LTCA on FE coefficients within 0.5 % of the largest
+load, 2 % pressure and 0.3″. `test_gate` has another drive.
+"""
 
 from __future__ import annotations
 
@@ -20,15 +24,16 @@ from validation.rows import LEVELS
 
 pytestmark = pytest.mark.slow
 
-WORDS = ("paper", "--case", "CS-3", "--angles", "0.5", "--size", "4")
+WORDS = ("paper", "--case", "CS-3", "--angles", "0.5")
 
 
 @pytest.fixture(scope="module", autouse=True)
 def coarse():
-    """Coefficients on coarse meshes, other codes as stored, short turns: what is tested is the run, not the figures."""
+    """Coefficients on coarser meshes (as in `test_gate`; plane stress only informs), other codes as stored, short turns."""
 
-    def derive(drive, *, size, **options):
-        return derive_coefficients(drive, size=2.0, **options)
+    def derive(drive, *, size, state, **options):
+        gated = state == "strain" and drive.clearance.bearing > 0.0
+        return derive_coefficients(drive, size=1.5 if gated else 2.0, state=state, **options)
 
     with pytest.MonkeyPatch.context() as patch:
         # These two have tests of their own and do not depend on the run: once is enough.
@@ -84,10 +89,17 @@ def test_interrupted_and_resumed_gives_the_same_files(tmp_path, monkeypatch):
     rows = content["rows"]
     assert {row["level"] for row in rows} == set(LEVELS)
     assert len(rows) >= 40
-    assert status == (0 if all(row["pass"] for row in rows) else 1)
-    # coarse as it is, the run must be about right: half-spaces are 30 to 40 % off here, fe a few per cent at most
+    assert [row for row in rows if not row["pass"]] == []
+    assert status == 0
+    held = [row for row in rows if row["level"] == 5 and row["model"] == "fe" and row["against"] == "full FE"]
+    for quantity, limit, at_least in (
+        ("load", 5e-3, 10), ("peak pressure at mid-width", 2e-2, 10), ("half-width", 2e-2, 10), ("wheel angle", 0.3, 1)
+    ):  # fmt: skip
+        limits = [row["limit"] for row in held if row["quantity"] == quantity]
+        assert set(limits) == {limit}, quantity
+        assert len(limits) >= at_least, quantity
+    # The gate is worth something: half-spaces are a quarter off here.
     worst = content["headline"]["worst_difference_from_full_fe"]
-    assert abs(worst["fe"]["load"]["difference"]) < 0.02
     assert abs(worst["half-space"]["load"]["difference"]) > 0.1
 
     def forbidden(*words, **options):
