@@ -41,7 +41,7 @@ from mutation.processes import in_fork, warm_up
 
 ROOT = Path(__file__).resolve().parents[1]
 EXPLAINED = Path(__file__).parent / "mutation" / "equivalent.toml"
-FIRST_LOOK, SECOND_LOOK = 30.0, 300.0
+FIRST_LOOK, SECOND_LOOK = 20.0, 120.0
 """Processor seconds of the tests a mutant meets first, and of those it meets when it survives them."""
 MAP_SECONDS = 3000.0
 ACCEPTED = 0.03

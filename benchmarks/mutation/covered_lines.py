@@ -169,7 +169,7 @@ class CoverageMap:
         if mutant.scope == (0, 0):  # runs at import, before any test
             chosen = self._users_of(mutant, tree)
         mirrored = f"test_{Path(mutant.path).stem}.py"
-        return sorted(chosen, key=lambda name: (mirrored not in name, self.seconds[name], name))
+        return sorted(chosen, key=lambda name: ((0.3 if mirrored in name else 1.0) * self.seconds[name], name))
 
     def _on_lines(self, path: str, lines: Iterable[int]) -> set[str]:
         own = self.lines.get(path, {})

@@ -234,8 +234,7 @@ class _Walker(ast.NodeVisitor):
         elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load) and node.attr in ("real", "imag"):
             yield ast.unparse(ast.Attribute(value=node.value, attr=EXCHANGED[node.attr], ctx=node.ctx))
 
-    @staticmethod
-    def _of_operation(node: ast.BinOp) -> Iterator[str]:
+    def _of_operation(self, node: ast.BinOp) -> Iterator[str]:
         if any(
             isinstance(side, (ast.JoinedStr, ast.List, ast.Tuple, ast.ListComp)) for side in (node.left, node.right)
         ):
@@ -249,7 +248,7 @@ class _Walker(ast.NodeVisitor):
             yield _parenthesised(node.right)
         elif isinstance(node.op, (ast.Mult, ast.Div, ast.Pow)):  # a dropped factor
             yield _parenthesised(node.left)
-        elif isinstance(node.op, (ast.BitAnd, ast.BitOr)):
+        elif isinstance(node.op, (ast.BitAnd, ast.BitOr)) and self.scope != (0, 0):  # else a union of types
             other: ast.operator = ast.BitOr() if isinstance(node.op, ast.BitAnd) else ast.BitAnd()
             yield _parenthesised(ast.BinOp(left=node.left, op=other, right=node.right))
 

@@ -63,10 +63,6 @@ class Refinement:
         """The point as a complex number, mm."""
         return complex(self.x, self.y)
 
-    def scaled(self, factor: float) -> Refinement:
-        """Return the refinement with `size` multiplied by a factor, the radius kept."""
-        return Refinement(self.x, self.y, self.size * factor, self.radius)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SizeField:

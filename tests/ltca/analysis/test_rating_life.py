@@ -35,6 +35,22 @@ def test_dynamic_load_rating_of_the_papers_crank_bearing():
     assert found.dynamic_load_rating == pytest.approx(by_hand, rel=1e-3)
 
 
+def test_rating_of_the_inner_by_that_of_the_outer_race():
+    """The printed factor by hand at γ = 0.2; alike races of equal curvature (γ → 0) differ by 1.038 alone."""
+    by_hand = 1.038 * (0.8 / 1.2) ** (143.0 / 108.0)
+    assert by_hand == pytest.approx(0.6068, abs=1e-4)
+    assert bearing(0.2).race_ratio == pytest.approx(by_hand, rel=1e-12)
+    assert bearing(1e-9).race_ratio == pytest.approx(1.038, rel=1e-8)
+    part = bearing(0.2, rollers=13)
+    loads = np.ones((1, 13))
+    found = rating_life(part, loads, loads)
+    # Q_ci/Q_ce of ISO/TS 16281, (1.18…): (1 + r^4.5)^(2/9) over (1 + r^−4.5)^(2/9) is r
+    assert found.inner_rating / found.outer_rating == pytest.approx(by_hand * 0.364 / 0.378, rel=1e-12)
+    # both by hand: C = 1.1 f_c …, shared by 13 rollers, without the allowance for edges
+    share = part.dynamic_load_rating / (0.83 * 13 * 0.378)
+    assert found.inner_rating == pytest.approx(share * (1.0 + by_hand**4.5) ** (2.0 / 9.0), rel=1e-12)
+
+
 def zone(rollers, exponent=1.1):
     """Roller loads of a standing load on rigid races without clearance, Q ∝ cos^1.1 ψ over 180° (ISO/TR 1281-1)."""
     angle = 2.0 * np.pi * np.arange(rollers) / rollers

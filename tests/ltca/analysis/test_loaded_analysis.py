@@ -1,0 +1,47 @@
+"""Where half-spaces end: half-widths against the smaller radius of each contact, in closed form."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import HALF_WIDTH_BOUND, _check_half_widths
+from ltca.errors import DriveError
+
+
+def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
+    """Check one position: effective radii and half-widths of two pins, half-widths of a roller on bore and race."""
+    pressures = SimpleNamespace(
+        pins=SimpleNamespace(half_width=np.array([pin])),
+        outer=SimpleNamespace(half_width=np.array([[0.0, outer]])),
+        inner=SimpleNamespace(half_width=np.array([[inner, 0.0]])),
+    )
+    contacts = SimpleNamespace(flank=SimpleNamespace(effective_radius=np.array([radius])))
+    _check_half_widths(drive, 377_300.0, contacts, pressures)
+
+
+def test_the_smaller_radius_bounds_the_half_width(paper_cases):
+    """Pin of 6.5 mm on flanks of radius 1.5, 10 (convex) and −10 mm (concave): 1/ρ = 1/r_pin + 1/r_flank."""
+    drive = paper_cases["CS-1"]
+    assert drive.pin_wheel.pin_radius == 6.5
+    for flank, smaller in ((1.5, 1.5), (10.0, 6.5), (-10.0, 6.5)):
+        effective = 1.0 / (1.0 / 6.5 + 1.0 / flank)
+        bound = HALF_WIDTH_BOUND * smaller
+        check(drive, (effective, 2.0), pin=(0.999 * bound, 0.0))
+        with pytest.raises(DriveError, match=r"of wheel pin 0, must be at most") as told:
+            check(drive, (effective, 2.0), pin=(1.001 * bound, 0.0))
+        assert f"must be at most {bound:.4g} mm" in str(told.value)
+        assert "load.torque = 377300 N·mm" in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("place", "name"), [("outer", "roller on the bore 1"), ("inner", "roller on the inner race 0")]
+)
+def test_rollers_are_bounded_by_their_own_radius(paper_cases, place, name):
+    drive = paper_cases["CS-1"]
+    bound = HALF_WIDTH_BOUND * drive.crank_bearing.roller_radius
+    check(drive, (2.0, 2.0), **{place: 0.999 * bound})
+    with pytest.raises(DriveError, match=name):
+        check(drive, (2.0, 2.0), **{place: 1.001 * bound})
