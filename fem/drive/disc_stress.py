@@ -150,8 +150,12 @@ def stress_variables(stress: DiscStress) -> dict[str, tuple[tuple[str, ...], Any
         "lobe": (("lobe",), np.arange(len(stress.root_stress)), {"units": "1", "long_name": "lobe of the flank"}),
         "wall_boundary": per_node([boundary], "1", "0 flank, 1 bore, 2 + k hole k"),
         "wall_parameter": per_node([wall.parameter for wall in stress.walls], "rad", "θ of Eq. 1, or polar angle"),
-        "wall_stress": per_node([wall.stress for wall in stress.walls], "MPa", "stress along the wall, tension positive"),
-        "wall_clear": per_node([clear.astype(int) for clear in stress.clear], "1", "1 beyond four half-widths of contacts"),
+        "wall_stress": per_node(
+            [wall.stress for wall in stress.walls], "MPa", "stress along the wall, tension positive"
+        ),
+        "wall_clear": per_node(
+            [clear.astype(int) for clear in stress.clear], "1", "1 beyond four half-widths of contacts"
+        ),
         "root_stress": per_part((*disc, "lobe"), stress.root_stress, largest.format("the flank about each lobe root")),
         "bore_stress": per_part(disc, stress.bore_stress, largest.format("the bore")),
         "hole_stress": per_part((*disc, "hole"), stress.hole_stress, largest.format("the wall of each hole")),

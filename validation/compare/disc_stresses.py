@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 
 Region = Literal["flank", "bore", "holes"]
 REGIONS: tuple[Region, ...] = get_args(Region)
-SHEARED: tuple[Kind, ...] = ("pin", "roller_outer", "shaft_pin")
+SHEARED: tuple[Kind, ...] = ("pin", "roller_outer", "hole")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,7 +110,7 @@ def stress_content(stress: DiscStress) -> dict[str, Any]:
         "shear": {
             "pin": stress.pin_shear.tolist(),
             "roller_outer": stress.roller_shear.tolist(),
-            "shaft_pin": stress.hole_shear.tolist(),
+            "hole": stress.hole_shear.tolist(),
         },
     }
 
@@ -141,7 +141,7 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
     contact: dict[Kind, FloatArray] = {
         "pin": found.pin_contact,
         "roller_outer": found.roller_contact,
-        "shaft_pin": found.hole_contact,
+        "hole": found.hole_contact,
     }
     return [
         DiscStressAnswer(
