@@ -231,10 +231,14 @@ def derive_disc(
     body = mesh_disc_for_stations(shape, stations, size)
     count = stations.count
     wide = np.arange(0, count, WIDE_STEP)
-    patches, wide_patches, strains = [], [], []
+    patches, wide_patches, pressures, strains = [], [], [], []
     for index, curve in enumerate(shape.curves):
         own = np.flatnonzero(stations.boundary == index)
         patches.append(patch_loads(body, curve, stations.parameter[own], stations.half_width[own]))
+        # Stresses beside a patch feel which way it presses, and contacts press along the normals.
+        pressures.append(
+            patch_loads(body, curve, stations.parameter[own], stations.half_width[own], along_normals=True)
+        )
         strains.append(wall_strain_measures(body, curve, stations.parameter[own], stations.half_width[own]))
         also = wide[stations.boundary[wide] == index]
         if len(also):
@@ -244,7 +248,7 @@ def derive_disc(
     # What measures the strain of a wall is a load that balances itself: its row of the compliance holds, by
     # reciprocity, that strain under every patch. One factorisation serves both.
     measures = wall_modulus(material, state) * sp.hstack(strains)
-    loads = sp.hstack([*patches, *wide_patches, measures, motions], format="csc")
+    loads = sp.hstack([*patches, *wide_patches, *pressures, measures, motions], format="csc")
     stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
     condensed = condense_body(body, stiffness, loads)
     modes = rigid_modes(body)
@@ -253,7 +257,8 @@ def derive_disc(
     referred = refer_to_boundary(condensed.compliance, resultants, 0.5 * (gram + gram.T))
     approach, own_resultants = referred[:count, :count], resultants[:, :count]
     diagonal = np.diag(referred)[count : count + len(wide)]
-    stress = referred[count + len(wide) :, :count]
+    pressed = slice(count + len(wide), 2 * count + len(wide))
+    stress = referred[pressed.stop :, pressed]
 
     sampled = np.unique(np.linspace(0, count - 1, SAMPLED).astype(int))
     displacement = condensed.displacement(np.eye(loads.shape[1])[:, sampled])

@@ -126,7 +126,14 @@ def edge_length(places: ComplexArray, xi: FloatArray) -> FloatArray:
     return total
 
 
-def patch_loads(body: BodyMesh, curve: Curve, parameters: FloatArray, half_width: FloatArray | float) -> sp.csc_matrix:
+def patch_loads(
+    body: BodyMesh,
+    curve: Curve,
+    parameters: FloatArray,
+    half_width: FloatArray | float,
+    *,
+    along_normals: bool = False,
+) -> sp.csc_matrix:
     """Return nodal forces of one newton on patches of a boundary.
 
     Parameters
@@ -139,6 +146,9 @@ def patch_loads(body: BodyMesh, curve: Curve, parameters: FloatArray, half_width
         Middles of the patches as parameters of the curve, rad.
     half_width : float or array, shape (n,)
         Along the arc length, mm.
+    along_normals : bool
+        Whether the pressure follows the normals of a curved wall, as that of a contact does; by default it has one
+        direction, that in the middle of the patch.
 
     Returns
     -------
@@ -162,9 +172,12 @@ def patch_loads(body: BodyMesh, curve: Curve, parameters: FloatArray, half_width
     phi, weight, owner = divide_patches(boundary, middle, width)
     offset = width[owner] * np.sin(phi)
     edge, xi = boundary.coordinate_of(middle[owner] + offset)
-    # p t ds = (2/π) cos²φ dφ
-    force = -2.0 / np.pi * np.cos(phi) ** 2 * weight * curve.normals(parameters)[owner]
     shapes = quadratic_shapes(xi)
+    normals = curve.normals(parameters)[owner]
+    if along_normals:
+        normals = curve.normals(curve.parameter_of(np.sum(boundary.places[edge].T * shapes, axis=0)))
+    # p t ds = (2/π) cos²φ dφ
+    force = -2.0 / np.pi * np.cos(phi) ** 2 * weight * normals
     nodes = boundary.nodes[edge].T
     rows = np.concatenate([(2 * nodes).ravel(), (2 * nodes + 1).ravel()])
     values = np.concatenate([(force.real * shapes).ravel(), (force.imag * shapes).ravel()])
