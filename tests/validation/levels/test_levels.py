@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 import validation.levels.closed_forms as closed_forms
 import validation.levels.printed_results as printed_results
 from validation.rows import failed_rows
