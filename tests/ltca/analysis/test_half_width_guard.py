@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ltca.analysis.loaded_analysis import HALF_WIDTH_BOUND, _check_half_widths
+from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND, check_half_widths
 from ltca.errors import DriveError
 
 
@@ -19,7 +19,7 @@ def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
         inner=SimpleNamespace(half_width=np.array([[inner, 0.0]])),
     )
     contacts = SimpleNamespace(flank=SimpleNamespace(effective_radius=np.array([radius])))
-    _check_half_widths(drive, 377_300.0, contacts, pressures)
+    check_half_widths(drive, contacts, pressures, 377_300.0)
 
 
 def test_the_smaller_radius_bounds_the_half_width(paper_cases):

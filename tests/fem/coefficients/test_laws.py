@@ -1,0 +1,143 @@
+"""Laws that coefficients obey, on a dataset made by hand: every figure is known, and each bound bites on both sides."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from fem.coefficients.laws import (
+    check_coefficients,
+    compressed_cylinder,
+    even_pressure,
+    near_field_unit,
+    station_resultants,
+    unstated_laws,
+)
+
+RADIUS, COUNT, THICKNESS = 20.0, 24, 11.8
+UNIT = {body: 2.0 * (1.0 - nu**2) / (np.pi * modulus * THICKNESS) for body, modulus, nu in (
+    ("disc", 206e3, 0.3), ("pin", 110e3, 0.25), ("roller", 310e3, 0.27), ("race", 72e3, 0.34),
+)}  # fmt: skip
+MATERIALS = {"disc": (206e3, 0.3), "pin": (110e3, 0.25), "roller": (310e3, 0.27), "race": (72e3, 0.34)}
+
+
+def made(plane="strain"):
+    """A round disc of 20 mm with 24 stations, its approach that of patches alone and of nothing else."""
+    angle = 2.0 * np.pi * np.arange(COUNT) / COUNT
+    unit = UNIT if plane == "strain" else {
+        body: 2.0 / (np.pi * modulus * THICKNESS) for body, (modulus, _) in MATERIALS.items()
+    }  # fmt: skip
+    alone = 3.0 * unit["disc"] * np.eye(COUNT)
+    width = np.full(COUNT, 0.2)
+    cylinder = compressed_cylinder(5.0, 0.1) * unit["roller"]
+    points = RADIUS * np.exp(1j * angle)
+    out = np.exp(1j * angle)
+    data = xr.Dataset(
+        {
+            "station_x": ("station", points.real), "station_y": ("station", points.imag),
+            "station_normal_x": ("station", out.real), "station_normal_y": ("station", out.imag),
+            "station_boundary": ("station", np.zeros(COUNT, dtype=int)), "station_half_width": ("station", width),
+            "disc_approach": (("station", "loaded"), alone),
+            "roller_approach": (("side", "loaded_side"), np.array([[0.9, 0.1], [0.1, 0.9]]) * cylinder),
+            "roller_half_width": ("side", [0.1, 0.1]),
+            "roller_wide_approach": 0.9 * cylinder - np.log(2.0) * unit["roller"],
+            "pin_approach": 4.0 * unit["pin"], "pin_wide_approach": (4.0 - np.log(2.0)) * unit["pin"],
+            "race_approach": ("lag", 2.0 * unit["race"] * (np.arange(8) == 0)),
+            "race_wide_approach": (2.0 - np.log(2.0)) * unit["race"],
+            "wide_station": ("wide", [3, 17]), "wide_half_width": ("wide", [0.4, 0.3]),
+            "wide_approach": ("wide", (3.0 - np.log([2.0, 1.5])) * unit["disc"]),
+        },
+        attrs={
+            "plane": plane, "thickness": THICKNESS, "roller_radius": 5.0, "symmetry": 1e-13, "rigid_residual": 1e-13,
+            "convergence_estimate": 5e-3,
+        },
+    )  # fmt: skip
+    for body, (modulus, nu) in MATERIALS.items():
+        data.attrs[f"{body}_youngs_modulus"], data.attrs[f"{body}_poisson_ratio"] = modulus, nu
+    data["disc_resultant"] = (("motion", "station"), station_resultants(data))
+    return data
+
+
+def figures(dataset):
+    return {check.name: check for check in check_coefficients(dataset)}
+
+
+def test_closed_forms_by_hand():
+    data = made()
+    for body, unit in UNIT.items():
+        assert near_field_unit(data, body) == pytest.approx(unit, rel=1e-14)
+    assert near_field_unit(made("stress"), "pin") == pytest.approx(2.0 / (np.pi * 110e3 * THICKNESS), rel=1e-14)
+    # Johnson 5.57: ln(4R/b) − 1/2, and 1/4 less in the mean
+    assert compressed_cylinder(5.0, 0.1) == pytest.approx(np.log(200.0) - 0.75, rel=1e-14)
+
+
+def test_resultants_push_inward_through_the_centre():
+    found = station_resultants(made())
+    angle = 2.0 * np.pi * np.arange(COUNT) / COUNT
+    np.testing.assert_allclose(found, [-np.cos(angle), -np.sin(angle), 0.0 * angle], atol=1e-13)
+    skew = made()
+    # a normal turned back by 90° pushes along the tangent: its moment is the radius
+    x, y = skew["station_normal_x"].values.copy(), skew["station_normal_y"].values.copy()
+    skew["station_normal_x"], skew["station_normal_y"] = ("station", y), ("station", -x)
+    np.testing.assert_allclose(station_resultants(skew)[2], RADIUS, rtol=1e-13)
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_what_is_right_has_the_figures_it_must_have(plane):
+    found = figures(made(plane))
+    assert all(check.passed for check in found.values())
+    expected = {
+        "symmetry of the stored matrices": 0.0,
+        "reciprocity of displacements solved for": 1e-13,
+        "smallest eigenvalue, disc": 3.0,
+        "rigid motions and change of datum": 1e-13,
+        "resultants of the patches and of the stations": 0.0,
+        "near field, disc, worst station": 1.0,
+        "near field, pin, roller, race": 1.0,
+        "roller against the compressed cylinder": 1.0,
+        "convergence: change from a mesh of twice the size": 5e-3,
+    }
+    assert expected.keys() <= found.keys()
+    for name, value in expected.items():
+        assert found[name].value == pytest.approx(value, abs=1e-12), name
+    # the softest of pin 4, roller 0.8 of the cylinder's, race 2
+    assert found["smallest eigenvalue, pin, roller, race"].value == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "spoil"),
+    [
+        (
+            "symmetry of the stored matrices",
+            {"roller_approach": lambda value: np.add(value, [[0.0, 1e-12], [0.0, 0.0]])},
+        ),
+        ("near field, disc, worst station", {"wide_approach": lambda value: np.add(value, [0.0, 0.05 * UNIT["disc"]])}),
+        ("near field, pin, roller, race", {"pin_wide_approach": lambda value: value - 0.05 * UNIT["pin"]}),
+        ("roller against the compressed cylinder", {"roller_approach": lambda value: 1.004 * value}),
+        ("resultants of the patches and of the stations", {"disc_resultant": lambda value: 1.0002 * value}),
+        ("smallest eigenvalue, disc", {"disc_approach": lambda value: 0.03 * value}),
+        ("smallest eigenvalue, pin, roller, race", {"race_approach": lambda value: 0.04 * value}),
+    ],
+)
+def test_what_is_a_little_wrong_is_told(name, spoil):
+    data = made()
+    for variable, change in spoil.items():
+        data[variable] = (data[variable].dims, np.asarray(change(data[variable].values)))
+    assert not figures(data)[name].passed
+
+
+@pytest.mark.parametrize("name", ["symmetry", "rigid_residual", "convergence_estimate"])
+def test_what_a_file_states_of_itself_is_bounded(name):
+    data = made()
+    data.attrs[name] = {"symmetry": 2e-8, "rigid_residual": 2e-10, "convergence_estimate": 1.3e-2}[name]
+    assert [check.passed for check in check_coefficients(data)].count(False) == 1
+    del data.attrs[name]
+    assert list(unstated_laws(data).values()) == [name]
+    assert all(check.passed for check in check_coefficients(data))
+
+
+def test_even_pressure_is_the_arc_between_stations():
+    """A circle of 20 mm in 24 parts; boundaries of another size have their own."""
+    data = made()
+    np.testing.assert_allclose(even_pressure(data), THICKNESS * 2.0 * np.pi * RADIUS / COUNT, rtol=1e-12)

@@ -1,0 +1,91 @@
+"""What is read from the dataset of a study, on datasets written by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ltca.drive.tolerances import Factors
+from ltca.reading.drive_file import load_drive
+from ltca.studies.designs import SweepDesign, SweepFactor, ToleranceDesign
+from ltca.studies.study_results import PERCENTILES, factor_groups, rank, read_quantity, sobol_of, summarise_quantity
+
+
+def written(path, factors, values, failed):
+    """Write factors (samples, factors) and values by quantity the way a study does."""
+    xr.Dataset(
+        {
+            "factor_value": (("sample", "factor"), factors),
+            "failed": ("sample", failed.astype("i1")),
+            **{name: ("sample", np.where(failed, np.nan, own)) for name, own in values.items()},
+        }
+    ).to_netcdf(path, engine="h5netcdf")
+    return path
+
+
+def test_scalars_of_a_quantity():
+    values = np.array([4.0, np.nan, 1.0, 9.0, 6.0])
+    found = summarise_quantity(values)
+    assert (found.mean, found.smallest, found.largest) == (5.0, 1.0, 9.0)
+    assert (found.smallest_sample, found.largest_sample) == (2, 3)
+    # deviations −1, −4, 4, 1: 34 over three
+    assert found.standard_deviation == pytest.approx(np.sqrt(34.0 / 3.0))
+    assert found.percentiles[PERCENTILES.index(50.0)] == 5.0
+    assert summarise_quantity(np.array([np.nan])) is None
+    assert summarise_quantity(np.array([2.0])).standard_deviation == 0.0
+
+
+def test_ranking_of_a_sweep_by_its_factors(tmp_path):
+    """y = 3 x₁ + x₃ on factors of like spread: 9/10 and 1/10 of the variance, x₂ nothing; failed samples left out."""
+    rng = np.random.default_rng(2)
+    factors = rng.normal(size=(3000, 3))
+    failed = np.zeros(3000, dtype=bool)
+    failed[::7] = True
+    load = 3.0 * factors[:, 0] + factors[:, 2] + np.where(failed, 1e6, 0.0)
+    names = ("disc.thickness", "clearance.bearing", "load.torque")
+    design = SweepDesign(
+        factors=tuple(SweepFactor(path=name, low=0.0, high=1.0) for name in names), kind="latin-hypercube", number=3000
+    )
+    study = SimpleNamespace(design=design, quantities=("max_pin_load",))
+    assert factor_groups(study) == tuple((name, slice(k, k + 1)) for k, name in enumerate(names))
+    path = written(tmp_path / "results.nc", factors, {"max_pin_load": load}, failed)
+    np.testing.assert_array_equal(np.isnan(read_quantity(path, "max_pin_load")), failed)
+    told = rank(path, study)
+    assert "SRC²" in told["method"]
+    found = told["quantities"]["max_pin_load"]
+    # a linear law without noise is explained whole; chance correlations of 1/√2600 move shares by 0.02
+    assert found["explained"] == pytest.approx(1.0, abs=1e-9)
+    assert list(found["shares"]) == [names[0], names[2], names[1]]
+    assert list(found["shares"].values()) == pytest.approx([0.9, 0.1, 0.0], abs=0.03)
+    few = written(tmp_path / "few.nc", factors[:7], {"max_pin_load": load[:7]}, failed[:7])
+    assert rank(few, study) == {"method": "none: fewer than two samples for each factor", "quantities": {}}
+
+
+def test_ranking_of_saltelli_blocks_leaves_broken_ones_out(tmp_path):
+    """y is the sum over the elements of one field: its total index is 1, that of all others 0."""
+    file = load_drive("paper")
+    factors = Factors.of_tolerances(file.cases["CS-6"], file.tolerances)
+    groups = ToleranceDesign(factors=factors, samples=60, seed=3, sequence="saltelli").groups
+    size = len(groups) + 2
+    design = ToleranceDesign(factors=factors, samples=40 * size, seed=3, sequence="saltelli")
+    study = SimpleNamespace(design=design, quantities=("max_pin_load",))
+    rows = design.rows(0, design.samples)
+    name, columns = groups[1]
+    failed = np.zeros(len(rows), dtype=bool)
+    failed[5 * size + 3] = True
+    path = written(tmp_path / "results.nc", rows, {"max_pin_load": rows[:, columns].sum(axis=1)}, failed)
+    found = sobol_of(path, study)
+    assert found.blocks == 39
+    told = rank(path, study)["quantities"]["max_pin_load"]
+    assert next(iter(told["shares"])) == name
+    assert told["shares"][name] == pytest.approx(1.0, abs=0.35)  # 39 blocks
+    assert all(share == 0.0 for other, share in told["shares"].items() if other != name)
+    assert told["explained"] == pytest.approx(sum(told["first_order"].values()))
+    short = SimpleNamespace(
+        design=ToleranceDesign(factors=factors, samples=7 * size, seed=3, sequence="saltelli"),
+        quantities=("max_pin_load",),
+    )
+    assert sobol_of(path, short) is None  # seven blocks
