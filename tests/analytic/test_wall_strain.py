@@ -61,7 +61,9 @@ def test_lame_ring_by_patches(state):
         # −p along the pressed wall is left out: added, it is no part of what remains.
         expected[1 if inside else 0] += pressure
         # Mesh 0.1 %; patches short of an even pressure and the polynomial through the gap of each 0.2 %.
-        np.testing.assert_allclose(found, np.broadcast_to(expected[:, None], found.shape), atol=4e-3 * np.abs(expected).max())
+        np.testing.assert_allclose(
+            found, np.broadcast_to(expected[:, None], found.shape), atol=4e-3 * np.abs(expected).max()
+        )
 
 
 def test_solid_disc_under_balanced_loads():
@@ -90,9 +92,13 @@ def test_kirsch_hole_and_rigid_motions():
     factor = far * radius / (8.0 * 206_000.0 / 2.6)
     u = np.empty(2 * len(x))
     a = radius
-    u[0::2] = r / a * (kappa + 1.0) * np.cos(theta) + 2.0 * a / r * ((1.0 + kappa) * np.cos(theta) + np.cos(3.0 * theta))
+    u[0::2] = r / a * (kappa + 1.0) * np.cos(theta) + 2.0 * a / r * (
+        (1.0 + kappa) * np.cos(theta) + np.cos(3.0 * theta)
+    )
     u[0::2] -= 2.0 * (a / r) ** 3 * np.cos(3.0 * theta)
-    u[1::2] = r / a * (kappa - 3.0) * np.sin(theta) + 2.0 * a / r * ((1.0 - kappa) * np.sin(theta) + np.sin(3.0 * theta))
+    u[1::2] = r / a * (kappa - 3.0) * np.sin(theta) + 2.0 * a / r * (
+        (1.0 - kappa) * np.sin(theta) + np.sin(3.0 * theta)
+    )
     u[1::2] -= 2.0 * (a / r) ** 3 * np.sin(3.0 * theta)
     width = 0.2 * radius
     measures = wall_modulus(STEEL) * wall_strain_measures(body, shape.curves[1], ANGLES, width)
