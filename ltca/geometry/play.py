@@ -20,8 +20,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.first_contact import WHEEL_ANGLE
-from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion, RollerRays
+from ltca.geometry.pairs import (
+    DISC_PLACE,
+    ROTATIONS,
+    WHEEL_ANGLE,
+    ContactGeometry,
+    FlankMotion,
+    PairMotion,
+    RollerRays,
+    X,
+    Y,
+    disc_displacement,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -84,11 +94,11 @@ class _Pairs(NamedTuple):
     def at(cls, geometry: ContactGeometry, rays: RollerRays, angle: FloatArray, pose: FloatArray) -> _Pairs:
         flank, holes = geometry.flank(angle, pose), geometry.holes(angle, pose)
         # A roller on the inner race presses on the bore with |s n − d| less the bore play.
-        arm = rays.outermost * rays.direction - (pose[:, 0] + 1j * pose[:, 1])[:, None]
+        arm = rays.outermost * rays.direction - disc_displacement(pose)[:, None]
         length = np.abs(arm)
         outward = arm / length
         rollers = np.zeros((*length.shape, 4))
-        rollers[..., 0], rollers[..., 1] = -outward.real, -outward.imag
+        rollers[..., X], rollers[..., Y] = -outward.real, -outward.imag
         return cls(
             flank=flank,
             holes=holes,
@@ -103,7 +113,9 @@ class _Pairs(NamedTuple):
         pins, holes = self.flank.approach.shape[1], self.holes.approach.shape[1]
         total = self.flank.bend(load[:, :pins]) + self.holes.bend(load[:, pins : pins + holes])
         across = np.stack((-self.outward.imag, self.outward.real), axis=-1)
-        total[:, :2, :2] += np.einsum("bi,bij,bik->bjk", load[:, pins + holes :] / self.length, across, across)
+        total[:, DISC_PLACE, DISC_PLACE] += np.einsum(
+            "bi,bij,bik->bjk", load[:, pins + holes :] / self.length, across, across
+        )
         return total
 
 
@@ -115,7 +127,8 @@ class _Programme:
         self.geometry, self.angle, self.sense = geometry, angle, sense
         self.rays = geometry.rollers(angle)
         reach = float(place.eccentricity) * place.reduction_ratio
-        self.lever = np.array([1.0, 1.0, reach, reach])
+        self.lever = np.ones(4)
+        self.lever[ROTATIONS] = reach
         self.touching = TOUCHING * float(np.max(np.abs(place.wheel_pin_centres)))
         self.pitch = np.pi / place.reduction_ratio
         self.stiffness = np.full(angle.size, 1.0 / (FIRST_YIELD * reach))
@@ -151,12 +164,12 @@ class _Programme:
         pairs = _Pairs.at(self.geometry, self.rays, self.angle, pose)
         load = np.maximum(self.held + self.stiffness[:, None] * pairs.approach, 0.0)
         slope = np.einsum("bi,bij->bj", load, pairs.gradient) / self.lever
-        slope[:, 3] -= self.sense
+        slope[:, WHEEL_ANGLE] -= self.sense
         return pairs, load, slope
 
     def balance(self) -> tuple[_Pairs, FloatArray]:
         """Move every position to the minimum of its potential."""
-        bound = np.full(self.angle.size, STEP_BOUND * self.lever[3])
+        bound = np.full(self.angle.size, STEP_BOUND * self.lever[WHEEL_ANGLE])
         pairs, load, slope = self.evaluate(self.pose)
         history: list[float] = []
         for _ in range(ITERATIONS):
