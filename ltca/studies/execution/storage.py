@@ -118,7 +118,8 @@ class StudyFolder:
         done = set()
         for item in self._batches.glob("[0-9]*.npz"):
             try:
-                with np.load(item) as stored:
+                # Opened here: of a file that is no archive numpy leaves its own stream open.
+                with item.open("rb") as stream, np.load(stream) as stored:
                     sound = str(stored["fingerprint"]) == fingerprint
                     for name in stored.files:
                         stored[name]  # reads it whole, checksum included

@@ -145,6 +145,10 @@ def spoiled(dataset, name):
         wrong["pin_wide_approach"] *= 0.9
     elif name == "roller against the compressed cylinder":
         wrong["roller_approach"] *= 1.01
+    elif name == "stress left by even pressure on all walls":
+        wrong["disc_stress"].values[:] = np.abs(wrong["disc_stress"].values)  # signs lost: nothing cancels
+    elif name == "convergence of the stresses: change from a mesh of twice the size":
+        wrong.attrs["convergence_stress"] = 0.5
     else:
         wrong.attrs["convergence_estimate"] = 0.02
     return wrong
@@ -161,6 +165,8 @@ NAMES = [
     "near field, pin, roller, race",
     "roller against the compressed cylinder",
     "convergence: change from a mesh of twice the size",
+    "stress left by even pressure on all walls",
+    "convergence of the stresses: change from a mesh of twice the size",
 ]
 
 
