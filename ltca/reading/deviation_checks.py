@@ -1,15 +1,19 @@
-"""Physical checks of the deviations of a drive: counts, size, and a flank that neither folds nor traps its pins."""
+"""Physical checks of deviations, counts and sizes, and of the flank they leave: it neither folds nor traps its pins."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import pi
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.rotation import unit
+
+FloatArray = NDArray[np.float64]
 
 POINTS_PER_WAVE = 24
 """Points on which the flank is looked at, for each wave of the highest order."""
@@ -86,25 +90,60 @@ def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
 
 
 def find_flank_problems(drive: Drive) -> Iterator[str]:
-    """Yield what a deviated flank cannot be: folded, or hollower than its pins are round."""
-    errors = drive.disc.profile_errors
-    if errors.is_zero:
-        return
-    waves = max((drive.pin_wheel.number_of_pins, *errors.orders, len(errors.parameter)))
-    theta = np.linspace(0.0, 2.0 * pi, POINTS_PER_WAVE * waves, endpoint=False)
+    """Yield what no flank can be, designed or deviated: folded, or hollower than its pins are round."""
     profile = FlankProfile.of_drive(drive)
-    flank = profile.contact_curve(unit(theta))
-    design = profile.locus(theta)
-    forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
-    if np.min(forward) <= 0.0:
-        worst = float(theta[np.argmin(forward)])
-        yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
+    if profile.deviation is not None:
+        theta = _looked_at(drive, profile)
+        design, flank = profile.locus(theta), profile.contact_curve(unit(theta))
+        forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
+        if np.min(forward) <= 0.0:
+            worst = float(theta[np.argmin(forward)])
+            yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
+            return
+    yield from _hollow(drive, profile)
+
+
+def _hollow(drive: Drive, profile: FlankProfile) -> Iterator[str]:
+    """A pin rounder than a hollow of the flank touches it at two points, and none of them is its nearest for long."""
+    nominal = drive.pin_wheel.pin_radius
+    growth = max(drive.pin_wheel.pin_errors.diameter, default=0.0)
+    largest = nominal + 0.5 * max(growth, 0.0)
+    # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
+    # is hollow at all.
+    theta, designed = 0.0, _hollow_radius(replace(profile, deviation=None), np.zeros(1))[0]
+    actual = designed
+    if profile.deviation is not None:
+        places = _looked_at(drive, profile)
+        radii = _hollow_radius(profile, places)
+        theta, actual = float(places[np.argmin(radii)]), float(np.min(radii))
+    if actual > largest:
         return
-    hollow = -np.asarray(flank.curvature) * drive.pin_wheel.pin_radius
-    if np.max(hollow) >= 1.0:
-        worst = float(theta[np.argmax(hollow)])
-        radius = drive.pin_wheel.pin_radius / float(np.max(hollow))
-        yield (
-            f"disc.profile_errors: the flank has a hollow of radius {radius:.4g} mm at θ = {worst:.4g} rad: must be "
-            f"greater than {drive.pin_wheel.pin_radius:g} mm, the pin radius"
-        )
+    if designed <= nominal:
+        field = f"disc.equidistant_offset = {drive.disc.equidistant_offset:g} mm"
+    elif actual <= nominal:
+        field = "disc.profile_errors"
+    else:
+        field = f"pin_wheel.pin_errors.diameter holds {growth:g} mm"
+    yield (
+        f"{field}: the flank has a hollow of radius {actual:.6g} mm at θ = {theta:.4g} rad, must be greater than "
+        f"{largest:g} mm, the radius of the largest pin, or pins touch it at two points at once"
+    )
+
+
+def _hollow_radius(profile: FlankProfile, theta: FloatArray) -> FloatArray:
+    """Radius of the flank where it is hollow, infinite elsewhere, mm."""
+    hollow = -profile.curvature(theta)
+    return np.asarray(1.0 / np.maximum(hollow, 1e-300))
+
+
+def _looked_at(drive: Drive, profile: FlankProfile) -> FloatArray:
+    """Parameters at which a deviated flank is looked at: every wave of it, and the roots, however sharp they are."""
+    errors, u, teeth = drive.disc.profile_errors, drive.reduction_ratio, drive.disc.number_of_teeth
+    waves = max((drive.pin_wheel.number_of_pins, *errors.orders, len(errors.parameter)))
+    even = np.linspace(0.0, 2.0 * pi, POINTS_PER_WAVE * waves, endpoint=False)
+    # |c′|² = (R − e u)² + 2 R e u (1 − cos (u − 1)θ): what is special in a root is so within this of it.
+    pitch_radius, radius = profile.eccentricity * u, profile.generating_radius
+    sharp = (radius - pitch_radius) / (np.sqrt(radius * pitch_radius) * (u - 1.0))
+    about = sharp * np.linspace(-3.0, 3.0, POINTS_PER_WAVE + 1)
+    roots = 2.0 * pi * np.arange(teeth)[:, None] / teeth + about
+    return np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from ltca.errors import DriveError
+from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
 
 WRONG = {
@@ -170,3 +173,65 @@ def test_undercut_bound_is_where_the_flank_folds(paper_table):
         flank = locus + 1j * (radius + 0.15) * tangent / np.abs(tangent)
         forward = (np.diff(flank) * tangent[:-1].conjugate()).real
         assert bool(np.any(forward < 0.0)) is folds
+
+
+# e z_P/R_C = 0.955: the path of a pin's centre turns sharply in the roots, at a radius of 0.015 mm.
+SHARP = {"crank": {"eccentricity": 6.0}, "pin_shaft": {"hole_radius": 16.075}}
+HOLLOW = r"the flank has a hollow of radius [\d.]+ mm at θ = \S+ rad, must be greater than {:g} mm, .* at two points"
+
+
+def sharp_path_radius(generating_radius, e=6.0, u=14):
+    """ρ = (R − e u)²/(e u² − R) of the trochoid in its root."""
+    return (generating_radius - e * u) ** 2 / (e * u * u - generating_radius)
+
+
+def test_a_hollow_narrower_than_the_pin_is_refused_always(paper_table):
+    """It was accepted on the flank as designed and refused with a harmonic of 1 nm: one rule, one sentence, one field."""
+    narrow = sharp_path_radius(87.8)  # of the flank: less by the equidistant offset, negative here
+    for offset, refused in ((-1.01 * narrow, True), (-0.99 * narrow, False)):
+        found = []
+        for cosine in ([], [1e-6]):
+            disc = {"equidistant_offset": offset, "shifting_offset": -0.2}
+            disc["profile_errors"] = {"orders": [5] * len(cosine), "cosine": cosine}
+            try:
+                build_drive(paper_table(**SHARP, disc=disc))
+            except DriveError as error:
+                found += error.problems
+        if refused:
+            assert len(found) == 2
+            for problem in found:
+                assert problem.startswith(f"disc.equidistant_offset = {offset:g} mm: ")
+                assert re.search(HOLLOW.format(6.5), problem)
+        else:
+            assert found == []
+
+
+def test_hollows_are_told_by_what_makes_them(paper_table):
+    """A flank that is wide enough as designed: its deviation, or a pin that has grown, takes the room."""
+    disc = {"equidistant_offset": 0.0, "shifting_offset": 0.0}
+    build_drive(paper_table(**SHARP, disc=disc))
+    room = sharp_path_radius(88.0)
+    pins = [0.0] * 13 + [2.02 * room]  # a diameter
+    grown = {"pin_wheel": {"pin_errors": {"diameter": pins}}}
+    with pytest.raises(
+        DriveError, match=r"pin_wheel.pin_errors.diameter holds 0.0\d+ mm: " + HOLLOW.format(6.5 + 1.01 * room)
+    ):
+        build_drive(paper_table(**SHARP, **grown, disc=disc))
+    pins[-1] = 1.98 * room
+    build_drive(paper_table(**SHARP, **grown, disc=disc))
+    pins[-1] = -0.1  # smaller pins fit wherever the others do
+    build_drive(paper_table(**SHARP, **grown, disc=disc))
+    wavy = disc | {"profile_errors": {"orders": [60], "cosine": [0.01]}}
+    with pytest.raises(DriveError, match=r"disc.profile_errors: " + HOLLOW.format(6.5)):
+        build_drive(paper_table(disc=wavy, **SHARP))
+
+
+@pytest.mark.parametrize(
+    ("equidistant", "shifting"), [(0.0, 0.0), (-0.05, -0.09), (0.02, -0.09), (0.15, 0.09), (1.0, 0.3)]
+)
+def test_offsets_of_sound_drives_are_accepted(paper_table, equidistant, shifting):
+    """Flanks generated with pins smaller than the wheel's leave their hollows wide enough: by 1.48 mm here."""
+    drive = build_drive(paper_table(disc={"equidistant_offset": equidistant, "shifting_offset": shifting}))
+    assert sharp_path_radius(88.0 + shifting, e=4.0) > 1.4 > -equidistant
+    effective = FlankProfile.of_drive(drive).effective_radius(np.linspace(0.0, 1.0, 101), drive.pin_wheel.pin_radius)
+    assert np.all(effective > 0.0)
