@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.response import ContactPressures
+from ltca.compliance.wall_stress import WallStresses
+from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
@@ -79,6 +82,9 @@ WALL_VARIABLES: dict[str, tuple[str, str, str]] = {
     "root_stress": ("lobe", "MPa", "largest tensile stress along the flank about each lobe root, clear of contacts"),
     "bore_stress": ("disc", "MPa", "largest tensile stress along the bore, clear of contacts"),
     "hole_stress": ("hole", "MPa", "largest tensile stress along the wall of each hole, clear of contacts"),
+    "pin_shear_max": ("pin", "MPa", "largest shear stress in the disc below wheel pins, its own stress included"),
+    "roller_shear_max_outer": ("roller", "MPa", "largest shear stress in the disc below rollers, likewise"),
+    "pin_shaft_shear_max": ("hole", "MPa", "largest shear stress in the disc below shaft pins, likewise"),
 }
 
 
@@ -122,7 +128,18 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "disc_rotation": full.pose[:, DISC_ROTATION],
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
-    } | ({} if walls is None else {"root_stress": walls.root, "bore_stress": walls.bore, "hole_stress": walls.hole})
+    } | ({} if walls is None else _wall_values(walls, pressures))
+
+
+def _wall_values(walls: WallStresses, pressures: ContactPressures) -> dict[str, Any]:
+    return {
+        "root_stress": walls.root,
+        "bore_stress": walls.bore,
+        "hole_stress": walls.hole,
+        "pin_shear_max": line_contact_shear(pressures.pins.mid, walls.pin_contact),
+        "roller_shear_max_outer": line_contact_shear(pressures.outer.mid, walls.roller_contact),
+        "pin_shaft_shear_max": line_contact_shear(pressures.holes.mid, walls.hole_contact),
+    }
 
 
 def _spread(values: Any, kind: str) -> Any:

@@ -17,6 +17,7 @@ from validation.compare.compared_positions import compare_case
 from validation.compare.derived_coefficients import coefficients_of
 from validation.compare.finite_element_positions import Settings, solve_position
 from validation.levels.coefficients import check_file
+from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.positions import compare_position_rows
 from validation.rows import failed_rows
 
@@ -24,6 +25,11 @@ pytestmark = pytest.mark.slow
 
 DRIVE = Path(__file__).parent / "drives" / "aluminium.toml"
 CRANK_ANGLE = 0.7
+STRESSES = {
+    "largest shear stress in the disc below a contact": {3e-2},
+    "stress along the flank, worst station": {2e-2}, "stress along the bore, worst station": {2e-2},
+    "stress along the hole walls, worst station": {2e-2},
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -44,12 +50,12 @@ def derived(drive, tmp_path_factory):
 
 def compare(drive, full, coefficients):
     (compared,) = compare_case(drive, [full], coefficients)
-    return compared, compare_position_rows(compared)
+    return compared, [*compare_position_rows(compared), *disc_stress_rows(compared)]
 
 
 def agreed_limits(rows):
     """The limits that the rows of ``fe`` stand under, by quantity."""
-    names = ("load", "peak pressure at mid-width", "half-width", "wheel angle")
+    names = ("load", "peak pressure at mid-width", "half-width", "wheel angle", *STRESSES)
     return {name: {row.limit for row in rows if row.quantity == name and row.model == "fe"} for name in names}
 
 
@@ -60,7 +66,7 @@ def test_another_drive_passes_the_gate(drive, full, derived):
     assert not failed_rows(rows)
     assert agreed_limits(rows) == {
         "load": {5e-3}, "peak pressure at mid-width": {2e-2}, "half-width": {2e-2}, "wheel angle": {0.3},
-    }  # fmt: skip
+    } | STRESSES  # fmt: skip
     # Every loaded contact is held: six pins, four rollers twice, two shaft pins, each above 5 % of the largest.
     loaded = {kind: full.answer.loaded(kind) for kind in full.answer.kinds}
     assert loaded == {"pin": 6, "roller_outer": 4, "roller_inner": 4, "hole": 2}
@@ -70,6 +76,25 @@ def test_another_drive_passes_the_gate(drive, full, derived):
     half = compared.differences["half-space"]
     assert abs(half.worst_load[2]) > 0.1
     assert abs(half.wheel_angle) > 10.0
+
+
+def test_stresses_of_the_disc_alone_make_the_shear_right(drive, full, derived):
+    """Hertz' 0.300 p0 without the stress along the wall is more than 3 % off under some contact."""
+    compared, rows = compare(drive, full, derived[1])
+    assert sum(row.quantity.startswith("largest shear") and row.model == "fe" for row in rows) == 6 + 4 + 2
+    hertz = [
+        0.3003 * pressure / shear - 1.0
+        for kind, found in compared.full.stress.shear.items()
+        for pressure, shear in zip(compared.answers["fe"].kinds[kind].pressure, found, strict=True)
+        if shear > 0.0
+    ]
+    assert max(map(abs, hertz)) > 3e-2
+    # Stresses 5 % too large, or of a disc 5 % thinner, do not pass.
+    stress = replace(derived[1].stress, stress=1.05 * derived[1].stress.stress)
+    _, rows = compare(drive, full, replace(derived[1], stress=stress))
+    failed = {row.quantity for row in failed_rows(rows)}
+    assert failed
+    assert failed <= {row.quantity for row in rows if "stress" in row.quantity}
 
 
 def test_coefficients_that_are_a_little_off_do_not_pass(drive, full, derived):

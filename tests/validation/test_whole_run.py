@@ -93,7 +93,9 @@ def test_interrupted_and_resumed_gives_the_same_files(tmp_path, monkeypatch):
     assert status == 0
     held = [row for row in rows if row["level"] == 5 and row["model"] == "fe" and row["against"] == "full FE"]
     for quantity, limit, at_least in (
-        ("load", 5e-3, 10), ("peak pressure at mid-width", 2e-2, 10), ("half-width", 2e-2, 10), ("wheel angle", 0.3, 1)
+        ("load", 5e-3, 10), ("peak pressure at mid-width", 2e-2, 10), ("half-width", 2e-2, 10), ("wheel angle", 0.3, 1),
+        ("largest shear stress in the disc below a contact", 3e-2, 8), ("stress along the flank, worst station", 2e-2, 1),
+        ("stress along the bore, worst station", 2e-2, 1), ("stress along the hole walls, worst station", 2e-2, 1),
     ):  # fmt: skip
         limits = [row["limit"] for row in held if row["quantity"] == quantity]
         assert set(limits) == {limit}, quantity

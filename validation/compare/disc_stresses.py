@@ -187,7 +187,7 @@ def compare_stresses(model: DiscStressAnswer, reference: DiscStressAnswer) -> Di
             model.parameter, model.clear, reference.parameter, reference.stress, strict=True
         )
     ]
-    scale = max(float(np.nanmax(np.abs(own))) for own in theirs)
+    scale = float(np.nanmax(np.abs(np.concatenate(theirs))))
     walls: dict[Region, slice] = {"flank": slice(0, 1), "bore": slice(1, 2), "holes": slice(2, None)}
     stations = {region: _worst_station(model, theirs, own, scale) for region, own in walls.items()}
     largest = {

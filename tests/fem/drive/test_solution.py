@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import recover_fields
 from fem.drive.solution import solve_drive, solve_load
 from fem.drive.solution_files import bearing_components, summarise
@@ -209,6 +210,35 @@ def test_displacements_carry_the_contact(coarse, coarse_fields):
             # Below the surface von Mises reaches 0.557 p0 (plane strain, ν = 0.3: Johnson 4.2(c)); three elements
             # for each half-width find it within a tenth.
             assert disc.stress.von_mises[near].max() == pytest.approx(0.557 * detail.peak_pressure, rel=0.1)
+
+
+def test_stress_in_the_disc(coarse):
+    """What the files say of it; the LTCA's is held against finer solutions in `tests/validation`."""
+    import xarray as xr
+
+    stress = recover_disc_stress(coarse)
+    summary, data = summarise_stress(stress), xr.Dataset(stress_variables(stress))
+    assert data["root_stress"].shape == (1, 1, 1, 13)
+    np.testing.assert_array_equal(data["root_stress"].values[0, 0, 0], summary["root_stress_MPa"][0])
+    assert data["bore_stress"].item() == summary["bore_stress_MPa"][0]
+    assert data["roller_shear_max_outer"].dims == ("case", "disc", "crank", "position", "roller")
+    # Contacts hide what is right beside them: under the pressure the wall is compressed by about as much.
+    pressed = data["wall_stress"].where(data["wall_clear"] == 0)
+    assert pressed.min() < -0.8 * coarse.contacts.pin_pressure_max.max()
+    clear = float(data["wall_stress"].where(data["wall_clear"] == 1).max())
+    largest = [*summary["root_stress_MPa"][0], *summary["bore_stress_MPa"], *summary["hole_stress_MPa"][0]]
+    assert clear == max(largest)
+    assert 40.0 < clear < 0.1 * coarse.contacts.pin_pressure_max.max()
+    # 0.300 p0 and half the stress along the wall, a tenth of it here; three elements for the half-width.
+    contacts = coarse.contacts
+    for shear, peak, load in (
+        (stress.pin_shear, contacts.pin_pressure_max, contacts.pin_load),
+        (stress.roller_shear, contacts.roller_pressure_max_outer, contacts.roller_load_outer),
+        (stress.hole_shear, contacts.hole_pressure_max, contacts.pin_shaft_load),
+    ):
+        looked = load > 0.05 * load.max()
+        np.testing.assert_allclose(shear[looked], 0.3 * peak[looked], rtol=0.12)
+        assert np.all(shear[~looked] == 0.0)
 
 
 @pytest.mark.slow
