@@ -141,7 +141,7 @@ def main() -> None:
         done = compare(float(size), arguments.penalty) if task == "ccx" else measure(float(size), float(size) == 1.0)
         print(json.dumps(done))
         return
-    rows = time_sizes(arguments.sizes)
+    rows = time_sizes(arguments.sizes) if arguments.sizes else []
     compared = [] if arguments.ccx is None else compare_sizes(arguments.ccx or [1.0], arguments.penalty)
     if arguments.out:
         content = {"load_average": os.getloadavg(), "rows": rows, "calculix": compared}

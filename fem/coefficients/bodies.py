@@ -65,9 +65,10 @@ class DerivedDisc:
         Stations that also carry a patch twice as wide.
     wide_approach : array, shape (w,)
         Approach of the wide patch by its own load, mm/N.
-    stress : array, shape (stations, stations)
-        Stress along the wall at each station by a newton at each, tension positive, MPa/N; without what a patch does
-        right under itself (`fem.coefficients.wall_strain.continue_under_patches`).
+    stress : array, shape (stress stations, stations)
+        Stress along the wall at each stress station (`DiscStations.refined`) by a newton at each station, tension
+        positive, MPa/N; without what a patch does right under itself
+        (`fem.coefficients.wall_strain.continue_under_patches`).
     reciprocity : float
         Largest difference of "displacement at i by j" and "at j by i", of the largest approach.
     rigid_residual : float
@@ -229,7 +230,7 @@ def derive_disc(
         When mesh and solution would not fit into memory.
     """
     body = mesh_disc_for_stations(shape, stations, size)
-    count = stations.count
+    count, places = stations.count, stations.refined(shape)
     wide = np.arange(0, count, WIDE_STEP)
     patches, wide_patches, pressures, strains = [], [], [], []
     for index, curve in enumerate(shape.curves):
@@ -239,7 +240,8 @@ def derive_disc(
         pressures.append(
             patch_loads(body, curve, stations.parameter[own], stations.half_width[own], along_normals=True)
         )
-        strains.append(wall_strain_measures(body, curve, stations.parameter[own], stations.half_width[own]))
+        seen = places.boundary == index
+        strains.append(wall_strain_measures(body, curve, places.parameter[seen], places.half_width[seen]))
         also = wide[stations.boundary[wide] == index]
         if len(also):
             width = WIDE_RATIO * stations.half_width[also]
@@ -274,7 +276,7 @@ def derive_disc(
         resultants=own_resultants,
         wide_stations=wide,
         wide_approach=diagonal,
-        stress=continue_under_patches(stress, stations.boundary),
+        stress=continue_under_patches(stress, places.boundary, stations.boundary),
         reciprocity=float(reciprocity),
         rigid_residual=float(max(np.max(np.abs(left)) / np.max(np.abs(own_resultants)), datums)),
         unknowns=body.unknowns,

@@ -122,7 +122,7 @@ def derive_coefficients(
     for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
         convergence[name] = _difference(own.approach, other.approach)
     stress_convergence = _difference(disc.stress, coarse[0].stress)
-    dataset = _label(places, disc, pin, roller, race)
+    dataset = _label(places, places.refined(shapes.disc), disc, pin, roller, race)
     dataset.attrs.update(
         drive=drive.name,
         case=case,
@@ -165,7 +165,12 @@ def _difference(values: FloatArray, other: FloatArray) -> float:
 
 
 def _label(
-    places: DiscStations, disc: DerivedDisc, pin: DerivedRound, roller: DerivedRound, race: DerivedRound
+    places: DiscStations,
+    stressed: DiscStations,
+    disc: DerivedDisc,
+    pin: DerivedRound,
+    roller: DerivedRound,
+    race: DerivedRound,
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -189,10 +194,12 @@ def _label(
             "disc_resultant": variable(
                 ("motion", "station"), disc.resultants, "N, N, N mm", "force in x, y and moment of each unit load"
             ),
-            "stress_station_boundary": variable(("stress_station",), places.boundary, "1", "as station_boundary"),
-            "stress_station_parameter": variable(("stress_station",), places.parameter, "rad", "as station_parameter"),
-            "stress_station_x": variable(("stress_station",), places.points.real, "mm", "place in the disc frame"),
-            "stress_station_y": variable(("stress_station",), places.points.imag, "mm", "place in the disc frame"),
+            "stress_station_boundary": variable(("stress_station",), stressed.boundary, "1", "as station_boundary"),
+            "stress_station_parameter": variable(
+                ("stress_station",), stressed.parameter, "rad", "as station_parameter"
+            ),
+            "stress_station_x": variable(("stress_station",), stressed.points.real, "mm", "place in the disc frame"),
+            "stress_station_y": variable(("stress_station",), stressed.points.imag, "mm", "place in the disc frame"),
             "disc_stress": variable(
                 ("stress_station", "station_loaded"),
                 disc.stress,

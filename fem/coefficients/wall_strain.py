@@ -73,26 +73,32 @@ def wall_strain_measures(
     return sp.csc_matrix(sp.coo_matrix((values, (rows, columns)), shape=(body.unknowns, len(parameters))))
 
 
-def continue_under_patches(stress: FloatArray, boundary: NDArray[np.int64]) -> FloatArray:
+def continue_under_patches(
+    stress: FloatArray, stress_boundary: NDArray[np.int64], boundary: NDArray[np.int64]
+) -> FloatArray:
     """Return stresses without what each patch does right under itself, −p: continued from its neighbours.
 
     Under its own patch a wall carries the patch's pressure along itself, too, and outside, on a half-plane, nothing at
-    all: what is left of a column varies smoothly along the wall, through the patch. So the entry of a station by its own
-    patch is replaced by the polynomial through those of up to four patches on either side of it.
+    all: what is left varies smoothly along the wall, through the patch. So the entry of a place by the patch upon it is
+    replaced by the polynomial through those of up to four patches on either side.
 
     Parameters
     ----------
-    stress : array, shape (stations, stations)
-        At each station by a newton on each patch, same stations, MPa/N.
+    stress : array, shape (stress stations, stations)
+        At each stress station by a newton on each patch, MPa/N.
+    stress_boundary : array of int, shape (stress stations,)
+        Number of the boundary of each stress station; uniform and in order along each, a whole number of them for each
+        patch, the first of them upon it.
     boundary : array of int, shape (stations,)
-        Number of the boundary of each station; uniform and in order along each.
+        Likewise of the patches.
     """
     found = stress.copy()
     for number in np.unique(boundary).tolist():
-        own = np.flatnonzero(boundary == number)
+        own, places = np.flatnonzero(boundary == number), np.flatnonzero(stress_boundary == number)
+        upon = places[:: len(places) // len(own)]
         reach = min(4, (len(own) - 1) // 2)
         offsets = np.concatenate([np.arange(-reach, 0), np.arange(1, reach + 1)])
         weights = [np.prod([other / (other - one) for other in offsets if other != one]) for one in offsets.tolist()]
         beside = own[(np.arange(len(own))[:, None] + offsets) % len(own)]
-        found[own, own] = stress[own[:, None], beside] @ np.array(weights)
+        found[upon, own] = stress[upon[:, None], beside] @ np.array(weights)
     return found

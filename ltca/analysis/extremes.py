@@ -34,7 +34,7 @@ GAIN = 1e-3
 """What is not looked for any more, as a part of the range of a signed quantity, of the largest load or pressure."""
 ROUNDS = 6
 PLACES = 4
-"""Places of each kind that are tried for each extreme in a round, the most promising."""
+"""Places that are tried for each extreme on either side of its highest samples in a round, the most promising."""
 NEAREST = 1e-3
 """Places nearer to a sample than this part of a passage are not tried."""
 
@@ -252,9 +252,9 @@ def scan_angles(positions: int, passages: int) -> FloatArray:
 class PeakSearch:
     """Search for the largest values of sampled curves: tells where they may be larger than any sample.
 
-    What a peak between samples can reach is read from its sides. Where both are straight it is a kink, at the crossing
-    of the lines from beside it, which lies above any curve that bends down; where it is smooth it is near the vertex
-    of a parabola.
+    Between a highest sample and the next one a curve that bends down stays below the lines that its sides, prolonged,
+    make there: their crossing bounds it, and where contacts open or close and both sides are all but straight, it is
+    the peak itself.
 
     Attributes
     ----------
@@ -291,7 +291,7 @@ class PeakSearch:
     def promising(self) -> FloatArray:
         """Return the places where an extreme may be larger than every sample by more than `GAIN`, ascending, rad."""
         found = [np.zeros(0)]
-        estimates = (_vertices(self.angle, self.values), *_kinks_on_both_sides(self.angle, self.values))
+        estimates = _kinks_on_both_sides(self.angle, self.values)
         for columns, is_end in self.groups.values():
             values = self.values[:, columns]
             least = np.max(values) + GAIN * (np.ptp(values) if is_end else np.max(values))
@@ -305,18 +305,6 @@ class PeakSearch:
             if min(apart, np.min(np.abs(self.angle - place))) > self.nearest:
                 kept.append(float(place))
         return np.array(kept)
-
-
-def _vertices(x: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Places and heights of the parabolas through each highest sample and its neighbours; −∞ where there is none."""
-    x = x[:, None]
-    slope = np.diff(values, axis=0) / np.diff(x, axis=0)
-    before, behind = slope[:-1], slope[1:]
-    bend = (behind - before) / (x[2:] - x[:-2])
-    peak = (before >= 0.0) & (behind <= 0.0) & (bend < 0.0)
-    place = 0.5 * (x[:-2] + x[1:-1]) - 0.5 * before / np.where(peak, bend, -1.0)
-    height = values[:-2] + (place - x[:-2]) * (before + bend * (place - x[1:-1]))
-    return place, np.where(peak, height, -np.inf)
 
 
 def _kinks_on_both_sides(x: FloatArray, values: FloatArray) -> list[tuple[FloatArray, FloatArray]]:

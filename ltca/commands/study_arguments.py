@@ -117,5 +117,13 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
     leading = next(iter(found.quantities), None)
     if leading is not None:
         worst = found.quantities[leading].largest_sample
-        print(f"worst by {QUANTITIES[leading].description}: cyclo run {write_sample(study, folder, worst)}")
+        words = f"{write_sample(study, folder, worst)}{_compliance_words(study)}"
+        print(f"worst by {QUANTITIES[leading].description}: cyclo run {words}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
+
+
+def _compliance_words(study: Study) -> str:
+    """What `cyclo run` has to be told to solve a sample as the study did."""
+    options = study.engine.options
+    words = "" if options["compliance"] == "half-space" else f" --compliance {options['compliance']}"
+    return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")

@@ -73,15 +73,13 @@ class HalfSpaceCompliance:
         geometry = ContactGeometry.of_drives(drives, positions)
         stiffness = np.repeat([[drive.pin_shaft.stiffness] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
-        turn = np.linspace(0.0, 2.0 * np.pi, 181 * drives[0].pin_wheel.number_of_pins)
+        # One row for each drive: deviations of the flanks are summed row by row.
+        turn = np.tile(np.linspace(0.0, 2.0 * np.pi, 181 * drives[0].pin_wheel.number_of_pins), (len(drives), 1))
         pin_radii = np.ones((1, 1))
         if not drives[0].pin_wheel.pin_profile.is_cylinder:
             radii = each.placement.wheel_pin_radii
             pin_radii = np.stack(
-                [
-                    each.profile.effective_radius(turn[None, :], r(radii, axis=1, keepdims=True))
-                    for r in (np.min, np.max)
-                ]
+                [each.profile.effective_radius(turn, r(radii, axis=1, keepdims=True)) for r in (np.min, np.max)]
             )
         return cls._of_geometry(geometry, drives[0], pin_radii, stiffness)
 

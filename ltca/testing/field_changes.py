@@ -56,6 +56,8 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "paper": _NAME | {"load.light_torque": "the paper's iteration is walked at full load alone"},
     "hybrid": _NAME | _RIGID_PIN,
     "fe": _NAME | _RIGID_PIN,
+    "curves": _NAME | {"load.light_torque": "curves are those of full load"},
+    "studies": _NAME,
     "full FE": _NAME | _RIGID_PIN | {"load.light_torque": "a full solution is one of full load"},
 }
 """Fields that may leave the answer of a model alone, each with its reason."""

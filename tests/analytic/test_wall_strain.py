@@ -49,7 +49,7 @@ def test_lame_ring_by_patches(state):
     stress, resultants = stress_matrix(body, shape.curves, width, state)
     # What measures a strain balances itself.
     assert np.max(np.abs(resultants[:, 2 * PLACES :])) < 1e-9 * wall_modulus(STEEL, state)
-    smooth = continue_under_patches(stress, np.repeat([0, 1], PLACES))
+    smooth = continue_under_patches(stress, *[np.repeat([0, 1], PLACES)] * 2)
     pressure, between = 100.0, outer**2 - inner**2
     for radius, own, inside in ((outer, slice(0, PLACES), False), (inner, slice(PLACES, None), True)):
         loads = np.zeros(2 * PLACES)
@@ -71,7 +71,7 @@ def test_solid_disc_under_balanced_loads():
     shape = CircleShape(name="disc", radius=10.0)
     body = mesh_circle(shape, spots(shape.curves[0].points(ANGLES), width), growth=0.4)
     stress, _ = stress_matrix(body, shape.curves, width)
-    smooth = continue_under_patches(stress, np.zeros(PLACES, dtype=int))
+    smooth = continue_under_patches(stress, *[np.zeros(PLACES, dtype=int)] * 2)
     loads = np.zeros(PLACES)
     # 3, 4 and 5 kN at the angles of their triangle; and two opposite ones.
     for angle, force in ((0.0, 3e3), (90.0, 4e3), (180.0, 3e3), (270.0, 4e3), (45.0, 1e3), (165.0, 1e3), (285.0, 1e3)):

@@ -85,6 +85,22 @@ def test_arrays_have_full_length(coarse):
     summary = summarise(coarse)
     for name, count in (("pin_load_N", 14), ("roller_load_outer_N", 11), ("pin_shaft_load_N", 8)):
         assert np.shape(summary[name]) == (1, count)  # by disc, then by part
+    contacts = coarse.contacts
+    for name, values in (
+        ("pin_load_N", contacts.pin_load),
+        ("roller_load_outer_N", contacts.roller_load_outer),
+        ("roller_load_inner_N", contacts.roller_load_inner),
+        ("pin_shaft_load_N", contacts.pin_shaft_load),
+        ("pin_pressure_max_MPa", contacts.pin_pressure_max),
+        ("roller_pressure_max_outer_MPa", contacts.roller_pressure_max_outer),
+        ("roller_pressure_max_inner_MPa", contacts.roller_pressure_max_inner),
+        ("pin_shaft_pressure_max_MPa", contacts.hole_pressure_max),
+        ("pin_half_width_mm", contacts.pin_half_width),
+        ("roller_half_width_outer_mm", contacts.roller_half_width_outer),
+        ("roller_half_width_inner_mm", contacts.roller_half_width_inner),
+        ("pin_shaft_half_width_mm", contacts.hole_half_width),
+    ):
+        np.testing.assert_array_equal(summary[name], values[None], err_msg=name)
     assert summary["dof"] > 50_000
     assert summary["wheel_angle_rad"] < 0.0
     # Bore and area of one disc move alike, but not equally: it bends by some micrometres.

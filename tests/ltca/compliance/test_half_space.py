@@ -10,6 +10,7 @@ import pytest
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
 from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.reading.changes import with_fields
 
 
 @dataclass(frozen=True)
@@ -161,3 +162,20 @@ def test_stiffness_scales_with_modulus_and_shaft_spring(vary):
     holes = HalfSpaceCompliance.of_drive(vary(pin_shaft={"stiffness": 2.0e6})).respond(angles, poses)
     np.testing.assert_allclose(holes.hole_load, 2.0 * base.hole_load, rtol=1e-14)
     np.testing.assert_allclose(base.hole_load, 1e6 * np.maximum(base.holes.approach, 0.0), rtol=1e-14)
+
+
+@pytest.mark.slow
+def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases):
+    """A batch of drives with crowned pins and waves on their flanks ended in a mismatch of shapes."""
+    waves = {"disc.profile_errors.cosine": (0.001, 0.0, 0.0, 0.0), "disc.profile_errors.sine": (0.0,) * 4}
+    crown = {"pin_wheel.pin_profile.crown_drop": 0.002}
+    drives = [with_fields(paper_cases["CS-1"], waves | crown | {"crank.eccentricity_error": e}) for e in (0.0, 0.01)]
+    batch = HalfSpaceCompliance.of_drives(drives, 1)
+    pose = np.zeros((2, 4))
+    pose[:, 3] = -0.003  # wound up beyond the backlash, so that pins carry
+    together = batch.respond(np.full(2, 0.3), pose)
+    assert together.pin_load.max() > 100.0
+    for row, drive in enumerate(drives):
+        alone = HalfSpaceCompliance.of_drive(drive).respond(np.array([0.3]), pose[:1])
+        # Tables on a ladder of radii and tables of one drive: their interpolation differs.
+        np.testing.assert_allclose(together.pin_load[row], alone.pin_load[0], rtol=2e-3, atol=1e-6)

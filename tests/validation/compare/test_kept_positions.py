@@ -107,6 +107,13 @@ def test_damaged_or_foreign_files_are_solved_again(damage, solved, paper_cases, 
     assert path.read_text(encoding="utf-8") == text
 
 
+def test_what_older_code_kept_is_solved_again(solved, paper_cases, tmp_path, monkeypatch):
+    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+    monkeypatch.setattr(kept, "code_hash", lambda *packages: "another")
+    solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
+    assert len(solved) == 2
+
+
 def test_a_failed_solution_leaves_nothing(monkeypatch, paper_cases, tmp_path):
     def fail(drive, crank_angle, **options):
         raise ConvergenceError("no", [1.0])

@@ -1,0 +1,161 @@
+"""Every leaf field of a drive against full finite elements and the commands as programs: used, or refused by name.
+
+    python benchmarks/contract.py [full-fe curves tolerance sweep optimise run-fe run-hybrid]
+
+The walk of ``tests/contract`` in earnest: each field of a small drive is changed as a person could have changed it and
+every command is run on it, coarsely. Prints what is ignored; exit status 1 if anything is. Full finite elements take
+some minutes, ``run-fe`` and ``run-hybrid`` derive the coefficients of every changed shape and take half an hour.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import contextlib
+import io
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
+
+from fem.drive.solution import solve_drive
+from ltca.commands.program import main as cyclo
+from ltca.drive.parts import Drive
+from ltca.errors import CycloError, DriveError
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+from ltca.reading.writing import drive_text
+from ltca.testing.field_changes import EXCEPTIONS, change_of, leaf_fields, moves
+
+FILE = Path(__file__).resolve().parents[1] / "tests" / "contract" / "drive.toml"
+TOLERANCES = """
+[tolerances]
+pin_shaft.pin_errors.radial = { distribution = "uniform", tolerance = 0.001 }
+"""
+STUDY = """
+drive = "drive.toml"
+positions = 4
+quantities = ["all"]
+[design]
+kind = "grid"
+[factors]
+"materials.shaft_pin.poisson_ratio" = [0.28, 0.3]
+"""
+
+
+def numbers_of(content: Any) -> list[float]:
+    """Every number of nested lists and tables, in order."""
+    if isinstance(content, dict):
+        return [value for name, entry in content.items() if "seconds" not in name for value in numbers_of(entry)]
+    if isinstance(content, list):
+        return [value for entry in content for value in numbers_of(entry)]
+    return [float(content)] if isinstance(content, int | float) and not isinstance(content, bool) else []
+
+
+def program(words: list[str], answer: str, extra: str = "", study: bool = False) -> Callable[[Drive], np.ndarray]:
+    """Return what runs a command on a drive in a folder of its own and reads the numbers of one JSON file."""
+
+    def run(drive: Drive) -> np.ndarray:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder)
+            (path / "drive.toml").write_text(drive_text(drive) + extra, encoding="utf-8")
+            (path / "study.toml").write_text(STUDY, encoding="utf-8")
+            source = path / ("study.toml" if study else "drive.toml")
+            errors = io.StringIO()
+            with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(io.StringIO()):
+                status = cyclo([words[0], str(source), *words[1:], "--out", str(path / "out"), "--no-figures"])
+            if status != 0:
+                raise DriveError([errors.getvalue()])
+            return np.array(numbers_of(json.loads((path / "out" / answer).read_text(encoding="utf-8"))))
+
+    return run
+
+
+def full_solution(drive: Drive) -> np.ndarray:
+    """Full finite elements, coarse."""
+    found = solve_drive(drive, 0.5, scale=4.0)
+    contacts, pose = found.contacts, found.state.pose
+    arrays = [contacts.pin_load, contacts.roller_load_outer, contacts.pin_shaft_load, contacts.pin_pressure_max]
+    place = pose.disc_displacement
+    return np.concatenate([*arrays, [place.real, place.imag, pose.disc_rotation, pose.wheel_angle]])
+
+
+def optimum(drive: Drive) -> np.ndarray:
+    """What an optimisation computes of a candidate, with every quantity aimed at or limited."""
+    from ltca.studies.optimiser import Limit, Problem, batch_analysis, parse_variable
+    from ltca.studies.quantities import QUANTITIES
+
+    problem = Problem(
+        drive=drive,
+        variables=(parse_variable("disc.equidistant_offset", drive),),
+        aims=("max_pin_load",),
+        limits=tuple(Limit(quantity=name, sense=1, value=1e9) for name in QUANTITIES if name != "max_pin_load"),
+    )
+    return np.asarray(batch_analysis(problem, 4)([drive]))
+
+
+COMMANDS: dict[str, tuple[str, Callable[[Drive], np.ndarray]]] = {
+    "full-fe": ("full FE", full_solution),
+    "curves": ("curves", program(["curves", "--turns", "1"], "curves.json")),
+    "tolerance": (
+        "studies",
+        program(["tolerance", "--samples", "2", "--positions", "4", "--quantities", "all"], "summary.json", TOLERANCES),
+    ),
+    "optimise": ("studies", optimum),
+    "sweep": ("studies", program(["sweep"], "summary.json", study=True)),
+    "run-fe": ("fe", program(["run", "--positions", "2", "--compliance", "fe"], "summary.json")),
+    "run-hybrid": ("hybrid", program(["run", "--positions", "2", "--compliance", "hybrid"], "summary.json")),
+}
+
+
+def main() -> int:
+    """Walk the commands asked for."""
+    asked = sys.argv[1:] or [name for name in COMMANDS if not name.startswith("run-")]
+    unknown = set(asked) - set(COMMANDS)
+    if unknown:
+        print(f"unknown: {', '.join(sorted(unknown))}; there are {', '.join(COMMANDS)}", file=sys.stderr)
+        return 2
+    drive = load_drive(FILE).cases["nominal"]
+    plain = with_fields(drive, {"crank_bearing.roller_length": drive.disc.thickness})
+    bases = {
+        "full-fe": with_fields(plain, {"pin_wheel.axis_offset.x": 0.0, "pin_wheel.axis_offset.y": 0.0}),
+        "run-fe": plain,
+    }
+    status = 0
+    for name in asked:
+        kind, answer = COMMANDS[name]
+        began, ignored, refused, known = time.perf_counter(), [], 0, {}
+        for path in leaf_fields():
+            base, change = change_of(bases.get(name, drive), path)
+            try:
+                after = answer(with_fields(base, change))
+            except CycloError as error:
+                refused += 1
+                if path not in str(error):
+                    ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
+                continue
+            key = repr(base)
+            if key not in known:
+                known[key] = answer(base)
+            if moves(known[key], after) == (path in EXCEPTIONS[kind]):
+                ignored.append(f"{path}: {'moves the answer' if path in EXCEPTIONS[kind] else 'is ignored'}")
+        seconds = time.perf_counter() - began
+        print(f"{name}: {len(leaf_fields())} fields, {refused} refused by name, {len(ignored)} wrong ({seconds:.0f} s)")
+        for line in ignored:
+            print(f"  {line}")
+        status |= bool(ignored)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())
