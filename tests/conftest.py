@@ -20,6 +20,16 @@ from ltca.errors import DriveError
 from ltca.reading.drive_file import build_drive, load_drive, shipped_drive
 
 
+@pytest.hookimpl(tryfirst=True, optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Give every worker a run of files, and let the one that is done take of the other's: fixtures are made once."""
+    if config.getoption("dist") != "load":
+        return None
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
+
+
 def _merge(below: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     for key, value in over.items():
         if isinstance(value, dict) and isinstance(below.get(key), dict):
