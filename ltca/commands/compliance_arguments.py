@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
+    from ltca.drive.parts import Drive
 
 
 def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +24,9 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
         "--coefficients",
         metavar="FILE",
         type=Path,
-        help="influence coefficients of cyclo derive; without it they are derived once for each shape and kept",
+        action="append",
+        help="influence coefficients of cyclo derive, repeatable: each drive takes the file of its shape; without any they "
+        "are derived once for each shape and kept",
     )
     parser.add_argument(
         "--no-hole-near-field",
@@ -33,7 +36,7 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def compliance_of(arguments: argparse.Namespace) -> Engine:
-    """Return the engine that the arguments ask for.
+    """Return the engine that the arguments ask for, method and contacts among them where a command has these.
 
     Raises
     ------
@@ -44,6 +47,23 @@ def compliance_of(arguments: argparse.Namespace) -> Engine:
 
     return engine_named(
         arguments.compliance,
-        coefficients=arguments.coefficients,
+        method=getattr(arguments, "method", None),
+        contacts=getattr(arguments, "contacts", None),
+        coefficients=tuple(arguments.coefficients) if arguments.coefficients else None,
         hole_near_field=False if arguments.no_hole_near_field else None,
     )
+
+
+def find_coefficients_of(cases: dict[str, Drive], arguments: argparse.Namespace) -> None:
+    """Check the files given against all cases, or derive all that is missing together: the engine finds each again.
+
+    Raises
+    ------
+    CycloError
+        When a case has no file, a file no case, or nothing can be derived.
+    """
+    from ltca.compliance.coefficient_files import find_case_coefficients
+    from ltca.compliance.near_field import NEAR_FIELDS
+
+    if arguments.compliance in NEAR_FIELDS:
+        find_case_coefficients(cases, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])

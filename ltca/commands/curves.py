@@ -91,7 +91,7 @@ class CaseCurves(NamedTuple):
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case, write curves.json and the figures, print what they say."""
-    from ltca.commands.compliance_arguments import compliance_of
+    from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
     from ltca.output.files import write_json
     from ltca.output.progress import progress
     from ltca.reading.drive_file import load_drive
@@ -99,6 +99,7 @@ def execute(arguments: argparse.Namespace) -> int:
     limits, engine = _limits(arguments), compliance_of(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
+    find_coefficients_of(cases, arguments)
     out = arguments.out or Path("out") / f"{file.name}_curves"
     contents, figures = {}, []
     with progress("cases", len(cases)) as advance:

@@ -122,7 +122,7 @@ def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Names
 
             raise DriveError(
                 [
-                    f"--coefficients {arguments.coefficients}: serves one shape, and --vary "
+                    f"--coefficients {' '.join(map(str, arguments.coefficients))}: serves one shape, and --vary "
                     f"{' '.join(arguments.vary)} changes it; leave it out, so that each candidate gets its own"
                 ]
             )

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.commands.compliance_arguments import add_compliance_arguments
+
 if TYPE_CHECKING:
     from xarray import Dataset
 
@@ -37,26 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--contacts", choices=("tables", "grids"), help="what the paper's iteration runs on; default tables"
     )
-    parser.add_argument(
-        "--compliance",
-        choices=("half-space", "fe", "hybrid"),
-        default="half-space",
-        help="how bodies yield: half-spaces (default), plane-strain finite elements, or finite elements beyond "
-        "half-spaces of finite length",
-    )
-    parser.add_argument(
-        "--coefficients",
-        metavar="FILE",
-        type=Path,
-        action="append",
-        help="influence coefficients of cyclo derive, repeatable: each case takes the file of its shape; without any they "
-        "are derived once for each shape and kept",
-    )
-    parser.add_argument(
-        "--no-hole-near-field",
-        action="store_true",
-        help="leave out the local yielding of the hole walls (fe and hybrid)",
-    )
+    add_compliance_arguments(parser)
     parser.add_argument(
         "--pressure",
         metavar="φ",
@@ -71,6 +54,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
     from ltca.analysis.results import build_dataset, check_common_shape
     from ltca.analysis.summary import summarise
+    from ltca.commands.compliance_arguments import find_coefficients_of
     from ltca.output.files import whole_file, write_json
     from ltca.reading.drive_file import load_drive
 
@@ -79,7 +63,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
-    _find_coefficients(cases, arguments)
+    find_coefficients_of(cases, arguments)
     out = arguments.out or Path("out") / file.name
     analyses = _analyse(cases, angles, torque, engine, "cases")
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
@@ -106,29 +90,14 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:
-    from ltca.analysis.engines import engine_named
+    from ltca.commands.compliance_arguments import compliance_of
     from ltca.errors import DriveError
 
     if arguments.pressure is not None and arguments.compliance != "half-space":
         raise DriveError(
             [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
         )
-    return engine_named(
-        arguments.compliance,
-        method=arguments.method,
-        contacts=arguments.contacts,
-        coefficients=tuple(arguments.coefficients) if arguments.coefficients else None,
-        hole_near_field=False if arguments.no_hole_near_field else None,
-    )
-
-
-def _find_coefficients(cases: dict[str, Drive], arguments: argparse.Namespace) -> None:
-    """Check the files given against all cases, or derive all that is missing together: the engine finds each again."""
-    from ltca.compliance.coefficient_files import find_case_coefficients
-    from ltca.compliance.near_field import NEAR_FIELDS
-
-    if arguments.compliance in NEAR_FIELDS:
-        find_case_coefficients(cases, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])
+    return compliance_of(arguments)
 
 
 def _analyse(

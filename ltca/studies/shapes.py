@@ -11,7 +11,7 @@ import os
 import tempfile
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import fields
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -20,8 +20,9 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.engines import Engine
-from ltca.compliance.coefficient_files import GROUP, cached_file
+from ltca.compliance.coefficient_files import GROUP, cached_file, find_case_coefficients
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.output.provenance import code_hash
@@ -115,6 +116,11 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
             told(f"{few} no influence coefficients yet: derived first, some {SECONDS} s each")
+        for first in range(0, len(missing), KEPT) if len(missing) > 1 else ():
+            group = {f"shape {first + number}": drive for number, drive in enumerate(missing[first : first + KEPT], 1)}
+            # Several at once; what fails is tried again alone below.
+            with suppress(CycloError):
+                find_case_coefficients(group, near_field=NEAR_FIELDS[engine.compliance])
         wanted = missing or wanted[:1]
     failures = []
     for drive in wanted:

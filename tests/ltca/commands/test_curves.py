@@ -13,6 +13,7 @@ import ltca.figures.curve_figures as curve_figures
 from ltca.analysis import engines, loaded_analysis, transmission_error_orders as orders
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
+from ltca.compliance import coefficient_files
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
@@ -221,6 +222,7 @@ def test_compliance_is_passed_on(monkeypatch, tmp_path):
         return without_coupling(drive)
 
     monkeypatch.setattr(engines, "find_coefficients", nothing)
+    monkeypatch.setattr(coefficient_files, "find_case_coefficients", lambda cases, files, near_field: {})
     words = ["--case", CASE, "--compliance", "hybrid"]
     hybrid = coarse_curves(monkeypatch, tmp_path / "hybrid", *words, "--no-hole-near-field")
     assert len(asked) == 1

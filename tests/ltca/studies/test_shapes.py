@@ -62,7 +62,12 @@ def derived(monkeypatch, tmp_path):
         asked.append(drive)
         return without_coupling(drive)
 
+    def find_all(cases, **options):
+        asked.append(list(cases))
+        return {}
+
     monkeypatch.setattr(engines, "find_coefficients", find)
+    monkeypatch.setattr(shapes, "find_case_coefficients", find_all)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(shapes, "_ENGINES", shapes.OrderedDict())
     return asked
@@ -73,7 +78,9 @@ def test_a_sweep_derives_each_shape_once_and_beforehand(derived, tmp_path):
     told = []
     folder = StudyFolder(path=tmp_path / "hybrid")
     run_study(study, folder, Workers(), told=lambda text: told.append((text, len(derived))))
-    assert [drive.disc.thickness for drive in derived] == [11.8, 12.0]
+    together, *alone = derived  # several at once first, then each is found
+    assert together == ["shape 1", "shape 2"]
+    assert [drive.disc.thickness for drive in alone] == [11.8, 12.0]
     assert told == [("2 shapes have no influence coefficients yet: derived first, some 20 s each", 0)]
     run_study(half, StudyFolder(path=tmp_path / "half"), Workers())
     with (
