@@ -88,12 +88,19 @@ def test_disc_is_mirror_symmetric(disc, stations):
     assert np.max(np.abs(mirrored - disc.approach)) < 1.5e-3 * np.max(disc.approach)
 
 
-def test_wall_stress_is_mirror_symmetric(disc, stations):
-    places = stations.points
-    order = np.argmin(np.abs(places[:, None] - places.conjugate()), axis=0)
-    mirrored = disc.stress[np.ix_(order, order)]
-    # The meshes of both sides differ, and so leave 0.1 % of the largest stress (measured).
-    assert np.max(np.abs(mirrored - disc.stress)) < 3e-3 * np.max(np.abs(disc.stress))
+def test_wall_stress_is_mirror_symmetric(disc, stations, disc_shape):
+    rows, columns = (
+        np.argmin(np.abs(places[:, None] - places.conjugate()), axis=0)
+        for places in (stations.refined(disc_shape).points, stations.points)
+    )
+    mirrored = disc.stress[np.ix_(rows, columns)]
+    apart = np.max(np.abs(mirrored - disc.stress), axis=1) / np.max(np.abs(disc.stress))
+    # The meshes of both sides differ, and so leave 0.1 % of the largest stress (measured). Places between the stations of
+    # the loads are not refined for: 0.7 % there with elements of one and a half times the size (its bound set after that).
+    measured, loaded = stations.refined(disc_shape).points, stations.points
+    on_station = np.min(np.abs(measured[:, None] - loaded), axis=1) < 1e-9
+    assert np.max(apart[on_station]) < 3e-3
+    assert np.max(apart) < 1.5e-2
 
 
 def balanced_forces(resultants, loaded, seed):
@@ -160,15 +167,15 @@ def test_wall_stress_against_recovered_stress(direct, disc_shape, stations, disc
     forces = balanced_forces(stations.resultants(), LOADED, seed=4)
     stress = recover_stress(body, solve(patches @ forces[LOADED]), STEEL)
     walls = [stress_along_wall(body, stress, curve) for curve in disc_shape.curves]
-    found = disc.stress @ forces
+    found, measured = disc.stress @ forces, stations.refined(disc_shape)
     expected = np.array(
         [
             walls[boundary].at(np.array([parameter]))[0]
-            for boundary, parameter in zip(stations.boundary.tolist(), stations.parameter.tolist(), strict=True)
+            for boundary, parameter in zip(measured.boundary.tolist(), measured.parameter.tolist(), strict=True)
         ]
     )
-    clear = np.min(np.abs(stations.points[:, None] - stations.points[LOADED]), axis=1) > 4.0 * stations.half_width
-    assert np.count_nonzero(clear) > 0.9 * stations.count
+    clear = np.min(np.abs(measured.points[:, None] - stations.points[LOADED]), axis=1) > 4.0 * stations.half_width[0]
+    assert np.count_nonzero(clear) > 0.9 * measured.count
     # Nodal stresses of elements of 1.7 mm in roots of 8 mm: 1.4 % of the largest stress, 0.3 % in the mean (measured).
     assert np.max(np.abs(found - expected)[clear]) < 3e-2 * np.max(np.abs(expected[clear]))
     assert np.sqrt(np.mean((found - expected)[clear] ** 2)) < 6e-3 * np.max(np.abs(expected[clear]))
