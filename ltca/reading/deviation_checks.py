@@ -146,4 +146,4 @@ def _looked_at(drive: Drive, profile: FlankProfile) -> FloatArray:
     sharp = (radius - pitch_radius) / (np.sqrt(radius * pitch_radius) * (u - 1.0))
     about = sharp * np.linspace(-3.0, 3.0, POINTS_PER_WAVE + 1)
     roots = 2.0 * pi * np.arange(teeth)[:, None] / teeth + about
-    return np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi)
+    return np.asarray(np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi))
