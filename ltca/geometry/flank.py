@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -281,7 +281,11 @@ class FlankProfile:
             step = np.clip(value / np.maximum(np.abs(slope), 1e-3 * speed), -bound, bound)
             if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
-                outside = ((theta - step < low) | (theta - step > high)) & np.isfinite(high - low)
+                bracketed = np.isfinite(high - low)
+                # Across nearly all of the bracket is outside, too: its ends would send each other back for ever.
+                margin = 0.05 * np.where(bracketed, high - low, 0.0)
+                far = np.where(value < 0.0, theta - step > high - margin, theta - step < low + margin)
+                outside = bracketed & far
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta -= step
             direction = direction * small_turn(-step)
@@ -310,11 +314,22 @@ class FlankProfile:
         doubtful = (away > 0.3 * sharp) & (np.abs(theta - root) < 0.25 * pitch)
         if not np.any(doubtful):
             return found
-        mirrored = np.where(doubtful, 2.0 * root - theta, theta)
-        other = self.nearest_point(point, mirrored, across_root=False)
-        nearer = doubtful & (np.abs(self.locus(other.parameter).point + self.centre - point) < away)
-        chosen = (np.where(nearer, one, two) for one, two in zip(other.curve, found.curve, strict=True))
-        return NearestPoint(np.where(nearer, other.parameter, theta), CurvePoints(*chosen))
+        # The doubtful points alone; of a batch of flanks the positions that have some.
+        single = np.ndim(self.offset) == 0
+        rows = doubtful if single else np.nonzero(np.any(doubtful, axis=1))[0]
+        flank = self if single else self.take(rows)
+        point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
+        other = flank.nearest_point(point, start, across_root=False)
+        apart = np.abs(flank.locus(other.parameter).point + flank.centre - point)
+        nearer = doubtful[rows] & (apart < away[rows])
+
+        def chosen(here: NDArray[Any], there: NDArray[Any]) -> NDArray[Any]:
+            mixed = here.copy()
+            mixed[rows] = np.where(nearer, there, here[rows])
+            return mixed
+
+        curve = CurvePoints(*(chosen(here, there) for here, there in zip(found.curve, other.curve, strict=True)))
+        return NearestPoint(chosen(theta, other.parameter), curve)
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
         """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""

@@ -107,5 +107,5 @@ def test_slipping_teeth_are_no_answer():
 
 
 def test_random_drives_need_all_their_numbers():
-    with pytest.raises(ValueError, match="27 numbers"):
+    with pytest.raises(ValueError, match="34 numbers"):
         random_drive([0.5] * 5)
