@@ -33,6 +33,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--elastic-shaft-pins", action="store_true", help="shaft pins yield, too (default: rigid circles on springs)"
     )
+    parser.add_argument(
+        "--fine-walls",
+        action="store_true",
+        help="mesh the disc's walls for the stress along them: within 1 %% of the largest instead of 3.4 %%",
+    )
     parser.add_argument("--out", metavar="DIR", default="fem", help="folder for the files (default: fem)")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
     parser.add_argument(
@@ -72,6 +77,7 @@ def execute(arguments: argparse.Namespace) -> int:
         scale=arguments.size,
         state=arguments.plane,
         elastic_shaft_pins=arguments.elastic_shaft_pins,
+        fine_walls=arguments.fine_walls,
         progress=_progress(),
     )
     fields = recover_fields(solution.model, solution.state, state=arguments.plane)
