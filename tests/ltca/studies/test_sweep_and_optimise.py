@@ -161,6 +161,7 @@ def test_limit_is_kept_and_met(drive):
         )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_pareto_front_is_the_line_between_the_optima(drive):
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
     found = search(problem, quadratic, seed=1, generations=45)
