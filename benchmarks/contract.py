@@ -106,7 +106,7 @@ def optimum(drive: Drive) -> np.ndarray:
 
 COMMANDS: dict[str, tuple[str, Callable[[Drive], np.ndarray]]] = {
     "full-fe": ("full FE", full_solution),
-    "curves": ("curves", program(["curves", "--turns", "1"], "curves.json")),
+    "curves": ("curves", program(["curves", "--turns", "5"], "curves.json")),
     "tolerance": (
         "studies",
         program(["tolerance", "--samples", "2", "--positions", "4", "--quantities", "all"], "summary.json", TOLERANCES),
