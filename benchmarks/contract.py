@@ -141,7 +141,7 @@ def main() -> int:
                 after = answer(with_fields(base, change))
             except CycloError as error:
                 refused += 1
-                if path not in str(error):
+                if path not in str(error) and path.rpartition(".")[0] not in str(error):
                     ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
                 continue
             key = repr(base)

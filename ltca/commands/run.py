@@ -82,6 +82,8 @@ def execute(arguments: argparse.Namespace) -> int:
             fields.to_netcdf(part, engine="h5netcdf", encoding=packed)
         files.append("pressure.nc")
     print(_table(summaries))
+    if engine.options.get("hole_near_field") == "yes":
+        print(RIGID_SHAFT_PINS)
     print(_sampling(cases, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
@@ -196,6 +198,10 @@ ROWS = (
 )
 
 
+RIGID_SHAFT_PINS = (
+    "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
+    "--no-hole-near-field"
+)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
     ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),

@@ -40,7 +40,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     0.01
     """
     tree: dict[str, Any] = {}
-    if "disc.number_of_discs" in values and "disc.torque_share" not in values:  # as in a drive file
+    even = abs(drive.disc.torque_share * drive.disc.number_of_discs - 1.0) < 1e-12  # not a share of its own
+    if "disc.number_of_discs" in values and "disc.torque_share" not in values and even:  # as in a drive file
         values = {**values, "disc.torque_share": 1.0 / max(1, int(values["disc.number_of_discs"]))}
     arrays: dict[str, list[Any]] = {}
     whole = {}
