@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 
 class CycloError(Exception):
     """Base of every error that carries a message for the user."""
+
+    exit_status: ClassVar[int] = 2
+    """What the program ends with: 2 for wrong input, 1 for a fault or what has no answer."""
 
 
 class DriveError(CycloError):
@@ -29,6 +33,20 @@ class DriveError(CycloError):
         else:
             text = f"{head}{len(self.problems)} mistakes\n" + "\n".join(f"  {p}" for p in self.problems)
         super().__init__(text)
+
+
+class FaultError(CycloError):
+    """Something beside the input failed: the disc is full, workers died."""
+
+    exit_status = 1
+
+
+class PlaceError(CycloError):
+    """A file or folder that was asked for cannot be used: another process writes to it, or nobody may."""
+
+
+class DamagedFileError(CycloError):
+    """A file is damaged, or is not what it should be."""
 
 
 class ConvergenceError(CycloError):

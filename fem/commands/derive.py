@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +12,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fem.coefficients.laws import Check
+    from ltca.drive.parts import Drive
 
 SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
 # Options that say how to derive, and their defaults.
@@ -71,33 +70,35 @@ def execute(arguments: argparse.Namespace) -> int:
         return _check_file(arguments)
     if arguments.drive is None:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
-    import time
-
+    from ltca.output.run_folder import claimed_file
     from ltca.reading.drive_file import load_drive
 
     out = Path(arguments.out)
-    if out.is_dir():
-        raise CycloError(f"--out {out}: is a folder, not a file")
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    with claimed_file(out, "derive"):
+        return _derive(case, drive, arguments, out)
+
+
+def _derive(case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> int:
+    import time
 
     from fem.coefficients.dataset import derive_coefficients
-    from fem.coefficients.file import read_coefficients, require_writable, write_coefficients
+    from fem.coefficients.file import read_coefficients, write_coefficients
     from fem.coefficients.laws import check_coefficients
+    from ltca.output.progress import steps
 
-    require_writable(out)
     start = time.perf_counter()
-    show = _progress()
-    dataset = derive_coefficients(
-        drive,
-        case=case,
-        stations=arguments.stations,
-        size=arguments.size,
-        state=arguments.plane,
-        keep_clearance=not arguments.without_clearance,
-        progress=show,
-    )
-    show("")
+    with steps("deriving coefficients") as show:
+        dataset = derive_coefficients(
+            drive,
+            case=case,
+            stations=arguments.stations,
+            size=arguments.size,
+            state=arguments.plane,
+            keep_clearance=not arguments.without_clearance,
+            progress=show,
+        )
     write_coefficients(dataset, out)
     written = read_coefficients(out)
     checks = check_coefficients(written)
@@ -147,15 +148,3 @@ def _print_checks(dataset: xr.Dataset, checks: tuple[Check, ...]) -> None:
         print(f"{check.name:<{width}}  {check.value:>10.4g}  {check.bounds:<16}  {'ok' if check.passed else 'FAILED'}")
     for name, lacking in unstated.items():
         print(f"{name:<{width}}  {'':>10}  {'':<16}  not checked: the file has no {lacking}")
-
-
-def _progress() -> Callable[[str], None]:
-    """Return a function that shows one line that overwrites itself; it shows nothing without a terminal."""
-    if not sys.stderr.isatty():
-        return lambda step: None
-
-    def show(step: str) -> None:
-        text = f"deriving coefficients: {step}" if step else ""
-        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
-
-    return show

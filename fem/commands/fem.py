@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fem.drive.solution import FullSolution
+    from ltca.drive.parts import Drive
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 
@@ -61,32 +61,50 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, no convergence, or meshes that would not fit into memory.
     """
-    from fem.drive.fields import recover_fields
-    from fem.drive.solution import solve_drive
-    from fem.drive.solution_files import write_solution
+    from ltca.output.run_folder import claimed_folder
 
     check_position_arguments(arguments)
     _check_torque(arguments.torque)
     out = output_folder(arguments)
     referee = _referee(arguments.referee)
     name, case, drive = chosen_drive(arguments)
-    solution = solve_drive(
-        drive,
-        arguments.angle,
-        torque=arguments.torque,
-        scale=arguments.size,
-        state=arguments.plane,
-        elastic_shaft_pins=arguments.elastic_shaft_pins,
-        fine_walls=arguments.fine_walls,
-        progress=_progress(),
-    )
-    fields = recover_fields(solution.model, solution.state, state=arguments.plane)
-    write_solution(solution, fields, case, out)
+    with claimed_folder(out, "fem"):
+        _solve_and_write(f"{name}, {case}, {arguments.angle:g} rad", case, drive, arguments, out, referee)
+    return 0
+
+
+def _solve_and_write(
+    title: str,
+    case: str,
+    drive: Drive,
+    arguments: argparse.Namespace,
+    out: Path,
+    referee: Callable[[FullSolution, Path], None] | None,
+) -> None:
+    from fem.drive.fields import recover_fields
+    from fem.drive.solution import solve_drive
+    from fem.drive.solution_files import write_solution
+    from ltca.output.progress import steps
+
+    with steps() as show:
+        solution = solve_drive(
+            drive,
+            arguments.angle,
+            torque=arguments.torque,
+            scale=arguments.size,
+            state=arguments.plane,
+            elastic_shaft_pins=arguments.elastic_shaft_pins,
+            fine_walls=arguments.fine_walls,
+            progress=show,
+        )
+        show("files")
+        fields = recover_fields(solution.model, solution.state, state=arguments.plane)
+        write_solution(solution, fields, case, out)
     _print_contacts(solution)
     if not arguments.no_pictures:
         from fem.pictures.solution_pictures import draw_solution
 
-        problem = draw_solution(solution, fields, f"{name}, {case}, {arguments.angle:g} rad", out)
+        problem = draw_solution(solution, fields, title, out)
         if problem:
             print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
     if arguments.export or referee:
@@ -96,7 +114,6 @@ def execute(arguments: argparse.Namespace) -> int:
     if referee:
         referee(solution, out)
     print(f"written to {out}")
-    return 0
 
 
 def _check_torque(torque: float | None) -> None:
@@ -106,23 +123,10 @@ def _check_torque(torque: float | None) -> None:
         raise CycloError(f"--torque {torque:g}: must be a finite number greater than 0 (N·mm)")
 
 
-def _progress() -> Callable[[str], None] | None:
-    """Return a function that shows one line that overwrites itself; None without a terminal."""
-    if not sys.stderr.isatty():
-        return None
-
-    def show(line: str) -> None:
-        print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
-
-    return show
-
-
 def _print_contacts(solution: FullSolution) -> None:
     from fem.drive.solution_files import bearing_components
 
     contacts, seconds = solution.contacts, solution.seconds
-    if sys.stderr.isatty():
-        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
     rows = (
         ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
         (

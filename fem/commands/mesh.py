@@ -43,16 +43,23 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, missing libraries or a mesh that would not fit into memory.
     """
+    from ltca.output.run_folder import claimed_folder
+
+    name, case, drive = chosen_drive(arguments)
+    check_position_arguments(arguments)
+    out = output_folder(arguments)
+    with claimed_folder(out, "mesh"):
+        _mesh_and_write(f"{name}, {case}, crank angle {arguments.angle:g} rad", drive, arguments, out)
+    return 0
+
+
+def _mesh_and_write(title: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
     import time
 
     from fem.drive.expected_contacts import expect_contacts
     from fem.drive.meshes import mesh_drive
     from fem.mesh.quality import measure_quality
     from fem.shapes import DriveShapes
-
-    name, case, drive = chosen_drive(arguments)
-    check_position_arguments(arguments)
-    out = output_folder(arguments)
 
     def report(body: BodyMesh) -> None:
         print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
@@ -65,10 +72,8 @@ def execute(arguments: argparse.Namespace) -> int:
         f"{meshes.unknowns:,} unknowns in {len(meshes.bodies)} bodies, {time.perf_counter() - start:.2f} s", flush=True
     )
     _write_files(meshes, out)
-    headline = f"{name}, {case}, crank angle {arguments.angle:g} rad: {meshes.unknowns:,} unknowns"
-    _draw(drive, shapes, contacts, meshes, out / "mesh.png", headline)
+    _draw(drive, shapes, contacts, meshes, out / "mesh.png", f"{title}: {meshes.unknowns:,} unknowns")
     print(f"written to {out}")
-    return 0
 
 
 def _write_files(meshes: DriveMeshes, out: Path) -> None:

@@ -22,6 +22,7 @@ from fem.drive.solution import FullSolution
 from fem.mesh.mesh_file import write_vtu
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
+from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -221,7 +222,7 @@ def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: st
         raise CycloError(f"{index}: cannot be written: {error.strerror or error}") from error
     stress = recover_disc_stress(solution)
     with whole_file(folder / "fem.nc") as part:
-        build_dataset(solution, case).assign(stress_variables(stress)).to_netcdf(part, engine="h5netcdf")
+        write_netcdf(build_dataset(solution, case).assign(stress_variables(stress)), part)
     bodies = [write_field(field, folder / f"{field.body.name}.vtu") for field in fields]
     write_multi_block(bodies, index)
     write_json(folder / "summary.json", summarise(solution) | summarise_stress(stress))

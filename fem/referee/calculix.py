@@ -22,6 +22,7 @@ from fem.drive.solution import FullSolution
 from fem.referee.calculix_deck import pair_name, slave_faces, write_deck
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
+from ltca.output.processes import supervised
 
 FloatArray = NDArray[np.float64]
 
@@ -61,30 +62,31 @@ def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tup
     CycloError
         When ccx fails, does not end in time or leaves no results.
     """
-    with tempfile.TemporaryDirectory(prefix="cyclo-ccx-") as folder:
-        (Path(folder) / "job.inp").symlink_to(deck.resolve())
+    with tempfile.TemporaryDirectory(prefix="cyclo-ccx-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        (folder / "job.inp").symlink_to(deck.resolve())
+        environment = {**os.environ, "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1")}
+        said = folder / "said.txt"
         start = time.perf_counter()
         try:
-            run = subprocess.run(
-                [program, "job"],
-                cwd=folder,
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=limit,
-                check=False,
-                env={**os.environ, "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1")},
-            )
+            with (
+                said.open("wb") as stream,
+                supervised(
+                    [program, "job"], folder, cwd=folder, stdout=stream, stderr=subprocess.STDOUT, env=environment
+                ) as run,
+            ):
+                status = run.wait(limit)
         except subprocess.TimeoutExpired as error:
             raise CycloError(f"ccx did not end within {limit:.0f} s on {deck}") from error
         except OSError as error:
             raise CycloError(f"{program} cannot be run: {error}") from error
         seconds = time.perf_counter() - start
-        result = Path(folder) / "job.dat"
+        output = said.read_text(encoding="utf-8", errors="replace")
+        result = folder / "job.dat"
         text = result.read_text(encoding="utf-8", errors="replace") if result.exists() else ""
-        if run.returncode != 0 or "Job finished" not in run.stdout or "total surface force" not in text:
-            tail = " / ".join(line.strip() for line in run.stdout.splitlines() if "ERROR" in line) or run.stdout[-400:]
-            raise CycloError(f"ccx failed on {deck} (exit status {run.returncode}): {tail}")
+        if status != 0 or "Job finished" not in output or "total surface force" not in text:
+            tail = " / ".join(line.strip() for line in output.splitlines() if "ERROR" in line) or output[-400:]
+            raise CycloError(f"ccx failed on {deck} (exit status {status}): {tail}")
         return text, seconds
 
 

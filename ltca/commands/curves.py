@@ -92,19 +92,28 @@ class CaseCurves(NamedTuple):
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case, write curves.json and the figures, print what they say."""
     from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
-    from ltca.output.files import write_json
-    from ltca.output.progress import progress
+    from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
     limits, engine = _limits(arguments), compliance_of(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
-    find_coefficients_of(cases, arguments)
     out = arguments.out or Path("out") / f"{file.name}_curves"
+    with claimed_folder(out, "curves"):
+        find_coefficients_of(cases, arguments)
+        return _solve_and_write(file.name, cases, limits, engine, arguments, out)
+
+
+def _solve_and_write(
+    file: str, cases: dict[str, Drive], limits: Limits, engine: Engine, arguments: argparse.Namespace, out: Path
+) -> int:
+    from ltca.output.files import write_json
+    from ltca.output.progress import progress
+
     contents, figures = {}, []
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
-            title = f"{file.name} {name}"
+            title = f"{file} {name}"
             found = _solve(drive, _turns(arguments.turns, drive), limits, engine)
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, limits)
@@ -114,7 +123,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if figures:
         print(f"figures: {out / 'figures'} ({len(figures)} as SVG and PNG)")
     (first, *others) = contents.values()
-    write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
+    write_json(out / "curves.json", {"drive": file, "cases": contents} if others else first)
     print(f"results: {out / 'curves.json'}")
     return 0
 

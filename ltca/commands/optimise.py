@@ -44,17 +44,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Search, solve what was found and where it started finely, write, draw and print all of it."""
     from ltca.commands.compliance_arguments import compliance_of
-    from ltca.output.files import whole_file, write_json
-    from ltca.output.progress import progress
-    from ltca.reading.writing import drive_text
-    from ltca.studies.fine_solution import solve_finely
-    from ltca.studies.optimiser import batch_analysis, optimise
+    from ltca.output.run_folder import claimed_folder
 
     engine = compliance_of(arguments)
     name, problem = _problem(arguments)
     out = arguments.out or Path("out") / f"{name}_optimum"
+    with claimed_folder(out, "optimise"):
+        return _search_and_write(problem, engine, arguments, out)
+
+
+def _search_and_write(problem: Problem, engine: Engine, arguments: argparse.Namespace, out: Path) -> int:
+    from ltca.output.files import whole_file, write_json
+    from ltca.output.progress import progress
+    from ltca.reading.writing import drive_text
+    from ltca.studies.fine_solution import solve_finely
+    from ltca.studies.optimiser import batch_analysis, most_candidates, optimise
+
     _tell_beforehand(problem, engine, arguments)
-    with progress("candidates", 0) as bar:
+    with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
         optimum = optimise(
             problem,
             batch_analysis(problem, arguments.positions, engine),

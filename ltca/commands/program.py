@@ -15,10 +15,10 @@ from importlib.metadata import entry_points, version
 from typing import Any
 
 from ltca.errors import CycloError
+from ltca.output.processes import Terminated, ended_by_signals
 
 GROUP = "cyclo.commands"
 ORDER = ("run", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
-USAGE_ERROR = 2
 
 
 class _Parser(argparse.ArgumentParser):
@@ -56,17 +56,21 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run ``cyclo`` and return its exit status: 0 done, 1 a check failed, 2 bad input or no convergence."""
+    """Run ``cyclo`` and return its exit status: 0 done, 1 a check failed or a fault, 2 bad input."""
     words = list(sys.argv[1:] if argv is None else argv)
     # One thread each: the matrices of a batch are small, and threads that share two cores slow each other down.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
     arguments = build_parser(words[0] if words else "").parse_args(words)
     try:
-        return int(arguments.execute(arguments))
+        with ended_by_signals():
+            return int(arguments.execute(arguments))
     except CycloError as error:
         print(f"cyclo: error: {error}", file=sys.stderr)
-        return USAGE_ERROR
+        return error.exit_status
+    except Terminated:
+        print("cyclo: terminated", file=sys.stderr)
+        return 143
     except KeyboardInterrupt:
         print("cyclo: interrupted", file=sys.stderr)
         return 130

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ltca.analysis.loaded_analysis import LoadedAnalysis
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
+    from ltca.reading.drive_file import DriveFile
 
 SUMMARY = "loaded tooth contact analysis: loads, pressures, bearing forces, transmission error"
 DEFAULT_POSITIONS = 360
@@ -52,10 +53,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
-    from ltca.analysis.results import build_dataset, check_common_shape
-    from ltca.analysis.summary import summarise
+    from ltca.analysis.results import check_common_shape
     from ltca.commands.compliance_arguments import find_coefficients_of
-    from ltca.output.files import whole_file, write_json
+    from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
     angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
@@ -63,13 +63,36 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
-    find_coefficients_of(cases, arguments)
     out = arguments.out or Path("out") / file.name
+    with claimed_folder(out, "run"):
+        find_coefficients_of(cases, arguments)
+        chosen = _Chosen(file=file, cases=cases, engine=engine, torque=torque)
+        return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
+
+
+class _Chosen(NamedTuple):
+    """What is analysed."""
+
+    file: DriveFile
+    cases: dict[str, Drive]
+    engine: Engine
+    torque: float | None
+
+
+def _solve_and_write(
+    chosen: _Chosen, angles: FloatArray, pressure_angles: FloatArray | None, out: Path, *, figures: bool
+) -> int:
+    from ltca.analysis.results import build_dataset
+    from ltca.analysis.summary import summarise
+    from ltca.output.files import whole_file, write_json
+    from ltca.output.netcdf import write_netcdf
+
+    file, cases, engine, torque = chosen
     analyses = _analyse(cases, angles, torque, engine, "cases")
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
     dataset = build_dataset(file.name, analyses, file.text)
     with whole_file(out / "results.nc") as part:
-        dataset.to_netcdf(part, engine="h5netcdf")
+        write_netcdf(dataset, part)
     write_json(out / "summary.json", {"drive": file.name, "cases": summaries})
     files, fields = ["results.nc", "summary.json"], None
     if pressure_angles is not None:
@@ -79,14 +102,14 @@ def execute(arguments: argparse.Namespace) -> int:
         fields = build_pressure_dataset(file.name, shown, drive_file=file.text)
         packed = {name: {"zlib": True} for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))}
         with whole_file(out / "pressure.nc") as part:
-            fields.to_netcdf(part, engine="h5netcdf", encoding=packed)
+            write_netcdf(fields, part, packed)
         files.append("pressure.nc")
     print(_table(summaries))
     if engine.options.get("hole_near_field") == "yes":
         print(RIGID_SHAFT_PINS)
     print(_sampling(cases, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
-    if not arguments.no_figures:
+    if figures:
         _draw(dataset, fields, cases, out / "figures")
     return 0
 

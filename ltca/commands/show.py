@@ -26,9 +26,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print the drive and write its picture."""
     import numpy as np
 
-    from ltca.analysis.loaded_analysis import analyse
     from ltca.drive.units import parse_quantity
-    from ltca.figures.drive_picture import draw_drive
+    from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
     angle = parse_quantity(arguments.angle, "rad", "--angle")
@@ -36,18 +35,26 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select(arguments.case or [next(iter(file.cases))])
     out = arguments.out or Path("out") / file.name
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
+    with claimed_folder(out, "show", adding=True):
+        _show(cases, np.array([angle]), out)
+    return 0
+
+
+def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.figures.drive_picture import draw_drive
+
     for name, drive in cases.items():
         print(f"\ncase {name}")
         for title, value in _properties(drive):
             print(f"  {title:<48}{value}")
-        analysis = analyse(drive, np.array([angle]))
-        print(f"  at φ_C = {angle:g} rad")
+        analysis = analyse(drive, angle)
+        print(f"  at φ_C = {angle[0]:g} rad")
         for title, value in _loads(analysis):
             print(f"    {title:<46}{value}")
         path = out / f"drive_{name}.png"
         draw_drive(drive, analysis, 0, path)
         print(f"  picture: {path}")
-    return 0
 
 
 def _properties(drive: Drive) -> list[tuple[str, str]]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from ltca.studies.study import Study
 
 DEFAULT_POSITIONS = 28
+BESIDE = ("batches",)
+"""Folders of a study that outlive an interrupted run."""
 
 
 def add_study_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,18 +54,35 @@ def workers_of(arguments: argparse.Namespace) -> Workers:
 
 def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespace) -> int:
     """Run a study with progress, write its figures and print what it says."""
-    from ltca.analysis.extremes import sampling_warning
     from ltca.errors import DriveError
-    from ltca.geometry.placement import position_angles
-    from ltca.output.progress import progress
-    from ltca.studies.run_study import run_study, write_sample
+    from ltca.output.processes import Terminated
+    from ltca.output.run_folder import claimed_folder
+    from ltca.studies.run_study import write_sample
 
     workers = workers_of(arguments)
     if arguments.sample is not None:
         if not 0 <= arguments.sample < study.design.samples:
             raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])
-        print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
+        with claimed_folder(folder.path, "study", adding=True, beside=BESIDE):
+            print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
+    with claimed_folder(folder.path, "study", beside=BESIDE) as held:
+        if arguments.resume:
+            held.keep(folder.results, folder.table)
+        try:
+            return _solve_and_write(study, folder, workers, arguments)
+        except (KeyboardInterrupt, Terminated):
+            if folder.has_batches():
+                tell(f"finished batches are kept in {folder.path}: continue with --resume")
+            raise
+
+
+def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, arguments: argparse.Namespace) -> int:
+    from ltca.analysis.extremes import sampling_warning
+    from ltca.geometry.placement import position_angles
+    from ltca.output.progress import progress
+    from ltca.studies.run_study import run_study
+
     warning = sampling_warning(study.cases[0][1], position_angles(study.positions))
     if warning is not None:
         tell(f"warning: {warning}")

@@ -4,17 +4,48 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+import re
+import secrets
+import time
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-from ltca.errors import CycloError
+from ltca.errors import FaultError
+
+PART = re.compile(r"\..*\.[0-9a-f]{16}\.part(\.[^.]*)?")
+"""Names of files that are being written."""
+
+STALE = 86400.0
+"""Age, s, beyond which nobody writes a part any more."""
+
+Placed = Callable[[Path, Path], None]
+_PLACED: ContextVar[Placed | None] = ContextVar("placed", default=None)
+
+
+@contextmanager
+def told_of_files(placed: Placed) -> Iterator[None]:
+    """Tell a function of every file that is about to take its place while the block runs.
+
+    Parameters
+    ----------
+    placed : callable
+        Given the place and the finished part.
+    """
+    token = _PLACED.set(placed)
+    try:
+        yield
+    finally:
+        _PLACED.reset(token)
 
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """Give a temporary name to write to; the file takes its place only when the block ends well.
+
+    The part is made anew under a name that nobody can foresee, so in a shared folder no link of another user's is followed.
 
     Parameters
     ----------
@@ -28,19 +59,35 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     Raises
     ------
-    CycloError
+    FaultError
         When the folder cannot be made or the file cannot be written.
     """
-    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    part = path.with_name(f".{path.stem}.{secrets.token_hex(8)}.part{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        _remove_stale(path)
+        os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_NOFOLLOW", 0), 0o666))
         yield part
+        placed = _PLACED.get()
+        if placed is not None:
+            placed(path, part)
         part.replace(path)
     except OSError as error:
-        raise CycloError(f"{path}: cannot be written: {error.strerror or error}") from error
+        raise FaultError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
         with suppress(OSError):  # without a folder there is nothing to take away either
             part.unlink(missing_ok=True)
+
+
+def _remove_stale(path: Path) -> None:
+    """Remove parts of a file that were left by killed programs."""
+    head, now = f".{path.stem}.", time.time()
+    with os.scandir(path.parent) as entries:
+        for entry in entries:
+            if entry.name.startswith(head) and PART.fullmatch(entry.name):
+                with suppress(OSError):
+                    if now - entry.stat(follow_symlinks=False).st_mtime > STALE:
+                        os.unlink(entry.path)
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

@@ -1,11 +1,19 @@
-"""Progress on a terminal; nothing in a pipe."""
+"""Progress: a bar on a terminal, a line every few seconds without one."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+import threading
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol
+
+SECONDS = 5.0
+"""Between two lines where there is no terminal; what takes less time says nothing."""
+
+WIDTH = 118
+"""Letters of a line on a terminal."""
 
 
 class Advance(Protocol):
@@ -17,8 +25,8 @@ class Advance(Protocol):
 
 
 @contextmanager
-def progress(title: str, total: int) -> Iterator[Advance]:
-    """Show a bar with rate and time left on stderr while the block runs, if stderr is a terminal.
+def progress(title: str, total: int, *, at_most: bool = False) -> Iterator[Advance]:
+    """Show on stderr how far the block is: a bar with time left on a terminal, else a line every few seconds.
 
     Parameters
     ----------
@@ -26,6 +34,8 @@ def progress(title: str, total: int) -> Iterator[Advance]:
         What is counted.
     total : int
         How many there are.
+    at_most : bool
+        Whether there may be fewer.
 
     Yields
     ------
@@ -33,7 +43,18 @@ def progress(title: str, total: int) -> Iterator[Advance]:
         To be called with the name of each finished part, and its size when it is not 1.
     """
     if not sys.stderr.isatty():
-        yield lambda name, size=1: None
+        done, last = 0, ""
+
+        def describe() -> str:
+            of = f"{'at most ' if at_most else ''}{total}"
+            return f"{title}: {done} of {of}" + (f", {last}" if last else "")
+
+        def count(name: str, size: int = 1) -> None:
+            nonlocal done, last
+            done, last = done + size, name
+
+        with _said_regularly(describe):
+            yield count
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -46,3 +67,57 @@ def progress(title: str, total: int) -> Iterator[Advance]:
             bar.update(task, advance=size, description=f"{title}: {name}")
 
         yield advance
+
+
+@contextmanager
+def steps(title: str = "") -> Iterator[Callable[[str], None]]:
+    """Show on stderr what is being done: one line that overwrites itself on a terminal, else one every few seconds.
+
+    Parameters
+    ----------
+    title : str
+        Before the name of the step.
+
+    Yields
+    ------
+    callable
+        To be called with the name of each step before it starts.
+    """
+    head, now = f"{title}: " if title else "", ""
+    if not sys.stderr.isatty():
+
+        def note(step: str) -> None:
+            nonlocal now
+            now = step
+
+        with _said_regularly(lambda: f"{head}{now}" if now else ""):
+            yield note
+        return
+
+    def show(step: str) -> None:
+        print(f"\r\x1b[K{(head + step)[:WIDTH]}", end="", file=sys.stderr, flush=True)
+
+    try:
+        yield show
+    finally:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def _said_regularly(describe: Callable[[], str]) -> Iterator[None]:
+    """Print a description with the time so far every few seconds while the block runs, whatever it is busy with."""
+    ended, began = threading.Event(), time.monotonic()
+
+    def say() -> None:
+        while not ended.wait(SECONDS):
+            text = describe()
+            if text:
+                print(f"{text} ({time.monotonic() - began:.0f} s)", file=sys.stderr, flush=True)
+
+    thread = threading.Thread(target=say, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()

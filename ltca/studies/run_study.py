@@ -71,7 +71,7 @@ def run_study(
     advance : callable
         Told the samples of every finished batch and the rate so far in positions per second.
     told : callable
-        Told what has to be derived before samples are solved.
+        Told what has to be derived before samples are solved, and which kept batches cannot be used.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def run_study(
     CycloError
         When the folder holds something else, no sample has influence coefficients, or workers die again and again.
     """
-    left = folder.prepare(study, resume)
+    left = folder.prepare(study, resume, told)
     if not study.engine.batches:
         find_beforehand(study.engine, study.shapes(left), told)
     waiting = sum(last - first for first, last in map(study.samples_of, left))

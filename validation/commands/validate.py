@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from validation.study import Plan, Study
 
 SUMMARY = "compare the codes with closed forms, other codes, the paper and full finite elements; write a report"
@@ -59,16 +60,12 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     import math
 
-    from threadpoolctl import threadpool_limits
-
     from ltca.drive.units import parse_quantity
     from ltca.errors import CycloError
+    from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
     from validation.compare.finite_element_positions import Settings
-    from validation.report.headline import write_files
-    from validation.report.page import write_report
-    from validation.rows import failed_rows
-    from validation.study import plan_study, run_validation
+    from validation.study import plan_study
 
     if not (math.isfinite(arguments.size) and arguments.size > 0.0):
         raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
@@ -76,17 +73,25 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
     out: Path = arguments.out or Path("out") / file.name / "validation"
-    if out.exists() and not out.is_dir():
-        raise CycloError(f"--out {out}: is a file, not a folder")
-    progress = _Progress(plan)
-    try:
-        # One thread: sums in another order would change last digits, and a resumed run shall end with the same bytes.
-        with threadpool_limits(limits=1):
-            study = run_validation(plan, out / "kept", progress.step, progress.say)
+    with claimed_folder(out, "validate", beside=("kept",)):
+        return _run_and_write(plan, out)
+
+
+def _run_and_write(plan: Plan, out: Path) -> int:
+    from threadpoolctl import threadpool_limits
+
+    from ltca.output.progress import steps
+    from validation.report.headline import write_files
+    from validation.report.page import write_report
+    from validation.rows import failed_rows
+    from validation.study import run_validation
+
+    # One thread: sums in another order would change last digits, and a resumed run shall end with the same bytes.
+    with steps() as show, threadpool_limits(limits=1):
+        progress = _Progress(plan, show)
+        study = run_validation(plan, out / "kept", progress.step, progress.say)
         progress.step("report")
         paths = [write_report(study, out / "report.html"), *write_files(study, out)]
-    finally:
-        progress.clear()
     failed = failed_rows(study.rows)
     for row in failed:
         place = ", ".join(part for part in (row.case, _angle(row.crank_angle), row.contact, row.model) if part)
@@ -134,11 +139,10 @@ def _print_costs(study: Study) -> None:
 
 
 class _Progress:
-    """One line on a terminal that overwrites itself: step of how many, what it is, its details; nothing in a pipe."""
+    """Which step of how many, what it is, and its details."""
 
-    def __init__(self, plan: Plan) -> None:
-        self.total, self.done, self.title = plan.steps, 0, ""
-        self.terminal = sys.stderr.isatty()
+    def __init__(self, plan: Plan, show: Callable[[str], None]) -> None:
+        self.total, self.done, self.title, self.show = plan.steps, 0, "", show
 
     def step(self, title: str) -> None:
         self.done += 1
@@ -146,10 +150,4 @@ class _Progress:
         self.say("")
 
     def say(self, detail: str) -> None:
-        if self.terminal:
-            line = f"{self.title}: {detail}" if detail else self.title
-            print(f"\r\x1b[K{line[:118]}", end="", file=sys.stderr, flush=True)
-
-    def clear(self) -> None:
-        if self.terminal:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+        self.show(f"{self.title}: {detail}" if detail else self.title)

@@ -10,12 +10,10 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import signal
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -24,6 +22,7 @@ import numpy as np
 
 from ltca.errors import CycloError
 from ltca.output.files import write_json
+from ltca.output.processes import supervised
 from ltca.output.provenance import code_hash
 from validation.compare.comparison import ARCSECONDS, Kind, contact_name
 from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, ROLLERS, Answer
@@ -64,24 +63,26 @@ def asked_codes(kept: Path | None = None) -> Iterator[Callable[[], list[Row]]]:
     """
     known = {} if kept is None else read_kept(kept)
     asked = [name for name, code in CODES.items() if name not in known and code.installed()]
-    with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
-        answers, trouble = Path(folder) / "answers.json", Path(folder) / "trouble.txt"
+    with tempfile.TemporaryDirectory(prefix="cyclo-validate-", ignore_cleanup_errors=True) as name, ExitStack() as stack:
+        folder = Path(name)
+        answers, trouble = folder / "answers.json", folder / "trouble.txt"
         process = None
         if asked:
             words = [sys.executable, "-m", "validation.levels.other_codes", "--out", str(answers), *asked]
             with trouble.open("wb") as stream:
-                # A session of its own, so that what the process starts ends with it; one thread for the same digits always.
+                # One thread for the same digits always; its temporary files go with the folder.
                 one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
-                process = subprocess.Popen(words, stdout=stream, stderr=stream, env=one_thread, start_new_session=True)
+                process = stack.enter_context(supervised(words, folder, stdout=stream, stderr=stream, env=one_thread))
 
         def collect() -> list[Row]:
             # Ours first: the other process works meanwhile.
             ours = {name: code.ours() for name, code in CODES.items()}
             found = dict(known)
             if process is not None:
-                if process.wait() != 0:
+                status = process.wait()
+                if status != 0:
                     lines = trouble.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-                    raise CycloError(f"{' and '.join(asked)} failed: {lines[-1] if lines else process.returncode}")
+                    raise CycloError(f"{' and '.join(asked)} failed: {lines[-1] if lines else status}")
                 found |= fitting_answers(json.loads(answers.read_text(encoding="utf-8")))
             if kept is not None and process is not None:
                 write_kept(kept, found)
@@ -92,12 +93,7 @@ def asked_codes(kept: Path | None = None) -> Iterator[Callable[[], list[Row]]]:
                 rows += compare_answers(name, ours[name], theirs, name if fresh else f"{name} (stored, {COMMAND})")
             return rows
 
-        try:
-            yield collect
-        finally:
-            if process is not None and process.poll() is None:
-                os.killpg(process.pid, signal.SIGTERM)
-                process.wait()
+        yield collect
 
 
 def fitting_answers(content: dict[str, Any]) -> dict[str, Answer]:

@@ -6,10 +6,8 @@ Nothing in the final files depends on time, on who solved it or on the order in 
 from __future__ import annotations
 
 import json
-import shutil
-import zipfile
-import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.fields import field_kinds
-from ltca.errors import CycloError
+from ltca.errors import CycloError, DamagedFileError
 from ltca.output.files import whole_file, write_json
+from ltca.output.netcdf import DiscStream, netcdf_stream
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
+from ltca.studies.execution.batch_files import batch_files, read_batch, write_batch
 from ltca.studies.quantities import QUANTITIES
 from ltca.studies.study import BatchResult, Study
 
@@ -62,8 +62,21 @@ class StudyFolder:
     def _plan(self) -> Path:
         return self.path / "study.json"
 
-    def prepare(self, study: Study, resume: bool) -> list[int]:
+    def has_batches(self) -> bool:
+        """Tell whether there are finished batches of an interrupted study."""
+        return any(True for _ in batch_files(self._batches))
+
+    def prepare(self, study: Study, resume: bool, told: Callable[[str], None] = lambda message: None) -> list[int]:
         """Make the folder ready and return the batches that are still to be solved.
+
+        Parameters
+        ----------
+        study : Study
+            What is to be solved.
+        resume : bool
+            Whether to continue what the folder holds.
+        told : callable
+            Told which batches are set aside, and why.
 
         Raises
         ------
@@ -72,7 +85,7 @@ class StudyFolder:
         """
         fingerprint = study.fingerprint()
         held = self._held()
-        unfinished = self._batches.is_dir() and any(self._batches.iterdir())
+        unfinished = self.has_batches()
         if resume:
             if held is None:
                 raise CycloError(f"{self.path}: holds no study to resume")
@@ -89,7 +102,7 @@ class StudyFolder:
                 f"{self.path}: holds finished batches of an interrupted study; continue it with --resume, or remove "
                 f"{self._batches} to start over"
             )
-        done = self._done(fingerprint) if resume else set()
+        done = self._done(study, told) if resume else set()
         if not resume:
             for stale in (self.results, self.table):
                 stale.unlink(missing_ok=True)
@@ -110,46 +123,30 @@ class StudyFolder:
             return str(json.loads(self._plan.read_text(encoding="utf-8"))["fingerprint"])
         except FileNotFoundError:
             return None
-        except (OSError, ValueError, KeyError) as error:
-            raise CycloError(f"{self._plan}: cannot be read: {error}") from error
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+            raise DamagedFileError(f"{self._plan}: cannot be read as the plan of a study: {error}") from error
 
-    def _done(self, fingerprint: str) -> set[int]:
-        """Finished batches of this study; one that is damaged or of another is solved again."""
+    def _done(self, study: Study, told: Callable[[str], None]) -> set[int]:
+        """Finished batches of this study; what is damaged or of another is set aside and solved again."""
         done = set()
-        for item in self._batches.glob("[0-9]*.npz"):
+        for path in batch_files(self._batches):
             try:
-                # Opened here: of a file that is no archive numpy leaves its own stream open.
-                with item.open("rb") as stream, np.load(stream) as stored:
-                    sound = str(stored["fingerprint"]) == fingerprint
-                    for name in stored.files:
-                        stored[name]  # reads it whole, checksum included
-            except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error):
-                sound = False
-            if sound:
-                done.add(int(item.stem))
-            else:
-                item.unlink()
+                done.add(read_batch(path, study).number)
+            except DamagedFileError as error:
+                aside = path.with_suffix(".npz.aside")
+                path.replace(aside)
+                told(f"{error}; set aside as {aside.name}, its samples are solved again")
         return done
 
     def store(self, study: Study, result: BatchResult) -> None:
         """Keep one finished batch, whole or not at all, and whose it is."""
-        with whole_file(self._batches / f"{result.number:08d}.npz") as part:
-            np.savez(
-                part,
-                factors=result.factors,
-                values=result.values,
-                messages=np.array(result.messages, dtype=str),
-                fingerprint=np.array(study.fingerprint()),
-            )
+        write_batch(self._batches / f"{result.number:08d}.npz", study, result)
 
-    def _load(self, number: int) -> BatchResult:
-        with np.load(self._batches / f"{number:08d}.npz") as stored:
-            return BatchResult(
-                number=number,
-                factors=stored["factors"],
-                values=stored["values"],
-                messages=tuple(str(text) for text in stored["messages"]),
-            )
+    def _load(self, study: Study, number: int) -> BatchResult:
+        try:
+            return read_batch(self._batches / f"{number:08d}.npz", study)
+        except DamagedFileError as error:
+            raise DamagedFileError(f"{error}; continue with --resume, which solves its samples again") from error
 
     def _in_chunks(self, study: Study) -> Iterator[tuple[int, FloatArray, FloatArray, list[str]]]:
         """Samples in order: first number, factors, values and messages of each chunk."""
@@ -158,7 +155,7 @@ class StudyFolder:
         messages: list[str] = []
         first = 0
         for number in range(study.batches):
-            batch = self._load(number)
+            batch = self._load(study, number)
             factors.append(batch.factors)
             values.append(batch.values)
             messages += batch.messages
@@ -187,18 +184,21 @@ class StudyFolder:
         failures: list[tuple[int, str]] = []
         for first, _, _, messages in self._in_chunks(study):
             failures += [(first + place, message) for place, message in enumerate(messages) if message]
-        with whole_file(self.results) as part:
-            self._write_dataset(study, part, failures)
+        with whole_file(self.results) as part, netcdf_stream(part) as stream:
+            self._write_dataset(study, stream, failures)
         with whole_file(self.table) as part:
             self._write_table(study, part)
-        shutil.rmtree(self._batches)
+        for path in list(batch_files(self._batches)):
+            path.unlink()
+        with suppress(OSError):  # what is not ours stays, and so does the folder then
+            self._batches.rmdir()
         return failures
 
-    def _write_dataset(self, study: Study, path: Path, failures: list[tuple[int, str]]) -> None:
+    def _write_dataset(self, study: Study, stream: DiscStream, failures: list[tuple[int, str]]) -> None:
         import h5netcdf
 
         samples, names = study.design.samples, study.design.names
-        with h5netcdf.File(path, "w") as file:
+        with h5netcdf.File(stream, "w") as file:
             file.dimensions = {"sample": samples, "factor": len(names), "failure": len(failures)}
             file.attrs.update(_attributes(study))
             text = {"dtype": h5netcdf.core.h5py.string_dtype()}
@@ -228,6 +228,7 @@ class StudyFolder:
                 failed[rows] = np.array([bool(message) for message in messages], dtype="i1")
                 for column, numbers_of in zip(columns, values.T, strict=True):
                     column[rows] = numbers_of
+                stream.check()
 
     def _write_table(self, study: Study, path: Path) -> None:
         import pyarrow as pa

@@ -13,9 +13,11 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_all_start_methods, get_context
+from multiprocessing.forkserver import ensure_running
 from typing import Any, cast
 
-from ltca.errors import CycloError
+from ltca.errors import CycloError, FaultError
+from ltca.output.processes import become_worker, end_workers, interrupts_held
 from ltca.studies.study import BatchResult, Study, run_batch
 
 LOSSES = 3
@@ -69,9 +71,15 @@ class Workers:
             context = get_context("forkserver" if server else "spawn")
             if server:
                 context.set_forkserver_preload(["ltca.studies.execution.warm_worker"])
+                with interrupts_held():
+                    # While it loads, Ctrl-C would end it with a traceback of its own.
+                    ensure_running()
             pool = ProcessPoolExecutor(self.processes, mp_context=context, initializer=_calm_threads)
             try:
                 yield pool, self.processes
+            except BaseException:
+                end_workers()
+                raise
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
         else:
@@ -83,14 +91,11 @@ class Workers:
 
 def _calm_threads() -> None:
     """One thread a worker: threads of small dense algebra wait for each other (up to 40 times slower, measured)."""
-    import signal
-
     from threadpoolctl import threadpool_limits
 
     os.environ["OMP_NUM_THREADS"] = "1"
     threadpool_limits(1)
-    # Ctrl-C reaches the whole group; the parent decides what ends.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    become_worker()
 
 
 @contextmanager
@@ -131,7 +136,7 @@ def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Ite
 
     Raises
     ------
-    CycloError
+    FaultError
         When workers die again and again.
     """
     left = list(numbers)[::-1]
@@ -146,7 +151,7 @@ def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Ite
         except BrokenProcessPool:
             # A worker died (killed, out of memory): its pool is gone with it, what was not finished starts again.
             left = [number for number in left if number not in done]
-    raise CycloError(
+    raise FaultError(
         f"workers died {LOSSES + 1} times; {len(left)} batches are left: finished ones are kept, continue with --resume"
     )
 

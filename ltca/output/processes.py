@@ -1,0 +1,151 @@
+"""Processes that end with the one that started them, and signals that end a command cleanly."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+ENDING = 10.0
+"""Time, s, in which a supervised program has to be gone."""
+
+
+class Terminated(BaseException):
+    """SIGTERM has come: unwinds like Ctrl-C, so that temporary files and children go."""
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Turn SIGTERM into `Terminated` while the block runs; only the main thread can."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def end(number: int, frame: Any) -> None:
+        signal.signal(number, signal.SIG_IGN)  # a second one would cut the cleaning short
+        raise Terminated
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Hold Ctrl-C back while children are started: they inherit that, and this process hears it after the block."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def become_worker() -> None:
+    """Make this worker of a pool of processes deaf to Ctrl-C and end with its parent; for ``initializer``."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it reaches the whole group; the parent decides what ends
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    from multiprocessing import parent_process
+    from multiprocessing.connection import wait
+
+    parent = parent_process()
+    if parent is None:
+        return
+
+    def watch() -> None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True, name="ends with its parent").start()
+
+
+def end_workers() -> None:
+    """End the workers of all pools of this process at once, for a way out that does not wait for them."""
+    from multiprocessing import active_children
+
+    for child in active_children():
+        child.terminate()
+
+
+class Supervised:
+    """A program under supervision: it ends with this process, and so does its temporary folder.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Program and arguments.
+    folder : Path
+        Its temporary files; removed when this process ends.
+    options : mapping
+        Of `subprocess.Popen`: where it runs, where its output goes, its environment.
+    """
+
+    def __init__(self, words: Sequence[str], folder: Path, options: Mapping[str, Any]) -> None:
+        supervisor = Path(__file__).with_name("supervisor.py")
+        with interrupts_held():
+            self._process = subprocess.Popen(
+                [sys.executable, "-S", "-E", str(supervisor), str(folder), *words],
+                stdin=subprocess.PIPE,
+                start_new_session=True,
+                **options,
+            )
+
+    def wait(self, seconds: float | None = None) -> int:
+        """Wait until the program ends and return its exit status.
+
+        Raises
+        ------
+        subprocess.TimeoutExpired
+            When it takes longer than some seconds.
+        """
+        return self._process.wait(seconds)
+
+    def end(self) -> None:
+        """End the program with all it started, if it still runs."""
+        if self._process.stdin is not None:
+            self._process.stdin.close()
+        try:
+            self._process.wait(ENDING)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+
+@contextmanager
+def supervised(words: Sequence[str], folder: Path, **options: Any) -> Iterator[Supervised]:
+    """Give a program that runs beside the block and is ended with it.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Program and arguments; the program must be there.
+    folder : Path
+        Its temporary files.
+    **options
+        Of `subprocess.Popen`.
+
+    Yields
+    ------
+    Supervised
+        To be waited for.
+
+    Raises
+    ------
+    OSError
+        When no process can be started.
+    """
+    program = Supervised(words, folder, options)
+    try:
+        yield program
+    finally:
+        program.end()

@@ -1,0 +1,284 @@
+"""The folder of a run: one process at a time writes to it, and what it holds comes from one run.
+
+A run keeps a manifest of what it wrote. Before its first file takes its place it removes what the last manifest lists,
+so that numbers of one run never lie beside pictures of another. What is not listed, or was changed since, is the user's
+and stays.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from ltca.errors import FaultError, PlaceError
+from ltca.output.files import PART, told_of_files, whole_file
+
+MANIFEST = "cyclo-manifest.json"
+LOCK = ".cyclo.lock"
+FORMAT = 1
+FOLDERS = ("figures", "samples")
+"""Folders of results in the folder of a run."""
+FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
+"""What is no fault of whoever chose the folder."""
+
+
+class RunFolder:
+    """What a run knows of its folder while it holds it.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    command : str
+        Whose it is, for the manifest.
+    beside : tuple of str
+        Folders in it whose files outlive a run: kept answers, finished batches.
+    adding : bool
+        Whether files of earlier runs stay.
+    """
+
+    def __init__(self, path: Path, command: str, beside: tuple[str, ...], adding: bool) -> None:
+        self.path, self.command = path.resolve(), command
+        self._beside = {self.path / name for name in beside}
+        self._old = _read_manifest(self.path)
+        self._files = dict(self._old) if adding else {}
+        self._kept: set[str] = set(self._old) if adding else set()
+        self._cleared = adding
+
+    def keep(self, *paths: Path) -> None:
+        """Take files of an earlier run over into this one: a resumed study goes on with its own.
+
+        Parameters
+        ----------
+        *paths : Path
+            Those that the last manifest does not list are left alone anyway.
+        """
+        for path in paths:
+            name = self._name(path)
+            if name in self._old:
+                self._kept.add(name)
+                self._files[name] = self._old[name]
+
+    def place(self, path: Path, part: Path) -> None:
+        """Enter a finished file into the manifest just before it takes its place."""
+        name = self._name(path)
+        if name is None:
+            return
+        self._clear(name)
+        self._files[name] = _checksum(part)
+        self._write(complete=False)
+
+    def finish(self) -> None:
+        """Say in the manifest that the run is complete."""
+        if self._files:
+            self._clear("")
+            self._write(complete=True)
+
+    def _name(self, path: Path) -> str | None:
+        """Return the name of a file in the manifest; None for one that is kept beside the results or lies elsewhere."""
+        place = path.parent.resolve() / path.name
+        if not place.is_relative_to(self.path) or any(place.is_relative_to(folder) for folder in self._beside):
+            return None
+        return None if place.name == MANIFEST and place.parent == self.path else place.relative_to(self.path).as_posix()
+
+    def _clear(self, name: str) -> None:
+        """Remove what the last run wrote and nobody changed since, but for the file that is replaced right now."""
+        if self._cleared:
+            return
+        for old in sorted(set(self._old) - self._kept - {name}):
+            place = self.path / old
+            if place.is_file() and not place.is_symlink() and _checksum(place) == self._old[old]:
+                place.unlink()
+                if place.parent != self.path:
+                    with suppress(OSError):  # the folder stays while anything is in it
+                        place.parent.rmdir()
+        self._cleared = True
+
+    def _write(self, *, complete: bool) -> None:
+        content = {
+            "cyclo": FORMAT,
+            "command": self.command,
+            "complete": complete,
+            "files": dict(sorted(self._files.items())),
+        }
+        with whole_file(self.path / MANIFEST) as part:
+            part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+@contextmanager
+def claimed_folder(
+    path: Path, command: str, *, beside: tuple[str, ...] = (), adding: bool = False, option: str = "--out"
+) -> Iterator[RunFolder]:
+    """Hold a folder while a run writes to it.
+
+    Parameters
+    ----------
+    path : Path
+        The folder; it is made.
+    command : str
+        Name of the command, for manifest and message.
+    beside : tuple of str
+        Folders in it whose files outlive a run.
+    adding : bool
+        Whether the run adds to what is there instead of replacing it.
+    option : str
+        What the user gave the folder by.
+
+    Yields
+    ------
+    RunFolder
+        Enters every file of `ltca.output.files.whole_file` by itself.
+
+    Raises
+    ------
+    PlaceError
+        When another process holds it, or it cannot be made or written to.
+    FaultError
+        When the disc is full or fails.
+    """
+    if path.exists() and not path.is_dir():
+        raise PlaceError(f"{option} {path}: is a file, not a folder")
+    with held(path / LOCK, f"{option} {path}", command):
+        _remove_parts(path, beside)
+        folder = RunFolder(path, command, beside, adding)
+        with told_of_files(folder.place):
+            yield folder
+            folder.finish()
+
+
+@contextmanager
+def claimed_file(path: Path, command: str, *, option: str = "--out") -> Iterator[None]:
+    """Hold one file while a run makes it.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder is made.
+    command : str
+        Name of the command, for the message.
+    option : str
+        What the user gave the file by.
+
+    Raises
+    ------
+    PlaceError
+        When another process makes it, or its folder cannot be made or written to.
+    FaultError
+        When the disc is full or fails.
+    """
+    if path.is_dir():
+        raise PlaceError(f"{option} {path}: is a folder, not a file")
+    with held(path.with_name(f".{path.name}.lock"), f"{option} {path}", command):
+        yield
+
+
+@contextmanager
+def held(lock: Path, what: str, command: str, *, wait: bool = False) -> Iterator[None]:
+    """Hold a lock that ends with the process, however that ends; its file is removed.
+
+    Parameters
+    ----------
+    lock : Path
+        File of the lock; its folder is made.
+    what : str
+        What is locked, for the message.
+    command : str
+        Who holds it.
+    wait : bool
+        Whether to wait for whoever holds it.
+
+    Raises
+    ------
+    PlaceError
+        When another process holds it and it was not to be waited for, or the folder cannot be made or written to.
+    FaultError
+        When the disc is full or fails.
+    """
+    try:
+        lock.parent.mkdir(parents=True, exist_ok=True)
+        descriptor = _take(lock, wait)
+    except BlockingIOError:
+        raise PlaceError(f"{what}: {_holder(lock)} is writing there: wait for it, or choose another place") from None
+    except OSError as error:
+        kind = FaultError if error.errno in FAULTS else PlaceError
+        raise kind(f"{what}: cannot be written to: {error.strerror or error}") from error
+    try:
+        with suppress(OSError):  # a full disc keeps no name, the lock holds all the same
+            os.ftruncate(descriptor, 0)
+            os.pwrite(descriptor, f"cyclo {command} (process {os.getpid()})".encode(), 0)
+        yield
+    finally:
+        with suppress(OSError):
+            lock.unlink(missing_ok=True)
+        os.close(descriptor)
+
+
+def _take(lock: Path, wait: bool) -> int:
+    """Open and lock a file; whoever held it may have removed it meanwhile: then again."""
+    try:
+        import fcntl
+
+        take: Callable[[int], None] = lambda file: fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except ImportError:  # no such locks on this system: two runs are not kept apart
+        take = lambda file: None
+    while True:
+        descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        try:
+            take(descriptor)
+            if os.path.samestat(os.fstat(descriptor), os.stat(lock, follow_symlinks=False)):
+                return descriptor
+        except FileNotFoundError:
+            pass
+        except BaseException:
+            os.close(descriptor)
+            raise
+        os.close(descriptor)
+
+
+def _holder(lock: Path) -> str:
+    try:
+        text = lock.read_text(encoding="utf-8", errors="replace")[:80]
+    except OSError:
+        text = ""
+    return text if text.isprintable() and text.startswith("cyclo ") else "another process"
+
+
+def _read_manifest(folder: Path) -> dict[str, str]:
+    """Return the files that the last run lists, by name with checksum; nothing where the manifest is damaged or not ours."""
+    try:
+        content: Any = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        files = dict(content["files"]) if content["cyclo"] == FORMAT else {}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return {}
+    return {name: checksum for name, checksum in files.items() if _ours(folder, name) and isinstance(checksum, str)}
+
+
+def _ours(folder: Path, name: object) -> bool:
+    """Tell whether a name in a manifest is that of a file below the folder, reached by no link."""
+    if not isinstance(name, str) or not name or "\0" in name or "\\" in name:
+        return False
+    parts = PurePosixPath(name).parts
+    if PurePosixPath(name).is_absolute() or ".." in parts:
+        return False
+    return (folder / name).parent.resolve() == (folder.resolve() / name).parent
+
+
+def _checksum(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _remove_parts(folder: Path, beside: tuple[str, ...]) -> None:
+    """Remove what a killed run left half-written: the lock is held, so nobody writes to it."""
+    patterns = [".*.part*", *(f"{name}/.*.part*" for name in FOLDERS)]
+    patterns += [f"{name}/{below}.*.part*" for name in beside for below in ("", "*/")]
+    for path in (path for pattern in patterns for path in folder.glob(pattern)):
+        if PART.fullmatch(path.name) and not path.is_symlink():
+            with suppress(OSError):
+                path.unlink()
