@@ -81,23 +81,3 @@ def refer_to_boundary(compliance: FloatArray, resultants: FloatArray, gram: Floa
     motion = -np.linalg.solve(gram, resultants)
     transform = np.vstack([np.eye(resultants.shape[1]), motion])
     return np.asarray(transform.T @ compliance @ transform)
-
-
-def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> FloatArray:
-    """Return approaches with everything removed that rigid motions, or resultants, can change.
-
-    Parameters
-    ----------
-    approach : array, shape (m, m)
-        In any datum.
-    resultants : array, shape (3, m)
-        Of the unit loads.
-
-    Returns
-    -------
-    array, shape (m, m)
-        Q A Q with Q the projection onto loads without resultant; equal for all datums.
-    """
-    basis, _ = np.linalg.qr(resultants.T)
-    left = approach - basis @ (basis.T @ approach)
-    return np.asarray(left - (left @ basis) @ basis.T)

@@ -1,4 +1,4 @@
-"""Influence coefficients of the bodies: places, loads, derivation, file and its checks.
+"""Influence coefficients of the bodies: places, loads, derivation. Their file and its laws are in `ltca.reading`.
 
 Modules in the order data passes:
 
@@ -8,9 +8,7 @@ patch_loads  Patches with semi-elliptic pressure on meshed boundaries: loads, an
 wall_strain  Tangential strain of walls as a measure of the displacement: what stress stations read
 bodies       Normal approach influence coefficients of the bodies of a drive, derived by finite elements
 dataset      All influence coefficients of a drive as one labelled dataset, the content of ``coefficients.nc``
-laws         Checks of a file of influence coefficients by laws that need no second computation
-schema       What a file of influence coefficients must hold to be used, and whose bodies it belongs to; whoever made
-             it
-file         ``coefficients.nc``: written whole or not at all, read back as the dataset that was written
+fit          Whose bodies a file of influence coefficients belongs to: its numbers and its stations against those of a
+             drive
 ===========  ============================================================
 """

@@ -16,17 +16,19 @@ from numpy.typing import NDArray
 
 from fem.body.condensation import condense_body
 from fem.body.elasticity import PlaneState, assemble_stiffness, rigid_modes, unknowns_of_boundary
-from fem.body.free_body import boundary_motion_loads, project_rigid_motions, refer_to_boundary
+from fem.body.free_body import boundary_motion_loads, refer_to_boundary
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.stations import RACE_ANGLES, DiscStations, patch_half_width
 from fem.coefficients.wall_strain import continue_under_patches, wall_modulus, wall_strain_measures
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import Refinement
-from fem.mesh.memory_need import available_memory, require_memory, solution_memory
+from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, RingShape, Shape
 from ltca.drive.parts import Material
+from ltca.output.resources import available_memory
+from ltca.reading.coefficient_laws import project_rigid_motions
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

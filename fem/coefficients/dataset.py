@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
-from fem.body.free_body import project_rigid_motions
 from fem.coefficients.bodies import (
     EDGE_SHARE,
     GROWTH,
@@ -27,10 +26,12 @@ from fem.coefficients.bodies import (
     require_disc_memory,
     require_element_size,
 )
-from fem.coefficients.stations import DiscStations, nominal_shape
+from fem.coefficients.stations import DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
+from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Drive
+from ltca.reading.coefficient_laws import project_rigid_motions
 
 if TYPE_CHECKING:
     import xarray as xr

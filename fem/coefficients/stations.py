@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.shapes import Curve, DiscShape, Shape
-from ltca.drive.parts import Clearance, Drive, PlacementErrors, ProfileErrors, RollerErrors, Runout
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -148,15 +147,3 @@ def patch_half_width(shape: Shape) -> float:
     """
     curves = tuple(curve for curve in shape.curves if curve.name not in ("core", "inner"))
     return PATCH_SHARE * min(smallest_radius(curves), shape.narrowest_wall)
-
-
-def nominal_shape(drive: Drive, *, keep_clearance: bool = True) -> Drive:
-    """Return the drive without errors of single parts, which coefficients do not know, and without clearances if asked."""
-    return replace(
-        drive,
-        clearance=drive.clearance if keep_clearance else Clearance(),
-        pin_wheel=replace(drive.pin_wheel, pin_errors=PlacementErrors()),
-        disc=replace(drive.disc, hole_errors=PlacementErrors(), profile_errors=ProfileErrors(), runout=Runout()),
-        pin_shaft=replace(drive.pin_shaft, pin_errors=PlacementErrors()),
-        crank_bearing=replace(drive.crank_bearing, roller_errors=RollerErrors()),
-    )

@@ -11,8 +11,8 @@ from ltca.errors import CycloError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fem.coefficients.laws import Check
     from ltca.drive.parts import Drive
+    from ltca.reading.coefficient_laws import Check
 
 SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
 # Options that say how to derive, and their defaults.
@@ -84,9 +84,9 @@ def _derive(case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -
     import time
 
     from fem.coefficients.dataset import derive_coefficients
-    from fem.coefficients.file import read_coefficients, write_coefficients
-    from fem.coefficients.laws import check_coefficients
     from ltca.output.progress import steps
+    from ltca.reading.coefficient_file import read_coefficients, write_coefficients
+    from ltca.reading.coefficient_laws import check_coefficients
 
     start = time.perf_counter()
     with steps("deriving coefficients") as show:
@@ -100,7 +100,7 @@ def _derive(case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -
             progress=show,
         )
     write_coefficients(dataset, out)
-    written = read_coefficients(out)
+    written = read_coefficients(out, lawful=False)
     checks = check_coefficients(written)
     attributes = written.attrs
     print(
@@ -122,12 +122,12 @@ def _check_file(arguments: argparse.Namespace) -> int:
     for option, default in DERIVING.items():
         if getattr(arguments, option) != default:
             raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --check, which derives nothing")
-    from fem.coefficients.file import read_coefficients
-    from fem.coefficients.laws import check_coefficients
-    from fem.coefficients.schema import check_against_drive
+    from fem.coefficients.fit import check_against_drive
+    from ltca.reading.coefficient_file import read_coefficients
+    from ltca.reading.coefficient_laws import check_coefficients
     from ltca.reading.drive_file import load_drive
 
-    dataset = read_coefficients(Path(arguments.check))
+    dataset = read_coefficients(Path(arguments.check), lawful=False)
     checks = check_coefficients(dataset)
     if arguments.drive is not None:
         file = load_drive(arguments.drive)
@@ -140,7 +140,7 @@ def _check_file(arguments: argparse.Namespace) -> int:
 
 def _print_checks(dataset: xr.Dataset, checks: tuple[Check, ...]) -> None:
     """Print each law with its value, limit and verdict; then those that the file says nothing about."""
-    from fem.coefficients.laws import unstated_laws
+    from ltca.reading.coefficient_laws import unstated_laws
 
     unstated = unstated_laws(dataset)
     width = max(len(name) for name in [*(check.name for check in checks), *unstated])

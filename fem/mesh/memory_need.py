@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import numpy as np
 
 from fem.errors import MemoryLimitError
+from ltca.output.resources import available_memory
 
 # SuperLU in symmetric mode held 787 MB for 400,000 plane quadratic unknowns (measured); nested dissection grows
 # like n log n.
@@ -29,26 +27,6 @@ def solution_memory(unknowns: int) -> float:
     size = max(float(unknowns), 10.0)
     factor = REFERENCE_BYTES * (size / REFERENCE_UNKNOWNS) * np.log(size) / np.log(REFERENCE_UNKNOWNS)
     return float(factor + mesh_memory(unknowns))
-
-
-def available_memory() -> float:
-    """Return the bytes the process may still take: free memory of the machine, or less under a cgroup limit."""
-    limits: list[float] = []
-    meminfo = Path("/proc/meminfo")
-    if meminfo.exists():
-        lines = meminfo.read_text(encoding="ascii").splitlines()
-        limits += [float(line.split()[1]) * 1024.0 for line in lines if line.startswith("MemAvailable:")]
-    for limit, used in (
-        ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-        ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
-    ):
-        if Path(limit).exists() and Path(used).exists():
-            text = Path(limit).read_text(encoding="ascii").strip()
-            if text.isdigit():
-                limits.append(float(text) - float(Path(used).read_text(encoding="ascii")))
-    if not limits:
-        limits.append(float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES")))
-    return max(min(limits), 0.0)
 
 
 def require_memory(unknowns: int, needed: float, what: str, *, available: float | None = None) -> None:

@@ -15,7 +15,6 @@ from importlib.metadata import entry_points, version
 from typing import Any
 
 from ltca.errors import CycloError
-from ltca.output.processes import Terminated, ended_by_signals
 
 GROUP = "cyclo.commands"
 ORDER = ("run", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
@@ -61,6 +60,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     # One thread each: the matrices of a batch are small, and threads that share two cores slow each other down.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
+    from ltca.output.processes import Terminated, ended_by_signals
+
     arguments = build_parser(words[0] if words else "").parse_args(words)
     try:
         with ended_by_signals():

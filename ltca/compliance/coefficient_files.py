@@ -7,10 +7,14 @@ of its kind share the memory) that returns the dataset of ``docs/coefficients.md
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import suppress
 from importlib.metadata import entry_points
 from multiprocessing import get_context
 from pathlib import Path
@@ -20,13 +24,18 @@ from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficient
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain
-from ltca.errors import CycloError
-from ltca.output.files import whole_file
+from ltca.errors import CycloError, DamagedFileError
+from ltca.output.processes import become_worker, end_workers, interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import code_hash, code_version
+from ltca.reading.coefficient_file import write_coefficients
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
+INSTEAD = "CYCLO_TEMPORARY_CACHE"
+"""Variable that names the folder of a run whose cache cannot be written."""
+ROOM = 1 << 20
+"""Bytes that a cache must have room for; a file of the paper's disc takes 8 MB."""
 PROCESSES = 2
 """Derivations at once: one takes 1.5 GB for a disc like the paper's."""
 
@@ -34,11 +43,53 @@ PROCESSES = 2
 def cached_file(drive: Drive, plane: str = "strain") -> Path:
     """Return where the coefficients of a drive's shape are kept: under ``$XDG_CACHE_HOME`` or ``~/.cache``.
 
-    The folder carries version and hash of the code that derived them: other code derives its own.
+    The folder carries version and hash of the code that derived them: other code derives its own. Where it cannot be
+    written and has not got them, it is a temporary one of this run (`require_cache`).
     """
+    new, kept = (folder / _name(drive, plane) for folder in (cache_folder(), _kept_folder()))
+    return kept if kept.exists() and not new.exists() else new
+
+
+def _name(drive: Drive, plane: str) -> str:
+    return f"coefficients-{drive.shape_fingerprint()}-{plane}.nc"
+
+
+def cache_folder() -> Path:
+    """Return where new coefficients are kept."""
+    instead = os.environ.get(INSTEAD)
+    return Path(instead) if instead else _kept_folder()
+
+
+def _kept_folder() -> Path:
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    made_by = f"{code_version()}-{code_hash('ltca', 'fem')}"
-    return base / "cyclo" / made_by / f"coefficients-{drive.shape_fingerprint()}-{plane}.nc"
+    return base / "cyclo" / f"{code_version()}-{code_hash('ltca', 'fem')}"
+
+
+def require_cache() -> None:
+    """Make sure, before anything is derived, that it can be kept; in a temporary folder of this run if need be, with a word."""
+    if INSTEAD in os.environ:
+        return
+    folder = _kept_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            probe.write(bytes(ROOM))
+            probe.flush()
+    except OSError as error:
+        print(
+            f"warning: {folder}: cannot be written ({error.strerror or error}): what is derived is used but not kept; "
+            "XDG_CACHE_HOME names another place",
+            file=sys.stderr,
+        )
+        instead = tempfile.mkdtemp(prefix="cyclo-cache-")
+        # The workers of this run inherit it and find there what has been derived.
+        os.environ[INSTEAD] = instead
+        atexit.register(_forget, instead, os.getpid())
+
+
+def _forget(folder: str, process: int) -> None:
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def find_coefficients(
@@ -145,6 +196,8 @@ def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, In
     for path in files:
         try:
             return path, load_coefficients(path, drive)
+        except DamagedFileError:
+            raise
         except CycloError as error:
             refusals.append(str(error))
     raise CycloError("; ".join(refusals) or "no file of influence coefficients is given")
@@ -157,7 +210,10 @@ def _kept(drive: Drive, plane: str) -> InfluenceCoefficients | None:
         return None
     try:
         return load_coefficients(path, drive)
-    except CycloError:
+    except DamagedFileError as error:
+        print(f"warning: {error}; derived again", file=sys.stderr)
+        with suppress(OSError):
+            path.unlink()
         return None
 
 
@@ -169,6 +225,8 @@ def _derive_missing(cases: Mapping[str, Drive], plane: str) -> None:
     if not missing:
         return
     _derivation()
+    require_cache()
+    missing = {cache_folder() / _name(cases[name], plane): name for name in missing.values()}
     print(
         f"deriving influence coefficients of {', '.join(missing.values())}, once for each shape (some 20 s; kept in "
         f"{next(iter(missing)).parent})",
@@ -185,14 +243,20 @@ def _derive(drives: Mapping[Path, Drive], plane: str) -> Iterator[Path]:
     alone = dict(drives)
     if processes > 1:
         # Never a fork of this process, which may have threads.
-        pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"))
+        pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"), initializer=become_worker)
         try:
-            flying = {pool.submit(_derive_file, drive, plane, path, processes): path for path, drive in drives.items()}
+            with interrupts_held():
+                flying = {
+                    pool.submit(_derive_file, drive, plane, path, processes): path for path, drive in drives.items()
+                }
             for future in as_completed(flying):
                 # What fails for want of memory (or of a process that was killed for it) may still fit alone.
                 if future.exception() is None:
                     del alone[flying[future]]
                     yield flying[future]
+        except BaseException:
+            end_workers()
+            raise
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
     for path, drive in alone.items():
@@ -203,8 +267,7 @@ def _derive(drives: Mapping[Path, Drive], plane: str) -> Iterator[Path]:
 def _derive_file(drive: Drive, plane: str, path: Path, processes: int) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
     dataset = _derivation()(drive, state=plane, processes=processes)
-    with whole_file(path) as part:
-        dataset.to_netcdf(part, engine="h5netcdf")
+    write_coefficients(dataset, path)
 
 
 def _derivation() -> Callable[..., Any]:

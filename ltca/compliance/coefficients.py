@@ -18,17 +18,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
+from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Clearance, Drive, Material
-from ltca.errors import CycloError, DriveError
+from ltca.errors import CycloError, DamagedFileError, DriveError
 from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+from ltca.reading.coefficient_file import read_coefficients
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
-NEEDED_VARIABLES = ("disc_approach", "pin_approach", "roller_approach", "race_approach", "station_boundary")
-NEEDED_ATTRIBUTES = ("shape", "clearances_left_out", "bearing_clearance", "pin_hole_clearance", "plane", "thickness")
+MISPLACED = 1e-3
+"""Of a half-width: coefficients change by that part of the near field's unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,20 +213,17 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     Raises
     ------
     CycloError
-        When the file cannot be read, lacks something, or belongs to other bodies; it names what differs.
+        When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
     """
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            data = opened.load()
-    except (OSError, ValueError) as error:
-        raise CycloError(f"{path}: cannot be read as a coefficient file: {error}") from error
-    missing = [name for name in NEEDED_VARIABLES if name not in data]
-    missing += [name for name in NEEDED_ATTRIBUTES if name not in data.attrs]
-    if missing:
-        raise CycloError(f"{path}: is no coefficient file of this version; it lacks {', '.join(missing)}")
+    data = read_coefficients(path)
     shared = _require_same_bodies(path, data.attrs, drive)
+    boundaries = len(np.unique(data["station_boundary"].values))
+    if boundaries != 2 + drive.pin_shaft.number_of_pins:
+        raise DamagedFileError(
+            f"{path}: has stations on {boundaries} boundaries; flank, bore and holes of {drive.name} are "
+            f"{2 + drive.pin_shaft.number_of_pins}"
+        )
+    _require_places(path, data, drive if not shared else replace(drive, clearance=Clearance()))
     found = _coefficients_of_dataset(data, drive, shared=shared)
     return replace(found, stress=read_stress_coefficients(data, path, (found.flank, found.bore, *found.holes)))
 
@@ -230,10 +231,7 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
 def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive) -> bool:
     """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
     own = drive.body_shape()
-    try:
-        theirs = {str(name): float(value) for name, value in json.loads(str(attributes["shape"])).items()}
-    except (ValueError, TypeError, AttributeError) as error:
-        raise CycloError(f"{path}: cannot be read as a coefficient file: attribute shape: {error}") from error
+    theirs = {str(name): float(value) for name, value in json.loads(str(attributes["shape"])).items()}
     if theirs == own:
         return False
     nominal = replace(drive, clearance=Clearance()).body_shape()
@@ -252,6 +250,27 @@ def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive
         f"{path}: belongs to another drive ({attributes.get('drive', '?')}); it differs from {drive.name} in "
         f"{differences}: derive its own (cyclo derive)"
     )
+
+
+def _require_places(path: Path, data: xr.Dataset, drive: Drive) -> None:
+    """Refuse stations that do not lie on the walls of the disc: coefficients between them are of their places."""
+    drive = nominal_shape(drive)
+    flank = FlankProfile.of_drive(drive)
+    holes = Placement.of_drive(drive)
+    centres = [0j, *holes.hole_centres.tolist()]
+    radii = [float(holes.bore_radius), *holes.hole_radii.tolist()]
+    boundary, parameter = data["station_boundary"].values, data["station_parameter"].values
+    place = data["station_x"].values + 1j * data["station_y"].values
+    for number in range(1 + len(centres)):
+        own = boundary == number
+        circle = centres[number - 1] + radii[number - 1] * np.exp(1j * parameter[own]) if number else None
+        expected = flank.flank(parameter[own]) if circle is None else circle
+        away = np.max(np.abs(place[own] - expected) / data["station_half_width"].values[own])
+        if not away <= MISPLACED:
+            raise DamagedFileError(
+                f"{path}: a station of boundary {number} stands {away:.3g} half-widths of its patch from the wall of "
+                f"{drive.name}: must be within {MISPLACED:g}"
+            )
 
 
 def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) -> InfluenceCoefficients:

@@ -11,7 +11,7 @@ import errno
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -144,12 +144,18 @@ def claimed_folder(
     """
     if path.exists() and not path.is_dir():
         raise PlaceError(f"{option} {path}: is a file, not a folder")
-    with held(path / LOCK, f"{option} {path}", command):
-        _remove_parts(path, beside)
-        folder = RunFolder(path, command, beside, adding)
-        with told_of_files(folder.place):
-            yield folder
-            folder.finish()
+    made = [folder for folder in (path, *path.parents) if not folder.exists()]
+    try:
+        with held(path / LOCK, f"{option} {path}", command):
+            _remove_parts(path, beside)
+            folder = RunFolder(path, command, beside, adding)
+            with told_of_files(folder.place):
+                yield folder
+                folder.finish()
+    finally:
+        with suppress(OSError):  # a run that wrote nothing leaves nothing
+            for empty in made:
+                empty.rmdir()
 
 
 @contextmanager
@@ -221,16 +227,10 @@ def held(lock: Path, what: str, command: str, *, wait: bool = False) -> Iterator
 
 def _take(lock: Path, wait: bool) -> int:
     """Open and lock a file; whoever held it may have removed it meanwhile: then again."""
-    try:
-        import fcntl
-
-        take: Callable[[int], None] = lambda file: fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-    except ImportError:  # no such locks on this system: two runs are not kept apart
-        take = lambda file: None
     while True:
         descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
         try:
-            take(descriptor)
+            _lock(descriptor, wait)
             if os.path.samestat(os.fstat(descriptor), os.stat(lock, follow_symlinks=False)):
                 return descriptor
         except FileNotFoundError:
@@ -239,6 +239,14 @@ def _take(lock: Path, wait: bool) -> int:
             os.close(descriptor)
             raise
         os.close(descriptor)
+
+
+def _lock(descriptor: int, wait: bool) -> None:
+    try:
+        import fcntl
+    except ImportError:  # no such locks on this system: two runs are not kept apart
+        return
+    fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
 
 
 def _holder(lock: Path) -> str:

@@ -29,7 +29,9 @@ def supervise(folder: str, words: Sequence[str]) -> int:
     words : sequence of str
         Program and arguments.
     """
-    program = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, env={**os.environ, "TMPDIR": folder})
+    program = subprocess.Popen(
+        words, stdin=subprocess.DEVNULL, start_new_session=True, env={**os.environ, "TMPDIR": folder}
+    )
 
     def end(*_: object) -> None:
         for number in (signal.SIGTERM, signal.SIGKILL):

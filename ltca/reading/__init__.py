@@ -1,14 +1,18 @@
-"""Drive files: read, checked against physics, changed field by field, written.
+"""Files that are read: drives, checked against physics, changed and written; influence coefficients, by their laws.
 
 Modules in the order data passes:
 
-================  ============================================================
-drive_file        Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
-                  once
-physical_checks   Physical checks of a drive: what its numbers, each fine on its own, cannot be together
-deviation_checks  Physical checks of the deviations of a drive: counts, size, and a flank that neither folds nor
-                  traps its pins
-changes           A drive with some fields replaced, validated like a drive file
-writing           A drive as the text of a drive file
-================  ============================================================
+==================  ============================================================
+drive_file          Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
+                    once
+physical_checks     Physical checks of a drive: what its numbers, each fine on its own, cannot be together
+deviation_checks    Physical checks of the deviations of a drive: counts, size, and a flank that neither folds nor
+                    traps its pins
+changes             A drive with some fields replaced, validated like a drive file
+writing             A drive as the text of a drive file
+coefficient_schema  What a file of influence coefficients must hold to be used; whoever made it
+coefficient_laws    Checks of a file of influence coefficients by laws that need no second computation
+coefficient_file    Files of influence coefficients: written whole with a checksum, read only when schema, laws and
+                    checksum hold
+==================  ============================================================
 """

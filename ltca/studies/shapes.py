@@ -7,8 +7,6 @@ parts, load or direction share them, samples that differ in a dimension or a mat
 from __future__ import annotations
 
 import hashlib
-import os
-import tempfile
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -20,12 +18,19 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.engines import Engine
-from ltca.compliance.coefficient_files import GROUP, cached_file, find_case_coefficients
+from ltca.compliance.coefficient_files import (
+    GROUP,
+    cache_folder,
+    cached_file,
+    find_case_coefficients,
+    require_cache,
+)
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.output.provenance import code_hash
+from ltca.output.run_folder import held
 
 KEPT = 8
 """Shapes whose coefficients a process keeps in memory, some 10 MB each."""
@@ -71,13 +76,9 @@ def _given(engine: Engine) -> Any:
 @contextmanager
 def _one_process(shape: str) -> Iterator[None]:
     """Let one process of a machine at a time look for a shape: the others find what it has derived."""
-    try:
-        import fcntl
-    except ImportError:  # no such locks on this system: at worst two derive the same
-        yield
-        return
-    with (Path(tempfile.gettempdir()) / f"cyclo-{os.getuid()}-{shape}.lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+    # In the cache, which is the user's own: a name in a shared folder others could foresee.
+    require_cache()
+    with held(cache_folder() / f".{shape}.lock", "the cache", "derive", wait=True):
         yield
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.hertz import cylinder_approach, half_plane_approach
+from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
@@ -49,8 +50,10 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
     import xarray as xr
 
     thickness, parts = drive.disc.thickness, drive.materials
-    boundaries = _station_places(drive)
-    boundary = np.repeat(np.arange(len(boundaries)), [len(places) for places in boundaries])
+    boundaries, normals = _stations(drive)
+    numbers = [len(places) for places in boundaries]
+    boundary = np.repeat(np.arange(len(boundaries)), numbers)
+    parameter = np.concatenate([2.0 * np.pi * np.arange(number) / number for number in numbers])
     places = np.concatenate(boundaries)
     same = boundary[:, None] == boundary[None, :]
     disc = np.where(same, _half_plane(places, parts.disc, thickness, half_width, depth), 0.0)
@@ -73,6 +76,9 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
             "station_boundary": ("station", boundary),
             "station_x": ("station", places.real),
             "station_y": ("station", places.imag),
+            "station_parameter": ("station", parameter),
+            "station_normal_x": ("station", normals.real),
+            "station_normal_y": ("station", normals.imag),
             "station_half_width": ("station", np.full(places.shape, half_width)),
             "disc_approach": (("station", "station_loaded"), disc),
             "pin_approach": ((), pin),
@@ -92,6 +98,17 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
             "bearing_clearance": drive.clearance.bearing,
             "pin_hole_clearance": drive.clearance.pin_hole,
             "clearances_left_out": 0,
+            "roller_radius": drive.crank_bearing.roller_radius,
+            **{
+                f"{body}_{constant}": getattr(material, constant)
+                for body, material in (
+                    ("disc", parts.disc),
+                    ("pin", parts.wheel_pin),
+                    ("roller", parts.roller),
+                    ("race", parts.inner_race),
+                )
+                for constant in ("youngs_modulus", "poisson_ratio")
+            },
         },
     )
 
@@ -121,16 +138,18 @@ def _half_plane(
     return np.where(apart, far, own)
 
 
-def _station_places(drive: Drive) -> list[ComplexArray]:
-    """Return the stations of flank, bore and holes, uniform in their parameters, in the frame of the disc, mm."""
+def _stations(drive: Drive) -> tuple[list[ComplexArray], ComplexArray]:
+    """Return the stations of flank, bore and holes, uniform in their parameters, in the frame of the disc, mm; normals."""
+    drive = nominal_shape(drive)
     place = Placement.of_drive(drive)
 
     def circle(count: int) -> ComplexArray:
         return np.asarray(np.exp(2j * np.pi * np.arange(count) / count))
 
     lobes = drive.disc.number_of_teeth
-    flank = FlankProfile.of_drive(drive).flank(2.0 * np.pi * np.arange(PER_LOBE * lobes) / (PER_LOBE * lobes))
+    profile, parameter = FlankProfile.of_drive(drive), 2.0 * np.pi * np.arange(PER_LOBE * lobes) / (PER_LOBE * lobes)
     holes = [
         centre + radius * circle(PER_HOLE) for centre, radius in zip(place.hole_centres, place.hole_radii, strict=True)
     ]
-    return [flank, place.bore_radius * circle(BORE), *holes]
+    normals = [profile.normal(parameter), -circle(BORE), *[-circle(PER_HOLE)] * len(holes)]
+    return [profile.flank(parameter), place.bore_radius * circle(BORE), *holes], np.concatenate(normals)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from fem.body.elasticity import PlaneState
 from fem.coefficients.dataset import derive_coefficients
-from fem.coefficients.file import read_coefficients, write_coefficients
-from fem.errors import MeshError
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.drive.parts import Clearance, Drive
+from ltca.errors import DamagedFileError
 from ltca.output.provenance import code_hash
+from ltca.reading.coefficient_file import read_coefficients, write_coefficients
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +81,9 @@ def coefficients_of(
     path = folder / f"{drive.shape_fingerprint()}_{plane}_{size:g}_{code_hash('fem', 'ltca')}.nc"
     try:
         dataset = read_coefficients(path)
-    except MeshError:
+    except DamagedFileError as error:
+        if path.exists() and progress is not None:
+            progress(f"{error}; derived again")
         derived = derive_coefficients(drive, case=case, size=size, state=plane, progress=progress)
         write_coefficients(derived, path)
         dataset = read_coefficients(path)

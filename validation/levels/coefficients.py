@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fem.coefficients.laws import Check, check_coefficients
+from ltca.reading.coefficient_laws import Check, check_coefficients
 from validation.rows import Row
 
 if TYPE_CHECKING:

@@ -63,7 +63,10 @@ def asked_codes(kept: Path | None = None) -> Iterator[Callable[[], list[Row]]]:
     """
     known = {} if kept is None else read_kept(kept)
     asked = [name for name, code in CODES.items() if name not in known and code.installed()]
-    with tempfile.TemporaryDirectory(prefix="cyclo-validate-", ignore_cleanup_errors=True) as name, ExitStack() as stack:
+    with (
+        tempfile.TemporaryDirectory(prefix="cyclo-validate-", ignore_cleanup_errors=True) as name,
+        ExitStack() as stack,
+    ):
         folder = Path(name)
         answers, trouble = folder / "answers.json", folder / "trouble.txt"
         process = None

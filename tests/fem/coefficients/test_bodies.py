@@ -10,11 +10,9 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 from fem.body.elasticity import area_loads, assemble_stiffness, rigid_modes
-from fem.body.free_body import project_rigid_motions
 from fem.body.stress import recover_stress
 from fem.body.wall_stress import stress_along_wall
 from fem.coefficients.bodies import derive_disc, derive_pin, derive_race, derive_roller
-from fem.coefficients.laws import compressed_cylinder
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.stations import DiscStations, nominal_shape, patch_half_width
 from fem.errors import MeshError
@@ -23,6 +21,7 @@ from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleShape, DriveShapes, RingShape
 from ltca.drive.parts import Material
 from ltca.reading.changes import with_fields
+from ltca.reading.coefficient_laws import compressed_cylinder, project_rigid_motions
 from ltca.testing.field_changes import leaf_fields, sensible_change
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)

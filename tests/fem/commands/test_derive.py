@@ -13,9 +13,7 @@ import numpy as np
 import pytest
 
 from fem.coefficients.dataset import derive_coefficients
-from fem.coefficients.file import read_coefficients, write_coefficients
-from fem.coefficients.laws import check_coefficients
-from fem.coefficients.stations import DiscStations, nominal_shape
+from fem.coefficients.stations import DiscStations
 from fem.commands import derive
 from fem.errors import MeshError
 from fem.shapes import DriveShapes
@@ -23,7 +21,10 @@ from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficient_files import find_case_coefficients
 from ltca.compliance.coefficients import load_coefficients
+from ltca.drive.nominal_shape import nominal_shape
 from ltca.errors import CycloError
+from ltca.reading.coefficient_file import read_coefficients, write_coefficients
+from ltca.reading.coefficient_laws import check_coefficients
 from ltca.reading.drive_file import load_drive
 
 COARSE = ("--stations", "0.25", "--size", "1.5")

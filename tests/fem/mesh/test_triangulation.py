@@ -18,11 +18,12 @@ from fem.drive.meshes import disc_refinements, mesh_drive
 from fem.errors import MemoryLimitError, MeshError
 from fem.mesh.body_mesh import BodyMesh, triangle_mesh
 from fem.mesh.element_size import Refinement, SizeField
-from fem.mesh.memory_need import available_memory, require_memory, solution_memory
+from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.quality import measure_quality
 from fem.mesh.triangulation import estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DriveShapes, RingShape
 from ltca.drive.parts import Drive
+from ltca.output.resources import available_memory
 from ltca.reading.drive_file import load_drive
 
 

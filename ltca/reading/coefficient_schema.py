@@ -1,4 +1,4 @@
-"""What a file of influence coefficients must hold to be used, and whose bodies it belongs to; whoever made it.
+"""What a file of influence coefficients must hold to be used; whoever made it.
 
 A file of another finite-element code needs neither the attributes that say how ours was derived nor what serves only to
 check it (wider patches, resultants); what it does hold must have the shape that ``docs/coefficients.md`` describes.
@@ -8,17 +8,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem.coefficients.laws import Check
-from fem.coefficients.stations import nominal_shape
-from fem.errors import MeshError
-from fem.shapes import DriveShapes
-from ltca.drive.parts import Drive
-from ltca.errors import CycloError
+from ltca.errors import DamagedFileError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,12 +79,14 @@ def require_schema(dataset: xr.Dataset, source: str) -> None:
 
     Raises
     ------
-    MeshError
+    DamagedFileError
         Naming everything that is missing or has the wrong form, in one line.
     """
     problems = [*_missing(dataset)] or [*_misshapen(dataset)] or [*_implausible(dataset)]
     if problems:
-        raise MeshError(f"{source}: is no file of influence coefficients (docs/coefficients.md): {'; '.join(problems)}")
+        raise DamagedFileError(
+            f"{source}: is no file of influence coefficients (docs/coefficients.md): {'; '.join(problems)}"
+        )
 
 
 def _missing(dataset: xr.Dataset) -> Iterator[str]:
@@ -152,7 +148,7 @@ def shape_of(dataset: xr.Dataset) -> dict[str, float]:
     """Return the numbers that the bodies of a file are made of; none when the attribute `shape` cannot be read."""
     try:
         return {str(name): float(value) for name, value in json.loads(str(dataset.attrs["shape"])).items()}
-    except (ValueError, TypeError, AttributeError):
+    except (ValueError, TypeError, AttributeError, RecursionError):
         return {}
 
 
@@ -205,89 +201,3 @@ def _number(value: object) -> float:
         return float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return float("nan")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Fit:
-    """How far stations lie from where a drive has them: largest distance (half-widths) and difference of normals."""
-
-    distance: float
-    normals: float
-
-
-def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
-    """Check that coefficients belong to the bodies of a drive.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        Of the right schema.
-    drive : Drive
-        The drive in the case they are for.
-    source : str
-        Name of the file, for the message.
-
-    Returns
-    -------
-    tuple of Check
-        Places and normals of the stations.
-
-    Raises
-    ------
-    CycloError
-        When the numbers that its bodies are made of are not the drive's, or the numbers of boundaries differ.
-    """
-    nominal = _served_by(dataset, drive, source)
-    fit = _fit(dataset, nominal)
-    if fit is None:
-        raise CycloError(
-            f"{source}: has stations on {len(np.unique(dataset['station_boundary'].values))} boundaries; flank, bore and "
-            f"holes of {drive.name} are {2 + drive.pin_shaft.number_of_pins}"
-        )
-    return (
-        Check(
-            name="places of the stations on the drive's bodies",
-            value=fit.distance,
-            lowest=0.0,
-            highest=1e-3,
-            reason="in half-widths of a patch: coefficients change by that part of the near field's unit",
-        ),
-        Check(
-            name="normals of the stations on the drive's bodies",
-            value=fit.normals,
-            lowest=0.0,
-            highest=1e-3,
-            reason="loads and approaches are along them; a cosine changes by the square",
-        ),
-    )
-
-
-def _served_by(dataset: xr.Dataset, drive: Drive, source: str) -> Drive:
-    """Return the drive whose bodies a file has: with its clearances, or without them where the file leaves them out."""
-    theirs = shape_of(dataset)
-    for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
-        nominal = nominal_shape(drive, keep_clearance=keep)
-        if theirs == nominal.body_shape():
-            return nominal
-    own = drive.body_shape()
-    names = [name for name in own if theirs.get(name) != own[name]]
-    differences = ", ".join(f"{name} {theirs.get(name, float('nan')):g} ({own[name]:g} there)" for name in names)
-    raise CycloError(f"{source}: belongs to other bodies than those of {drive.name}: {differences}")
-
-
-def _fit(dataset: xr.Dataset, nominal: Drive) -> _Fit | None:
-    """Return how the stations fit a drive; None when it has other boundaries."""
-    curves = DriveShapes.of_drive(nominal).disc.curves
-    boundary = dataset["station_boundary"].values
-    if len(np.unique(boundary)) != len(curves):
-        return None
-    distance = normals = 0.0
-    for number, curve in enumerate(curves):
-        own = np.flatnonzero(boundary == number)
-        parameter = dataset["station_parameter"].values[own]
-        place = dataset["station_x"].values[own] + 1j * dataset["station_y"].values[own]
-        normal = dataset["station_normal_x"].values[own] + 1j * dataset["station_normal_y"].values[own]
-        away = np.abs(place - curve.points(parameter)) / dataset["station_half_width"].values[own]
-        distance = max(distance, float(np.max(away)))
-        normals = max(normals, float(np.max(np.abs(normal - curve.normals(parameter)))))
-    return _Fit(distance=distance, normals=normals)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fem.coefficients.laws import (
+from ltca.reading.coefficient_laws import (
     check_coefficients,
     compressed_cylinder,
     even_pressure,

@@ -1,0 +1,64 @@
+"""Memory and disc a run will need, against what the machine has, before it starts."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+from ltca.errors import PlaceError
+
+
+def available_memory() -> float:
+    """Return the bytes the process may still take: free memory of the machine, or less under a cgroup limit."""
+    limits: list[float] = []
+    meminfo = Path("/proc/meminfo")
+    if meminfo.exists():
+        lines = meminfo.read_text(encoding="ascii").splitlines()
+        limits += [float(line.split()[1]) * 1024.0 for line in lines if line.startswith("MemAvailable:")]
+    for limit, used in (
+        ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
+        ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+    ):
+        if Path(limit).exists() and Path(used).exists():
+            text = Path(limit).read_text(encoding="ascii").strip()
+            if text.isdigit():
+                limits.append(float(text) - float(Path(used).read_text(encoding="ascii")))
+    if not limits:
+        limits.append(float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES")))
+    return max(min(limits), 0.0)
+
+
+def require_room(needed: float, *, memory: float, folder: Path, option: str) -> None:
+    """Refuse work whose results would not fit.
+
+    Parameters
+    ----------
+    needed : float
+        Bytes on disc.
+    memory : float
+        Bytes in memory.
+    folder : Path
+        Where the files go.
+    option : str
+        What makes it so large, with its value.
+
+    Raises
+    ------
+    PlaceError
+        With the numbers.
+    """
+    free = available_memory()
+    if memory > free:
+        raise PlaceError(
+            f"{option}: needs about {memory / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are available: take fewer"
+        )
+    place = folder.absolute()
+    while not place.exists():
+        place = place.parent
+    room = shutil.disk_usage(place).free
+    if needed > room:
+        raise PlaceError(
+            f"{option}: results take about {needed / 1e9:.3g} GB, {room / 1e9:.3g} GB are free in --out {folder}: take "
+            "fewer, or another folder"
+        )
