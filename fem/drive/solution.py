@@ -354,6 +354,26 @@ def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
     return float(-min(gaps.pins.min(), gaps.rollers.min(), gaps.holes.min()))
 
 
+def require_solution_memory(drive: Drive, crank_angle: float, scale: float) -> None:
+    """Refuse a full solution that would not fit into memory, before any work that comes first.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    scale : float
+        Element edge as a multiple of an eighth of each Hertz half-width.
+
+    Raises
+    ------
+    MemoryLimitError
+        With the numbers.
+    """
+    _refuse_too_large(DriveShapes.of_drive(drive), expect_contacts(drive, crank_angle), scale)
+
+
 def _refuse_too_large(shapes: DriveShapes, guess: ExpectedContacts, scale: float) -> None:
     """Refuse a size that would exceed memory before any meshing; disc and race alone decide."""
     if not (np.isfinite(scale) and scale > 0.0):

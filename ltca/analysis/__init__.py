@@ -13,5 +13,6 @@ torque_curve               Torque against wind-up over both directions, and what
 transmission_error_orders  Orders of the transmission error by name, fitted together
 rating_life                Rating life of the crank bearing from the loads of its rollers (ISO 281, ISO/TS 16281)
 pressure_safety            Safety of the flank pressure against a limit
+memory_need                Memory and disc that an analysis of many positions will need, estimated before it starts
 =========================  ============================================================
 """

@@ -92,6 +92,7 @@ class CaseCurves(NamedTuple):
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case, write curves.json and the figures, print what they say."""
     from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
+    from ltca.analysis.memory_need import require_room_for
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
@@ -99,6 +100,9 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     out = arguments.out or Path("out") / f"{file.name}_curves"
+    for drive in cases.values():
+        turns = _turns(arguments.turns, drive)
+        require_room_for([drive], turns * POSITIONS_PER_TURN, out, f"--turns {turns}")
     with claimed_folder(out, "curves"):
         find_coefficients_of(cases, arguments)
         return _solve_and_write(file.name, cases, limits, engine, arguments, out)

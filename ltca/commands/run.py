@@ -53,6 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
+    from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
     from ltca.commands.compliance_arguments import find_coefficients_of
     from ltca.output.run_folder import claimed_folder
@@ -64,6 +65,7 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select(arguments.case)
     check_common_shape(cases)
     out = arguments.out or Path("out") / file.name
+    require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run"):
         find_coefficients_of(cases, arguments)
         chosen = _Chosen(file=file, cases=cases, engine=engine, torque=torque)

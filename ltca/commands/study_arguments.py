@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 DEFAULT_POSITIONS = 28
 BESIDE = ("batches",)
 """Folders of a study that outlive an interrupted run."""
+COPIES = 3
+"""Of all numbers of a study there are for a while batches, dataset and table."""
 
 
 def add_study_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,6 +58,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     """Run a study with progress, write its figures and print what it says."""
     from ltca.errors import DriveError
     from ltca.output.processes import Terminated
+    from ltca.output.resources import require_room
     from ltca.output.run_folder import claimed_folder
     from ltca.studies.run_study import write_sample
 
@@ -66,6 +69,9 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
         with claimed_folder(folder.path, "study", adding=True, beside=BESIDE):
             print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
+    columns = len(study.design.names) + len(study.quantities)
+    size = COPIES * 8.0 * columns * study.design.samples
+    require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
     with claimed_folder(folder.path, "study", beside=BESIDE) as held:
         if arguments.resume:
             held.keep(folder.results, folder.table)

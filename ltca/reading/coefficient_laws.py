@@ -242,7 +242,7 @@ def _check_neighbours(dataset: xr.Dataset) -> Iterator[Check]:
         other = np.roll(own, -1)
         fall = 0.5 * (approach[own, own] + approach[other, other]) - approach[own, other]
         ratios.append(fall / _fall(np.abs(place[own] - place[other]), width[own]) / near_field_unit(dataset, "disc"))
-    shape = shape_of(dataset)
+    shape = shape_of(dataset)  # numbers of the bodies it was derived for
     radius = shape.get("crank_bearing.inner_race_radius")
     if radius is not None:
         race, chord = dataset["race_approach"].values, 2.0 * radius * np.sin(np.pi / dataset.sizes["race_angle"])

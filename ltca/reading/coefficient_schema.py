@@ -148,7 +148,7 @@ def shape_of(dataset: xr.Dataset) -> dict[str, float]:
     """Return the numbers that the bodies of a file are made of; none when the attribute `shape` cannot be read."""
     try:
         return {str(name): float(value) for name, value in json.loads(str(dataset.attrs["shape"])).items()}
-    except (ValueError, TypeError, AttributeError, RecursionError):
+    except (KeyError, ValueError, TypeError, AttributeError, RecursionError):
         return {}
 
 

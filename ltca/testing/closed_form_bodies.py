@@ -40,7 +40,8 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
     half_width : float
         Half-width of all patches, mm, small against their distances.
     depth : float
-        Datum depth of disc, pins and race, mm.
+        Datum depth of disc, pins and race, mm: beyond the size of the disc, some 200 mm for the paper's, or loads in
+        equilibrium do negative work and the file is refused.
 
     Returns
     -------

@@ -79,7 +79,7 @@ def coefficients(tmp_path_factory):
         shape = drive.shape_fingerprint()
         if shape not in known:
             path = folder / f"{shape}.nc"
-            closed_form_coefficients(drive, half_width=0.02, depth=20.0).to_netcdf(path, engine="h5netcdf")
+            closed_form_coefficients(drive, half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")
             known[shape] = load_coefficients(path, drive)
         return known[shape]
 

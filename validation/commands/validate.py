@@ -60,6 +60,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     import math
 
+    from fem.drive.solution import require_solution_memory
+    from fem.errors import MemoryLimitError
     from ltca.drive.units import parse_quantity
     from ltca.errors import CycloError
     from ltca.output.run_folder import claimed_folder
@@ -72,6 +74,11 @@ def execute(arguments: argparse.Namespace) -> int:
     angles = [parse_quantity(text, "rad", "--angles") for text in arguments.angles or []]
     file = load_drive(arguments.drive)
     plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
+    try:
+        for drive in plan.drives.values():
+            require_solution_memory(drive, plan.crank_angles[0], arguments.size)
+    except MemoryLimitError as error:
+        raise CycloError(f"--size {arguments.size:g}: {error}") from error
     out: Path = arguments.out or Path("out") / file.name / "validation"
     with claimed_folder(out, "validate", beside=("kept",)):
         return _run_and_write(plan, out)

@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 
 from ltca.commands.program import main
+from ltca.output.run_folder import MANIFEST
 from ltca.reading.drive_file import load_drive, shipped_drive
 
 ROOT = Path(__file__).parents[3]
@@ -130,7 +131,7 @@ def test_wrong_drive_is_told_whole(tmp_path, capsys, monkeypatch):
 def test_output_that_cannot_be_written(tmp_path, capsys):
     (tmp_path / "out").write_text("a file where the folder should be")
     assert main(["run", "paper", "--positions", "2", "--case", "CS-1", "--out", str(tmp_path / "out")]) == 2
-    assert "cannot be written" in capsys.readouterr().err
+    assert "is a file, not a folder" in capsys.readouterr().err
 
 
 def test_init_writes_a_runnable_commented_copy(tmp_path, capsys, monkeypatch):
@@ -160,7 +161,7 @@ def test_show_prints_the_derived_geometry_and_draws(tmp_path, capsys):
     told = capsys.readouterr().out
     for part in ("reduction ratio", "backlash at the disc, wheel held", "10.69′", "6737.5 N", "at φ_C = -0.4 rad"):
         assert part in told
-    pictures = list(tmp_path.iterdir())
+    pictures = [path for path in tmp_path.iterdir() if path.name != MANIFEST]
     assert [path.suffix for path in pictures] == [".png"]
     assert pictures[0].read_bytes().startswith(b"\x89PNG")
 

@@ -12,7 +12,7 @@ from ltca.testing.closed_form_bodies import closed_form_coefficients
 def closed_form(tmp_path):
     """Return a function that writes a drive's coefficients in closed form and reads them as a run does."""
 
-    def load(drive, *, half_width=0.05, depth=60.0):
+    def load(drive, *, half_width=0.05, depth=300.0):
         path = tmp_path / "closed_form.nc"
         closed_form_coefficients(drive, half_width=half_width, depth=depth).to_netcdf(path, engine="h5netcdf")
         return load_coefficients(path, drive)

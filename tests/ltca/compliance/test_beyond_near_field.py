@@ -18,7 +18,7 @@ from ltca.equilibrium.balance import solve_equilibrium
 from ltca.testing.closed_form_bodies import CROSS_SHARE
 
 ANGLES = np.array([0.0, 0.5])
-DEPTH = 60.0
+DEPTH = 300.0
 ROLLER = 5.0
 # Of each body another, so that none can stand for another.
 MATERIALS = Materials(

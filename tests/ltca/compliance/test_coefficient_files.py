@@ -31,7 +31,7 @@ def derived(monkeypatch, tmp_path):
 
     def derive(drive, *, state, processes):
         shapes.append(drive.body_shape())
-        return closed_form_coefficients(drive, half_width=0.05, depth=60.0)
+        return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
@@ -41,7 +41,7 @@ def derived(monkeypatch, tmp_path):
 
 def write(drive, path, **attributes):
     """Write a coefficient file of a drive."""
-    dataset = closed_form_coefficients(drive, half_width=0.05, depth=60.0)
+    dataset = closed_form_coefficients(drive, half_width=0.05, depth=300.0)
     dataset.assign_attrs(attributes).to_netcdf(path, engine="h5netcdf")
     return path
 
@@ -129,12 +129,12 @@ def test_files_that_are_none_are_refused(paper_cases, tmp_path):
     path.write_bytes(b"not netCDF")
     with pytest.raises(CycloError, match="cannot be read as a coefficient file"):
         load_coefficients(path, drive)
-    with pytest.raises(CycloError, match="cannot be read as a coefficient file: attribute shape"):
+    with pytest.raises(CycloError, match="shape must be a JSON object of numbers"):
         load_coefficients(write(drive, path, shape="{"), drive)
-    bare = closed_form_coefficients(drive, half_width=0.05, depth=60.0).drop_vars("race_approach")
+    bare = closed_form_coefficients(drive, half_width=0.05, depth=300.0).drop_vars("race_approach")
     del bare.attrs["shape"]
     bare.to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(CycloError, match="no coefficient file of this version; it lacks race_approach, shape"):
+    with pytest.raises(CycloError, match="it lacks race_approach; it lacks the attributes shape"):
         load_coefficients(path, drive)
 
 
@@ -169,12 +169,12 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
         tried.append((drive.name, processes))
         if drive.name == "large" and processes > 1:
             raise CycloError("too large")
-        return closed_form_coefficients(drive, half_width=0.05, depth=60.0)
+        return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
 
     monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "PROCESSES", 2)
     monkeypatch.setattr(coefficient_files.os, "cpu_count", lambda: 4)
-    monkeypatch.setattr(coefficient_files, "ProcessPoolExecutor", lambda count, mp_context: ThreadPoolExecutor(1))
+    monkeypatch.setattr(coefficient_files, "ProcessPoolExecutor", lambda count, **_: ThreadPoolExecutor(1))
     cases = {"small": replace(paper_cases["CS-1"], name="small"), "large": replace(paper_cases["CS-6"], name="large")}
     found = find_case_coefficients(cases)
     assert sorted(tried) == [("large", 1), ("large", 2), ("small", 2)]

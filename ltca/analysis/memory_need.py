@@ -1,0 +1,40 @@
+"""Memory and disc that an analysis of many positions will need, estimated before it starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from ltca.drive.parts import Drive
+from ltca.output.resources import require_room
+
+# The paper's drive, CS-1, half-space: 24 kB at the most and 2 kB in results.nc for each position of its 39 pairs
+# (3,600 to 14,400 positions); hybrid and fe take 34 kB. Analyses of all cases are held together, their working memory once.
+MEMORY_PER_PAIR = 900.0
+DISC_PER_PAIR = 60.0
+
+
+def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, option: str) -> None:
+    """Refuse an analysis that would not fit into memory or on the disc.
+
+    Parameters
+    ----------
+    drives : iterable of Drive
+        All cases.
+    positions : int
+        Crank angles of each.
+    folder : Path
+        Where results go.
+    option : str
+        What the number of positions was given by, with its value.
+
+    Raises
+    ------
+    PlaceError
+        With the numbers.
+    """
+    pairs = sum(
+        drive.pin_wheel.number_of_pins + drive.crank_bearing.number_of_rollers + drive.pin_shaft.number_of_pins
+        for drive in drives
+    )
+    require_room(DISC_PER_PAIR * pairs * positions, memory=MEMORY_PER_PAIR * pairs * positions, folder=folder, option=option)
