@@ -52,7 +52,7 @@ def test_run_writes_results_summary_and_figures(quick_run):
     assert list(summary["cases"]) == ["CS-3", "CS-1"]
     assert summary["cases"]["CS-1"]["mean_tangential_bearing_load_N"] == pytest.approx(6737.5, rel=5e-3)
     left = {path.name for path in quick_run.iterdir()}
-    assert left == {"results.nc", "summary.json", "figures"}
+    assert left == {"results.nc", "summary.json", "figures", MANIFEST}
 
 
 def test_figures_of_the_paper_as_svg_and_png(quick_run):

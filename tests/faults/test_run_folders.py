@@ -1,0 +1,191 @@
+"""What a folder holds comes from one run; what is the user's stays; one process at a time writes to it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from ltca.commands.program import main
+from ltca.errors import FaultError, PlaceError
+from ltca.output.files import STALE, whole_file
+from ltca.output.run_folder import LOCK, MANIFEST, claimed_file, claimed_folder
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from ltca.output.run_folder import claimed_folder
+with claimed_folder(Path(sys.argv[1]), "run"):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+def put(folder, **files):
+    """Write files as a run does."""
+    with claimed_folder(folder, "run"):
+        for name, text in files.items():
+            with whole_file(folder / name.replace("__", "/").replace("_", ".")) as part:
+                part.write_text(text)
+
+
+def names(folder):
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+
+
+@pytest.fixture
+def holder(tmp_path):
+    """Another process that holds a folder."""
+    words = [sys.executable, "-c", HOLDER, str(tmp_path / "out")]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "held\n"
+        yield process
+        process.kill()
+
+
+def test_two_processes_in_one_folder(holder, tmp_path, capsys):
+    """Two studies with different seeds in one --out mixed in silence: 1752 of 2000 rows came from the other."""
+    out = tmp_path / "out"
+    assert main(["tolerance", "paper", "--samples", "2", "--positions", "2", "--seed", "7", "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f"process {holder.pid}" in said
+    assert names(out) == [LOCK]
+    # the lock of a process that was killed holds nobody up
+    holder.kill()
+    holder.wait()
+    put(out, a_txt="a")
+    assert names(out) == ["a.txt", MANIFEST]
+
+
+def test_one_process_does_not_hold_a_folder_twice(tmp_path):
+    with claimed_folder(tmp_path, "run"):
+        with pytest.raises(PlaceError, match="wait for it"), claimed_folder(tmp_path, "sweep"):
+            pass
+    with claimed_file(tmp_path / "a.nc", "derive"):
+        with pytest.raises(PlaceError, match=r"a\.nc: cyclo derive \(process"), claimed_file(tmp_path / "a.nc", "derive"):
+            pass
+        with claimed_file(tmp_path / "b.nc", "derive"):
+            pass
+    assert names(tmp_path) == []
+
+
+def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path):
+    out = tmp_path / "out"
+    words = ["run", "paper", "--case", "CS-1", "--out", str(out)]
+    assert main([*words, "--angles", "0.1"]) == 0
+    assert (out / "figures").is_dir()
+    (out / "notes.txt").write_text("the user's")
+    (out / "figures" / "mine.png").write_text("the user's")
+    changed = out / "figures" / "fig24_pin_load.svg"
+    changed.write_text("drawn over by the user")
+    assert main([*words, "--angles", "0.2", "--no-figures"]) == 0
+    assert names(out) == [
+        MANIFEST, "figures/fig24_pin_load.svg", "figures/mine.png", "notes.txt", "results.nc", "summary.json",
+    ]  # fmt: skip
+    content = json.loads((out / MANIFEST).read_text())
+    assert sorted(content["files"]) == ["results.nc", "summary.json"]
+    assert content["complete"]
+
+
+def test_a_run_that_fails_leaves_the_last_one(tmp_path):
+    put(tmp_path, a_txt="old", b_txt="old")
+    with pytest.raises(KeyboardInterrupt), claimed_folder(tmp_path, "run"):
+        raise KeyboardInterrupt
+    assert names(tmp_path) == ["a.txt", "b.txt", MANIFEST]
+
+
+def test_a_run_that_ends_between_two_files_leaves_nothing_of_the_last_one(tmp_path):
+    put(tmp_path, a_txt="old", figures__b_txt="old")
+
+    def end():
+        with claimed_folder(tmp_path, "run"):
+            with whole_file(tmp_path / "a.txt") as part:
+                part.write_text("new")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        end()
+    assert names(tmp_path) == ["a.txt", MANIFEST]
+    assert not json.loads((tmp_path / MANIFEST).read_text())["complete"]
+    put(tmp_path, c_txt="third")
+    assert names(tmp_path) == ["c.txt", MANIFEST]
+
+
+@pytest.mark.parametrize("name", ["../user.txt", "link/user.txt", "/user.txt", "sub/../../user.txt", ""])
+def test_a_manifest_removes_nothing_outside_of_its_folder(name, tmp_path):
+    """A manifest may come from anybody."""
+    out, user = tmp_path / "out", tmp_path / "user.txt"
+    put(out, a_txt="a")
+    user.write_text("a")  # the same content, so that the checksum fits
+    (out / "link").symlink_to(tmp_path)
+    content = json.loads((out / MANIFEST).read_text())
+    content["files"] = {name if name != "/user.txt" else str(user): content["files"]["a.txt"]}
+    (out / MANIFEST).write_text(json.dumps(content))
+    put(out, b_txt="b")
+    assert user.exists()
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"cyclo": 1, "files": 3}', "[" * 100_000])
+def test_a_damaged_manifest_removes_nothing(text, tmp_path):
+    put(tmp_path, a_txt="a")
+    (tmp_path / MANIFEST).write_text(text)
+    put(tmp_path, b_txt="b")
+    assert names(tmp_path) == ["a.txt", "b.txt", MANIFEST]
+
+
+def test_what_a_killed_run_left_half_written_goes(tmp_path):
+    half = [tmp_path / ".results.0123456789abcdef.part.nc", tmp_path / "figures" / ".a.0123456789abcdef.part.svg"]
+    mine = tmp_path / ".results.part.nc"
+    (tmp_path / "figures").mkdir()
+    for path in [*half, mine]:
+        path.write_text("half")
+    put(tmp_path, a_txt="a")
+    assert names(tmp_path) == [".results.part.nc", "a.txt", MANIFEST]
+
+
+def test_old_parts_go_without_a_lock_too(tmp_path):
+    old, new = (tmp_path / f".a.{digit * 16}.part.txt" for digit in "ab")
+    for path in (old, new):
+        path.write_text("half")
+    os.utime(old, (0.0, os.stat(old).st_mtime - STALE - 60.0))
+    with whole_file(tmp_path / "a.txt") as part:
+        part.write_text("a")
+    assert names(tmp_path) == [new.name, "a.txt"]
+
+
+def test_names_of_parts_cannot_be_foreseen_and_follow_no_link(tmp_path, monkeypatch):
+    seen = set()
+    for _ in range(3):
+        with whole_file(tmp_path / "a.txt") as part:
+            seen.add(part.name)
+            part.write_text("a")
+    assert len(seen) == 3
+    monkeypatch.setattr("secrets.token_hex", lambda length: "0" * 16)
+    (tmp_path / f".a.{'0' * 16}.part.txt").symlink_to(tmp_path / "victim")
+    with pytest.raises(FaultError, match="cannot be written"), whole_file(tmp_path / "a.txt") as part:
+        part.write_text("a")
+    assert not (tmp_path / "victim").exists()
+
+
+def test_a_folder_that_nobody_may_write_to_is_told_before_the_work(tmp_path, capsys):
+    """The place of the folder is below a file, which not even root can write to."""
+    (tmp_path / "file").touch()
+    out = tmp_path / "file" / "out"
+    for words in (
+        ["run", "paper"],
+        ["curves", "paper"],
+        ["tolerance", "paper"],
+        ["optimise", "paper", "--vary", "eccentricity=3.9:4.1", "--minimise", "max_pin_load"],
+        ["mesh", "paper"],
+        ["fem", "paper"],
+        ["derive", "paper"],
+        ["validate", "paper"],
+    ):
+        assert main([*words, "--out", str(out)]) == 2, words
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1, said
+        assert f"--out {out}" in said
