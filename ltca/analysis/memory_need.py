@@ -37,4 +37,6 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
         drive.pin_wheel.number_of_pins + drive.crank_bearing.number_of_rollers + drive.pin_shaft.number_of_pins
         for drive in drives
     )
-    require_room(DISC_PER_PAIR * pairs * positions, memory=MEMORY_PER_PAIR * pairs * positions, folder=folder, option=option)
+    require_room(
+        DISC_PER_PAIR * pairs * positions, memory=MEMORY_PER_PAIR * pairs * positions, folder=folder, option=option
+    )

@@ -91,8 +91,8 @@ class CaseCurves(NamedTuple):
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case, write curves.json and the figures, print what they say."""
-    from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
     from ltca.analysis.memory_need import require_room_for
+    from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 

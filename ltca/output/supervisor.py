@@ -7,7 +7,9 @@ program is ended with all it started, and the folder is removed. Temporary files
 
 from __future__ import annotations
 
+import contextlib
 import os
+import select
 import shutil
 import signal
 import subprocess
@@ -29,29 +31,38 @@ def supervise(folder: str, words: Sequence[str]) -> int:
     words : sequence of str
         Program and arguments.
     """
-    program = subprocess.Popen(
-        words, stdin=subprocess.DEVNULL, start_new_session=True, env={**os.environ, "TMPDIR": folder}
-    )
+    # Ctrl-C reaches the asking process, which then ends this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _end)
+    environment = {**os.environ, "TMPDIR": folder}
+    program = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, env=environment)
+    told, tells = os.pipe()
 
-    def end(*_: object) -> None:
-        for number in (signal.SIGTERM, signal.SIGKILL):
-            try:
-                os.killpg(program.pid, number)
-                program.wait(GRACE)
-            except (ProcessLookupError, subprocess.TimeoutExpired):
-                continue
-        shutil.rmtree(folder, ignore_errors=True)
-        os._exit(128 + signal.SIGTERM)
+    def wait() -> None:
+        program.wait()
+        os.close(tells)
 
-    def watch() -> None:
-        while os.read(0, 1):
-            pass
-        end()
+    waiting = threading.Thread(target=wait, daemon=True)
+    waiting.start()
+    try:
+        if told in select.select([0, told], [], [])[0]:
+            return program.returncode
+    except _EndedError:
+        pass
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(program.pid, number)
+        waiting.join(GRACE)
+    shutil.rmtree(folder, ignore_errors=True)
+    return 128 + signal.SIGTERM
 
-    signal.signal(signal.SIGTERM, end)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the asking process, which then ends this one
-    threading.Thread(target=watch, daemon=True).start()
-    return program.wait()
+
+class _EndedError(Exception):
+    """SIGTERM has come."""
+
+
+def _end(number: int, frame: object) -> None:
+    raise _EndedError
 
 
 if __name__ == "__main__":

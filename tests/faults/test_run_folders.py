@@ -62,11 +62,17 @@ def test_two_processes_in_one_folder(holder, tmp_path, capsys):
 
 
 def test_one_process_does_not_hold_a_folder_twice(tmp_path):
-    with claimed_folder(tmp_path, "run"):
-        with pytest.raises(PlaceError, match="wait for it"), claimed_folder(tmp_path, "sweep"):
-            pass
+    with (
+        claimed_folder(tmp_path, "run"),
+        pytest.raises(PlaceError, match="wait for it"),
+        claimed_folder(tmp_path, "sweep"),
+    ):
+        pass
     with claimed_file(tmp_path / "a.nc", "derive"):
-        with pytest.raises(PlaceError, match=r"a\.nc: cyclo derive \(process"), claimed_file(tmp_path / "a.nc", "derive"):
+        with (
+            pytest.raises(PlaceError, match=r"a\.nc: cyclo derive \(process"),
+            claimed_file(tmp_path / "a.nc", "derive"),
+        ):
             pass
         with claimed_file(tmp_path / "b.nc", "derive"):
             pass

@@ -15,11 +15,11 @@ from fem.body.wall_stress import stress_along_wall
 from fem.coefficients.bodies import derive_disc, derive_pin, derive_race, derive_roller
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.stations import DiscStations, patch_half_width
-from ltca.drive.nominal_shape import nominal_shape
 from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleShape, DriveShapes, RingShape
+from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Material
 from ltca.reading.changes import with_fields
 from ltca.reading.coefficient_laws import compressed_cylinder, project_rigid_motions

@@ -15,14 +15,13 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from fem.coefficients.stations import DiscStations
 from fem.commands import derive
-from fem.errors import MeshError
 from fem.shapes import DriveShapes
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficient_files import find_case_coefficients
 from ltca.compliance.coefficients import load_coefficients
 from ltca.drive.nominal_shape import nominal_shape
-from ltca.errors import CycloError
+from ltca.errors import CycloError, DamagedFileError, FaultError
 from ltca.reading.coefficient_file import read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import check_coefficients
 from ltca.reading.drive_file import load_drive
@@ -202,16 +201,16 @@ def test_failed_check_gives_status_one(dataset, tmp_path, monkeypatch, capsys):
     assert "FAILED" in capsys.readouterr().out
 
 
-def test_failure_leaves_the_old_file(tmp_path, monkeypatch):
+def test_failure_leaves_the_old_file(dataset, tmp_path, monkeypatch):
     path = tmp_path / "c.nc"
     path.write_text("old")
 
-    class Unwritable:
-        def to_netcdf(self, target, engine):
-            raise OSError(28, "No space left on device")
+    def fail(dataset, part):
+        raise OSError(28, "No space left on device")
 
-    with pytest.raises(CycloError, match="No space left"):
-        write_coefficients(Unwritable(), path)
+    monkeypatch.setattr("ltca.reading.coefficient_file.write_netcdf", fail)
+    with pytest.raises(FaultError, match="No space left"):
+        write_coefficients(dataset, path)
     assert path.read_text() == "old"
     assert [entry.name for entry in tmp_path.iterdir()] == ["c.nc"]
 
@@ -245,11 +244,11 @@ def test_folder_as_file_is_refused(tmp_path):
 
 
 def test_other_files_are_refused(tmp_path):
-    with pytest.raises(MeshError, match="no such file"):
+    with pytest.raises(DamagedFileError, match="no such file"):
         read_coefficients(tmp_path / "none.nc")
     text = tmp_path / "text.nc"
     text.write_text("nothing")
-    with pytest.raises(MeshError, match="cannot be read"):
+    with pytest.raises(DamagedFileError, match="cannot be read"):
         read_coefficients(text)
 
 
@@ -258,7 +257,7 @@ def test_other_datasets_are_refused(tmp_path):
 
     other = tmp_path / "other.nc"
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(other, engine="h5netcdf")
-    with pytest.raises(MeshError, match="is no file of influence coefficients"):
+    with pytest.raises(DamagedFileError, match="is no file of influence coefficients"):
         read_coefficients(other)
 
 

@@ -42,7 +42,10 @@ def image_detail(path: Path) -> list[float]:
 def test_writes_all_files_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("paper", "--case", "CS-3", "--angle", "0.5", "--size", "4", "--out", str(tmp_path / "out")) == 0
     names = ["disc", "inner_race", *(f"pin_{i}" for i in range(14)), *(f"roller_{n}" for n in range(11))]
-    expected = {f"{name}{suffix}" for name in names for suffix in (".msh", ".vtu")} | {"mesh.png"}
+    expected = {f"{name}{suffix}" for name in names for suffix in (".msh", ".vtu")} | {
+        "mesh.png",
+        "cyclo-manifest.json",
+    }
     assert {path.name for path in (tmp_path / "out").iterdir()} == expected
     output = capsys.readouterr().out
     assert "disc: " in output

@@ -210,9 +210,15 @@ def test_a_file_without_stresses_gives_loads_and_no_numbers(drive, tmp_path):
     [
         (lambda data: data.drop_vars("stress_station_parameter"), "lacks stress_station_parameter"),
         (lambda data: data.isel(station_loaded=slice(0, -1)), "dimensions"),
-        (lambda data: data.assign(disc_stress=data["disc_stress"].where(data["disc_stress"] < 0.0)), "no finite numbers"),
+        (
+            lambda data: data.assign(disc_stress=data["disc_stress"].where(data["disc_stress"] < 0.0)),
+            "no finite numbers",
+        ),
         (lambda data: data.assign(stress_station_parameter=data["stress_station_parameter"] + 0.01), "uniform"),
-        (lambda data: data.isel(stress_station=data["stress_station_boundary"].values != 1), "boundaries of station_boundary"),
+        (
+            lambda data: data.isel(stress_station=data["stress_station_boundary"].values != 1),
+            "boundaries of station_boundary",
+        ),
     ],
     ids=["missing", "shape", "numbers", "places", "wall"],
 )

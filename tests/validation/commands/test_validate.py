@@ -10,6 +10,7 @@ import pytest
 import validation.report.costs
 import validation.study
 from ltca.errors import CycloError
+from ltca.output.run_folder import MANIFEST
 from validation.commands import validate
 from validation.compare.finite_element_positions import Settings
 from validation.rows import failed_rows
@@ -40,7 +41,7 @@ def test_a_failed_row_makes_the_exit_status_one(status, small_study, tmp_path, m
     out = capsys.readouterr().out
     assert ("FAILED" in out) == bool(status)
     assert ("broken figure" in out) == bool(status)
-    assert {path.name for path in tmp_path.iterdir()} == {"report.html", "validation.json", "rows.csv"}
+    assert {path.name for path in tmp_path.iterdir()} == {"report.html", "validation.json", "rows.csv", MANIFEST}
     assert ("fail their limit" in (tmp_path / "report.html").read_text(encoding="utf-8")) == bool(status)
 
 

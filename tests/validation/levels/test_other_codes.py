@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import contextmanager
 from dataclasses import replace
 from importlib import resources
 
@@ -14,6 +15,7 @@ import validation.levels.other_codes as other_codes
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
+from ltca.output import processes
 from validation.levels.other_codes import CODES
 from validation.rows import failed_rows
 
@@ -115,20 +117,17 @@ def echo(monkeypatch):
     answer, asked = CODES["tamaas"].ours(), []
 
     class Process:
-        returncode = 0
-
-        def __init__(self, words, **options):
-            asked.append(words)
-            out = other_codes.Path(words[words.index("--out") + 1])
-            other_codes.write_json(out, other_codes.with_problems({"tamaas": answer}))
-
         def wait(self):
             return 0
 
-        def poll(self):
-            return 0
+    @contextmanager
+    def supervised(words, folder, **options):
+        asked.append(words)
+        out = other_codes.Path(words[words.index("--out") + 1])
+        other_codes.write_json(out, other_codes.with_problems({"tamaas": answer}))
+        yield Process()
 
-    monkeypatch.setattr(other_codes.subprocess, "Popen", Process)
+    monkeypatch.setattr(other_codes, "supervised", supervised)
     return asked
 
 
@@ -176,13 +175,13 @@ def test_a_code_that_fails_is_one_error(monkeypatch):
 def test_leaving_early_ends_the_other_process(monkeypatch):
     only(monkeypatch, "CalculiX", installed=lambda: True, ours=dict)
     started = []
-    real = other_codes.subprocess.Popen
+    real = processes.subprocess.Popen
 
     def start(*words, **options):
         started.append(real(*words, **options))
         return started[0]
 
-    monkeypatch.setattr(other_codes.subprocess, "Popen", start)
+    monkeypatch.setattr(processes.subprocess, "Popen", start)
 
     def leave():
         with other_codes.asked_codes():

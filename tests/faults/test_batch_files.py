@@ -1,0 +1,185 @@
+"""Batches of a study that are damaged or another's are set aside with a word and solved again; nothing is executed."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.errors import CycloError, DamagedFileError
+from ltca.reading.drive_file import load_drive
+from ltca.studies.execution.batch_files import read_batch
+from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.workers import Workers
+from ltca.studies.run_study import run_study
+from ltca.studies.study import run_batch
+from ltca.studies.tolerance_study import tolerance_study
+
+RAN = []
+
+
+class Trap:
+    """Executed by whoever loads a pickle."""
+
+    def __reduce__(self):
+        return RAN.append, ("executed",)
+
+
+def study_of(seed, samples=40):
+    found = tolerance_study(
+        load_drive("paper"), case="CS-1", samples=samples, positions=2, seed=seed, quantities=("max_pin_load",)
+    )
+    return replace(found, batch_positions=30)
+
+
+@pytest.fixture(scope="module")
+def study():
+    return study_of(1)
+
+
+@pytest.fixture(scope="module")
+def other():
+    return study_of(2)
+
+
+@pytest.fixture(scope="module")
+def solved(study, other):
+    return {name: [run_batch(own, number) for number in range(own.batches)] for name, own in
+            (("study", study), ("other", other))}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def reference(study, tmp_path_factory):
+    folder = StudyFolder(path=tmp_path_factory.mktemp("reference"))
+    run_study(study, folder, Workers())
+    return folder.results.read_bytes()
+
+
+@pytest.fixture
+def interrupted(study, solved, tmp_path):
+    """All batches of a study that was interrupted before its end."""
+    folder = StudyFolder(path=tmp_path / "out")
+    folder.prepare(study, resume=False)
+    for result in solved["study"]:
+        folder.store(study, result)
+    return folder
+
+
+def member(**arrays):
+    """An archive of arrays as numpy writes it."""
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+def pickled(_):
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name in ("number", "factors", "values", "messages", "fingerprint", "checksum"):
+            archive.writestr(f"{name}.npy", b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '|O', 'fortran_order': False, "
+                             b"'shape': (), }".ljust(117) + b"\n" + pickle.dumps(Trap()))  # fmt: skip
+    return stream.getvalue()
+
+
+def huge(_):
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name in ("number", "factors", "values", "messages", "fingerprint", "checksum"):
+            archive.writestr(f"{name}.npy", b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '<f8', 'fortran_order': False, "
+                             b"'shape': (9000000000000,), }".ljust(117) + b"\n")  # fmt: skip
+    return stream.getvalue()
+
+
+def one_bit(content):
+    """Of the values, which are stored unpacked: the archive's own checksum is made right again."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    parts["values.npy"] = parts["values.npy"][:-3] + bytes([parts["values.npy"][-3] ^ 1]) + parts["values.npy"][-2:]
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name, part in parts.items():
+            archive.writestr(name, part)
+    return stream.getvalue()
+
+
+def bits(content, place):
+    return content[:place] + bytes([content[place] ^ 255]) + content[place + 1 :]
+
+
+DAMAGES = {
+    "empty": lambda content: b"",
+    "cut off": lambda content: content[: len(content) // 2],
+    "no archive": lambda content: b"not an archive",
+    "one array": lambda content: b"\x93NUMPY\x01\x00",
+    "lacks parts": lambda content: member(values=np.zeros(3)),
+    "a bit of the archive": lambda content: bits(content, content.index(b"values.npy") + 10 + 128 + 20),
+    "a bit of a value": one_bit,
+    "pickle": pickled,
+    "72 TB": huge,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_damaged_batches_are_set_aside(damage, study, interrupted, reference):
+    path = sorted(interrupted.path.glob("batches/*.npz"))[0]
+    path.write_bytes(DAMAGES[damage](path.read_bytes()))
+    told = []
+    run_study(study, interrupted, Workers(), resume=True, told=told.append)
+    assert RAN == []
+    assert interrupted.results.read_bytes() == reference
+    assert len(told) == 1
+    assert "\n" not in told[0]
+    assert "set aside" in told[0]
+    assert path.with_suffix(".npz.aside").exists()
+
+
+def test_batches_of_another_study_or_number_are_set_aside(study, other, solved, interrupted, reference):
+    """Two studies with different seeds mixed in silence."""
+    paths = sorted(interrupted.path.glob("batches/*.npz"))
+    assert len(paths) == 3
+    foreign = StudyFolder(path=interrupted.path / "foreign")
+    foreign.store(other, solved["other"][0])
+    (foreign.path / "batches" / "00000000.npz").replace(paths[0])
+    paths[1].write_bytes(paths[2].read_bytes())
+    told = []
+    run_study(study, interrupted, Workers(), resume=True, told=told.append)
+    assert ["belongs to another study" in told[0], "is batch 2 of the study" in told[1], len(told)] == [True, True, 2]
+    assert interrupted.results.read_bytes() == reference
+
+
+def test_what_is_not_ours_in_the_folder_of_batches_stays(study, interrupted, reference):
+    for name in ("notes.txt", "0.npz", "12.npz", "000000x0.npz"):
+        (interrupted.path / "batches" / name).write_text("the user's")
+    run_study(study, interrupted, Workers(), resume=True)
+    assert interrupted.results.read_bytes() == reference
+    assert sorted(path.name for path in interrupted.path.glob("batches/*")) == sorted(
+        ["notes.txt", "0.npz", "12.npz", "000000x0.npz"]
+    )
+    assert not interrupted.has_batches()
+
+
+def test_another_study_does_not_take_an_unfinished_ones_folder(other, interrupted):
+    with pytest.raises(CycloError, match="--resume"):
+        interrupted.prepare(other, resume=False)
+    with pytest.raises(CycloError, match="another study"):
+        interrupted.prepare(other, resume=True)
+    assert interrupted.has_batches()
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '"a"', "{}"])
+def test_a_damaged_plan_is_told_in_a_line(text, study, interrupted):
+    (interrupted.path / "study.json").write_text(text)
+    with pytest.raises(DamagedFileError, match="plan of a study"):
+        interrupted.prepare(study, resume=True)
+
+
+def test_a_batch_is_read_as_it_was_written(study, interrupted, solved):
+    for number, result in enumerate(solved["study"]):
+        found = read_batch(interrupted.path / "batches" / f"{number:08d}.npz", study)
+        np.testing.assert_array_equal(found.values, result.values)
+        np.testing.assert_array_equal(found.factors, result.factors)
+        assert found.messages == result.messages

@@ -1,0 +1,210 @@
+"""Coefficient files: every class of damage is refused in a line, in the cache it is derived again with a word."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+
+from ltca.compliance import coefficient_files
+from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
+from ltca.compliance.coefficients import load_coefficients
+from ltca.errors import DamagedFileError
+from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
+from ltca.testing.closed_form_bodies import closed_form_coefficients
+
+
+def closed_form(drive):
+    return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
+
+
+@pytest.fixture(scope="module")
+def drive(paper_cases):
+    return paper_cases["CS-1"]
+
+
+@pytest.fixture(scope="module")
+def sound(drive, tmp_path_factory):
+    """A sound file with a checksum."""
+    return write_coefficients(closed_form(drive), tmp_path_factory.mktemp("sound") / "coefficients.nc")
+
+
+@pytest.fixture
+def derived(monkeypatch, tmp_path):
+    """Bodies in closed form in place of finite elements, an empty cache, and the list of what was derived."""
+    made = []
+
+    def derive(drive, *, state, processes):
+        made.append(drive.name)
+        return closed_form(drive)
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.delenv(coefficient_files.INSTEAD, raising=False)
+    monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
+    return made
+
+
+def bits(content, first, step):
+    damaged = bytearray(content)
+    for place in range(first, len(damaged), step):
+        damaged[place] ^= 1
+    return bytes(damaged)
+
+
+FILES = {
+    "empty": lambda content: b"",
+    "text": lambda content: b"not netCDF",
+    "cut off": lambda content: content[: len(content) // 2],
+    "a bit each 1001 bytes": lambda content: bits(content, 500, 1001),
+    "zeros": lambda content: bytes(len(content)),
+}
+
+
+@pytest.mark.parametrize("damage", FILES)
+def test_damaged_bytes_are_refused(damage, drive, sound, tmp_path):
+    """One flipped bit for each 1001 bytes gave 3115 N for 3121 N, exit status 0."""
+    path = tmp_path / "damaged.nc"
+    path.write_bytes(FILES[damage](sound.read_bytes()))
+    with pytest.raises(DamagedFileError) as refused:
+        load_coefficients(path, drive)
+    assert "\n" not in str(refused.value)
+
+
+def test_any_bit_of_a_number_is_seen(drive, sound, tmp_path):
+    """By the checksum: one bit somewhere in the matrix of the disc breaks no law."""
+    content, rng = sound.read_bytes(), np.random.default_rng(5)
+    matrix = closed_form(drive)["disc_approach"].values.astype("<f8").tobytes()
+    first = content.index(matrix[:64])
+    path = tmp_path / "damaged.nc"
+    for _ in range(10):
+        place = first + int(rng.integers(len(matrix)))
+        path.write_bytes(content[:place] + bytes([content[place] ^ (1 << int(rng.integers(8)))]) + content[place + 1 :])
+        with pytest.raises(DamagedFileError, match=r"checksum|no finite numbers"):
+            load_coefficients(path, drive)
+
+
+def scaled(name, factor):
+    def change(file):
+        file[name][...] = factor * file[name][...]
+
+    return change
+
+
+def linked(file):
+    import h5py
+
+    del file["pin_approach"]
+    file["pin_approach"] = h5py.ExternalLink("other.nc", "/pin_approach")
+
+
+def soft(file):
+    import h5py
+
+    del file["pin_approach"]
+    file["pin_approach"] = h5py.SoftLink("/pin_half_width")
+
+
+def elsewhere(file):
+    del file["race_approach"]
+    file.create_dataset("race_approach", shape=(24,), dtype="f8", external=[("other.bin", 0, 192)])
+
+
+def huge(file):
+    del file["disc_approach"]
+    file.create_dataset("disc_approach", shape=(3_000_000, 3_000_000), dtype="f8", chunks=(1000, 1000))
+
+
+# What somebody made who takes no checksum: schema and laws have to see it.
+CONTENTS = {
+    "plane": (lambda file: file.attrs.__setitem__("plane", "banana"), "plane = banana: must be strain or stress"),
+    "matrix × 10": (scaled("disc_approach", 10.0), "near field"),
+    "pin × 10": (scaled("pin_approach", 10.0), "near field"),
+    "roller × 1.01": (scaled("roller_approach", 1.01), "compressed cylinder"),
+    "race × 10": (scaled("race_approach", 10.0), "near field"),
+    "matrix negative": (scaled("disc_approach", -1.0), "smallest eigenvalue"),
+    "a bit asymmetric": (lambda file: file["disc_approach"].__setitem__((3, 40), 0.0), "symmetry"),
+    "moved": (lambda file: file["station_x"].__setitem__(7, file["station_x"][7] + 0.01), "half-widths of its patch"),
+    "not a number": (lambda file: file["race_approach"].__setitem__(3, np.nan), "no finite numbers"),
+    "thickness": (lambda file: file.attrs.__setitem__("thickness", 118.0), "must be 11.8 as in shape"),
+    "missing": (lambda file: file.__delitem__("race_approach"), "race_approach"),
+    "external link": (linked, "is a link to other.nc, which is not followed"),
+    "soft link": (soft, "is a link to another place"),
+    "external storage": (elsewhere, "lies in another file"),
+    "72 TB": (huge, r"it declares 7\.2e\+13 bytes"),
+}
+
+
+@pytest.mark.parametrize("name", CONTENTS)
+def test_wrong_contents_are_refused(name, drive, sound, tmp_path):
+    """A matrix ten times too large gave −26 %, plane = "banana" +2.9 %, both with exit status 0."""
+    import h5py
+
+    change, message = CONTENTS[name]
+    path = tmp_path / "wrong.nc"
+    shutil.copy(sound, path)
+    with h5py.File(path, "r+") as file:
+        del file.attrs[CHECKSUM]
+        change(file)
+    with pytest.raises(DamagedFileError, match=message) as refused:
+        load_coefficients(path, drive)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_damaged_entry_of_the_cache_is_derived_again_with_a_word(drive, derived, capsys):
+    first = find_coefficients(drive)
+    path = cached_file(drive)
+    content = path.read_bytes()
+    for damaged in (content[:-2000], bits(content, 3000, 5000), b""):
+        path.write_bytes(damaged)
+        capsys.readouterr()
+        np.testing.assert_array_equal(find_coefficients(drive).disc, first.disc)
+        said = capsys.readouterr().err.splitlines()
+        assert said[0].startswith(f"warning: {path}: ")
+        assert said[0].endswith("; derived again")
+    assert len(derived) == 4
+
+
+def test_a_damaged_file_is_refused_beside_a_sound_one(drive, sound, tmp_path):
+    (tmp_path / "damaged.nc").write_bytes(sound.read_bytes()[:-2000])
+    with pytest.raises(DamagedFileError, match=r"damaged\.nc"):
+        find_coefficients(drive, [tmp_path / "damaged.nc", sound])
+
+
+def test_an_unwritable_cache_is_told_before_the_derivation(drive, derived, tmp_path, monkeypatch, capsys):
+    """It derived for 48 s and then failed. What it has is used; what is derived is used and not kept."""
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr(coefficient_files.atexit, "register", lambda *arguments: kept.append(arguments))
+    kept = []
+    found = find_case_coefficients({"CS-1": drive})
+    said = capsys.readouterr().err.splitlines()
+    assert "cannot be written (Not a directory): what is derived is used but not kept" in said[0]
+    assert said[1].startswith("deriving")
+    assert found["CS-1"].fingerprint == drive.shape_fingerprint()
+    find_coefficients(drive)
+    assert derived == [drive.name]  # kept for this run
+    ((forget, folder, process),) = kept
+    forget(folder, process)
+    assert not cached_file(drive).exists()
+
+
+def test_caches_are_keyed_by_the_code(drive, derived, monkeypatch):
+    """They were keyed by the version alone, and after a change of the code its old answers came back."""
+    find_coefficients(drive)
+    find_coefficients(drive)
+    assert len(derived) == 1
+    monkeypatch.setattr(coefficient_files, "code_hash", lambda *packages: "another code")
+    find_coefficients(drive)
+    assert len(derived) == 2
+
+
+def test_the_checksum_is_of_the_content_not_of_its_storage(drive, sound, tmp_path):
+    dataset = closed_form(drive)
+    packed = tmp_path / "packed.nc"
+    dataset.assign_attrs({CHECKSUM: checksum_of(dataset)}).to_netcdf(
+        packed, engine="h5netcdf", encoding={"disc_approach": {"zlib": True}}
+    )
+    assert read_coefficients(packed).attrs[CHECKSUM] == read_coefficients(sound).attrs[CHECKSUM]
+    assert checksum_of(dataset.assign_attrs(plane="stress")) != checksum_of(dataset)
+    assert checksum_of(dataset.drop_vars("pin_approach")) != checksum_of(dataset)
