@@ -51,7 +51,7 @@ def require_room(needed: float, *, memory: float, folder: Path, option: str) -> 
     free = available_memory()
     if memory > free:
         raise PlaceError(
-            f"{option}: needs about {memory / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are available: take fewer"
+            f"{option}: needs about {_size(memory)} of memory, {_size(free)} are available: take fewer"
         )
     place = folder.absolute()
     while not place.exists():
@@ -59,6 +59,14 @@ def require_room(needed: float, *, memory: float, folder: Path, option: str) -> 
     room = shutil.disk_usage(place).free
     if needed > room:
         raise PlaceError(
-            f"{option}: results take about {needed / 1e9:.3g} GB, {room / 1e9:.3g} GB are free in --out {folder}: take "
-            "fewer, or another folder"
+            f"{option}: results take about {_size(needed)}, {_size(room)} are free in --out {folder}: take fewer, or "
+            "another folder"
         )
+
+
+def _size(count: float) -> str:
+    """Return a number of bytes as it is read."""
+    for factor, unit in ((1e9, "GB"), (1e6, "MB")):
+        if count >= factor:
+            return f"{count / factor:.3g} {unit}"
+    return f"{count / 1e3:.3g} kB"
