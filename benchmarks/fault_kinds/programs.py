@@ -14,9 +14,9 @@ from ltca.output.run_folder import MANIFEST
 
 # Small sizes: what a command does is the same, how long it takes is not. {out} is the folder or file.
 COMMANDS = {
-    "run": "run paper --case CS-1 --positions 28 --pressure --no-figures --out {out}",
-    "tolerance": "tolerance paper --samples 400 --positions 4 --workers 2 --out {out}",
-    "optimise": "optimise paper --vary eccentricity=3.9:4.1 --minimise max_pin_load --positions 16 --generations 2 --out {out}",
+    "run": "run paper --case CS-1 --positions 28 --no-figures --out {out}",
+    "tolerance": "tolerance paper --samples 400 --positions 4 --out {out}",
+    "optimise": "optimise paper --vary eccentricity=3.9:4.1 --minimise max_pin_load --positions 8 --generations 1 --no-figures --out {out}",
     "derive": "derive paper --case CS-3 --stations 0.25 --size 2 --out {out}/c.nc",
     "fem": "fem paper --case CS-3 --angle 0.5 --size 4 --no-pictures --out {out}",
     "validate": "validate paper --case CS-3 --angles 0.5 --size 4 --out {out}",
