@@ -24,6 +24,8 @@ LOCK = ".cyclo.lock"
 FORMAT = 1
 FOLDERS = ("figures", "samples")
 """Folders of results in the folder of a run."""
+LOCKLESS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)
+"""What a file system answers that knows no locks: two runs are not kept apart there."""
 FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 """What is no fault of whoever chose the folder."""
 
@@ -246,7 +248,11 @@ def _lock(descriptor: int, wait: bool) -> None:
         import fcntl
     except ImportError:  # no such locks on this system: two runs are not kept apart
         return
-    fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except OSError as error:
+        if error.errno not in LOCKLESS:
+            raise
 
 
 def _holder(lock: Path) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import fields
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -60,7 +60,7 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         return engine
     key = (*engine.options.values(), repr(given), drive.shape_fingerprint())
     if key not in _ENGINES:
-        with _one_process(drive.shape_fingerprint()):
+        with _one_process(drive.shape_fingerprint()) if given is None else nullcontext():
             _ENGINES[key] = engine.with_coefficients(drive)
         if len(_ENGINES) > KEPT:
             _ENGINES.popitem(last=False)
