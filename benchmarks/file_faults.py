@@ -1,9 +1,9 @@
 """Faults around files and processes as they happen: what was tried, what went right, what went wrong.
 
-    python benchmarks/file_faults.py kills [--kills 20] [--commands run fem …] [--signal KILL | TERM]
-    python benchmarks/file_faults.py discs
-    python benchmarks/file_faults.py folders
-    python benchmarks/file_faults.py clusters
+python benchmarks/file_faults.py kills [--kills 20] [--commands run fem …] [--signal KILL | TERM]
+python benchmarks/file_faults.py discs
+python benchmarks/file_faults.py folders
+python benchmarks/file_faults.py clusters
 """
 
 from __future__ import annotations

@@ -42,14 +42,31 @@ def _tried(kind: str, out: Path, folder: Path, wanted: dict[str, bytes]) -> str:
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     place = folder / f"{out.name}.json"
     scheduler = subprocess.Popen(
-        [*python, "distributed.cli.dask_scheduler", "--port", "0", "--dashboard-address", ":0", "--scheduler-file", str(place)],
+        [
+            *python,
+            "distributed.cli.dask_scheduler",
+            "--port",
+            "0",
+            "--dashboard-address",
+            ":0",
+            "--scheduler-file",
+            str(place),
+        ],
         **quiet,
     )
     workers = []
     try:
         while not place.exists():
             time.sleep(0.1)
-        words = [*python, "distributed.cli.dask_worker", "--scheduler-file", str(place), "--nthreads", "1", "--no-dashboard"]
+        words = [
+            *python,
+            "distributed.cli.dask_worker",
+            "--scheduler-file",
+            str(place),
+            "--nthreads",
+            "1",
+            "--no-dashboard",
+        ]
         workers = [subprocess.Popen(words, cwd=folder, **quiet) for _ in range(2)]
         import json
 

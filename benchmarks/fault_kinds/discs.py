@@ -33,7 +33,9 @@ def execute(arguments: argparse.Namespace) -> int:
                     if not there:
                         print("skipped: file systems cannot be mounted here (needs root)")
                         return 0
-                    counts.add(f"{command}, full disc", _tried(command, place / "out", Path(name) / "scratch", {0, 1, 2}))
+                    counts.add(
+                        f"{command}, full disc", _tried(command, place / "out", Path(name) / "scratch", {0, 1, 2})
+                    )
             with _mounted(place, "ro"):
                 counts.add(f"{command}, read-only", _tried(command, place / "out", Path(name) / "scratch", {2}))
     return counts.close()

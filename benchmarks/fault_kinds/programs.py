@@ -16,7 +16,8 @@ from ltca.output.run_folder import MANIFEST
 COMMANDS = {
     "run": "run paper --case CS-1 --positions 28 --no-figures --out {out}",
     "tolerance": "tolerance paper --samples 400 --positions 4 --out {out}",
-    "optimise": "optimise paper --vary eccentricity=3.9:4.1 --minimise max_pin_load --positions 8 --generations 1 --no-figures --out {out}",
+    "optimise": "optimise paper --vary eccentricity=3.9:4.1 --minimise max_pin_load --positions 8 --generations 1 "
+    "--no-figures --out {out}",
     "derive": "derive paper --case CS-3 --stations 0.25 --size 2 --out {out}/c.nc",
     "fem": "fem paper --case CS-3 --angle 0.5 --size 4 --no-pictures --out {out}",
     "validate": "validate paper --case CS-3 --angles 0.5 --size 4 --out {out}",

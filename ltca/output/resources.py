@@ -50,9 +50,7 @@ def require_room(needed: float, *, memory: float, folder: Path, option: str) -> 
     """
     free = available_memory()
     if memory > free:
-        raise PlaceError(
-            f"{option}: needs about {_size(memory)} of memory, {_size(free)} are available: take fewer"
-        )
+        raise PlaceError(f"{option}: needs about {_size(memory)} of memory, {_size(free)} are available: take fewer")
     place = folder.absolute()
     while not place.exists():
         place = place.parent

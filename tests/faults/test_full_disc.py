@@ -89,12 +89,9 @@ def test_every_writer_on_a_full_disc(suffix, tmp_path):
     assert path.stat().st_size > LIMIT
 
 
-@pytest.mark.parametrize("limit", [0, 5_000, 40_000])
-def test_a_full_disc_is_no_segmentation_fault(limit, tmp_path):
+def test_a_full_disc_is_no_segmentation_fault(tmp_path):
     words = ["run", "paper", "--case", "CS-1", "--angles", "0.5", "--no-figures", "--out", str(tmp_path / "out")]
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(limit), *words], capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([sys.executable, "-c", PROGRAM, "40000", *words], capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert done.stderr.startswith("cyclo: error: ")
     assert done.stderr.count("\n") == 1

@@ -12,7 +12,7 @@ import pytest
 from ltca.commands.program import main
 
 COMMANDS = {
-    "run": ["run", "paper", "--case", "CS-1", "--angles", "0.5"],
+    "run": ["run", "paper", "--case", "CS-1", "--positions", "28", "--no-figures"],
     "tolerance": ["tolerance", "paper", "--samples", "300", "--positions", "4", "--no-figures"],
 }
 

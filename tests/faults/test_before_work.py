@@ -1,0 +1,62 @@
+"""What memory or disc cannot hold is refused before any work, by the option that asks for it; long work says where it is."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from ltca.commands.program import main
+from ltca.errors import PlaceError
+from ltca.output import progress as progress_module, resources
+from ltca.output.progress import progress, steps
+from ltca.output.resources import require_room
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (["run", "paper", "--positions", "1000000"], "--positions 1000000: needs about"),
+        (["curves", "paper", "--turns", "1000"], "--turns 1000: needs about"),
+        (["validate", "paper", "--size", "1e-6"], "--size 1e-06: the model of disc"),
+        (["fem", "paper", "--size", "1e-6"], "unknowns and need about"),
+    ],
+)
+def test_memory_that_is_not_there(words, option, tmp_path, capsys, monkeypatch):
+    """A million positions ended in a MemoryError, and validate --size 1e-6 ran on."""
+    for module in (resources, pytest.importorskip("fem.mesh.memory_need")):
+        monkeypatch.setattr(module, "available_memory", lambda: 2e9)
+    began = time.process_time()
+    assert main([*words, "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("cyclo: error: ")
+    assert option in said
+    assert said.count("\n") == 1
+    assert time.process_time() - began < 5.0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_room_on_the_disc(tmp_path, monkeypatch):
+    room = resources.shutil.disk_usage(tmp_path).free
+    require_room(0.5 * room, memory=0.0, folder=tmp_path / "not" / "there", option="x")
+    with pytest.raises(PlaceError, match=r"2000 samples: results take about .*are free in --out"):
+        require_room(2.0 * room, memory=0.0, folder=tmp_path / "not" / "there", option="2000 samples")
+
+
+def test_without_a_terminal_a_line_says_where_it_is(monkeypatch, capsys):
+    """239 s passed with one line. What is quick says nothing."""
+    with progress("quick", 3) as advance, steps("quick") as show:
+        show("one")
+        advance("one")
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(progress_module, "SECONDS", 0.05)
+    with progress("candidates", 90, at_most=True) as advance:
+        advance("solved", 30)
+        time.sleep(0.2)
+    with steps("deriving") as show:
+        show("disc")
+        time.sleep(0.2)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "candidates: 30 of at most 90, solved (0 s)"
+    assert lines[-1] == "deriving: disc (0 s)"
+    assert len(lines) > 3
