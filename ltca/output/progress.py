@@ -10,7 +10,10 @@ from contextlib import contextmanager
 from typing import Protocol
 
 SECONDS = 5.0
-"""Between two lines where there is no terminal; what takes less time says nothing."""
+"""Between two lines where there is no terminal."""
+
+FIRST = 10.0
+"""Before the first of them; what takes less time says nothing."""
 
 WIDTH = 118
 """Letters of a line on a terminal."""
@@ -109,8 +112,9 @@ def _said_regularly(describe: Callable[[], str]) -> Iterator[None]:
     ended, began = threading.Event(), time.monotonic()
 
     def say() -> None:
-        while not ended.wait(SECONDS):
-            text = describe()
+        seconds = FIRST
+        while not ended.wait(seconds):
+            seconds, text = SECONDS, describe()
             if text:
                 print(f"{text} ({time.monotonic() - began:.0f} s)", file=sys.stderr, flush=True)
 

@@ -49,7 +49,8 @@ def test_without_a_terminal_a_line_says_where_it_is(monkeypatch, capsys):
         show("one")
         advance("one")
     assert capsys.readouterr().err == ""
-    monkeypatch.setattr(progress_module, "SECONDS", 0.05)
+    for name in ("FIRST", "SECONDS"):
+        monkeypatch.setattr(progress_module, name, 0.05)
     with progress("candidates", 90, at_most=True) as advance:
         advance("solved", 30)
         time.sleep(0.2)
