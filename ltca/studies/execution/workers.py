@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -137,7 +137,7 @@ def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Ite
     Raises
     ------
     FaultError
-        When workers die again and again.
+        When workers die again and again, or the scheduler is gone.
     """
     left = list(numbers)[::-1]
     for _ in range(LOSSES + 1):
@@ -151,9 +151,25 @@ def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Ite
         except BrokenProcessPool:
             # A worker died (killed, out of memory): its pool is gone with it, what was not finished starts again.
             left = [number for number in left if number not in done]
+        except _cluster_losses(workers.scheduler) as error:
+            kept = len([number for number in left if number not in done])
+            raise FaultError(
+                f"--scheduler {workers.scheduler}: lost its batches ({type(error).__name__}); {kept} are left: finished ones "
+                "are kept, continue with --resume"
+            ) from error
     raise FaultError(
         f"workers died {LOSSES + 1} times; {len(left)} batches are left: finished ones are kept, continue with --resume"
     )
+
+
+def _cluster_losses(scheduler: str) -> tuple[type[Exception], ...]:
+    """What futures raise when a scheduler has gone, or has lost a batch with too many workers."""
+    if not scheduler:
+        return ()
+    from distributed.comm.core import CommClosedError
+    from distributed.scheduler import KilledWorker
+
+    return (CancelledError, CommClosedError, KilledWorker)
 
 
 def _flow(study: Study, numbers: list[int], executor: Executor, window: int) -> Iterator[BatchResult]:
