@@ -65,7 +65,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     part = path.with_name(f".{path.stem}.{secrets.token_hex(8)}.part{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_stale(path)
+        remove_parts_of(path, STALE)
         os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_NOFOLLOW", 0), 0o666))
         yield part
         placed = _PLACED.get()
@@ -79,14 +79,22 @@ def whole_file(path: Path) -> Iterator[Path]:
             part.unlink(missing_ok=True)
 
 
-def _remove_stale(path: Path) -> None:
-    """Remove parts of a file that were left by killed programs."""
+def remove_parts_of(path: Path, age: float) -> None:
+    """Remove parts of a file that were left by killed programs.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    age : float
+        Of the parts at the least, s; 0 for who holds a lock on the file.
+    """
     head, now = f".{path.stem}.", time.time()
     with os.scandir(path.parent) as entries:
         for entry in entries:
             if entry.name.startswith(head) and PART.fullmatch(entry.name):
                 with suppress(OSError):
-                    if now - entry.stat(follow_symlinks=False).st_mtime > STALE:
+                    if now - entry.stat(follow_symlinks=False).st_mtime >= age:
                         os.unlink(entry.path)
 
 

@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from ltca.errors import FaultError, PlaceError
-from ltca.output.files import PART, told_of_files, whole_file
+from ltca.output.files import PART, remove_parts_of, told_of_files, whole_file
 
 MANIFEST = "cyclo-manifest.json"
 LOCK = ".cyclo.lock"
@@ -183,6 +183,7 @@ def claimed_file(path: Path, command: str, *, option: str = "--out") -> Iterator
     if path.is_dir():
         raise PlaceError(f"{option} {path}: is a folder, not a file")
     with held(path.with_name(f".{path.name}.lock"), f"{option} {path}", command):
+        remove_parts_of(path, 0.0)
         yield
 
 

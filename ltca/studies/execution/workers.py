@@ -6,6 +6,7 @@ alone, so who solves it and when shows nowhere in them.
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
@@ -106,6 +107,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         raise CycloError(
             "--scheduler needs dask.distributed, which is not installed: pip install 'cyclo-ltca[cluster]'"
         ) from error
+    # What is lost is said in one line of ours; the library would print tracebacks of its own beside it.
+    for name in ("distributed", "tornado", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:
         client: Any = cast(Any, Client)(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
