@@ -108,8 +108,8 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
             "--scheduler needs dask.distributed, which is not installed: pip install 'cyclo-ltca[cluster]'"
         ) from error
     # What is lost is said in one line of ours; the library would print tracebacks of its own beside it.
-    for name in ("distributed", "tornado", "asyncio"):
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    for name in ("distributed", "distributed.client", "distributed.core", "tornado", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # some have levels of their own
     try:
         client: Any = cast(Any, Client)(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
