@@ -12,6 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+AGAIN = 0.05
+"""Time, s, after which a signal that nobody heard is sent again."""
+
 ENDING = 10.0
 """Time, s, in which a supervised program has to be gone."""
 
@@ -27,15 +30,36 @@ def ended_by_signals() -> Iterator[None]:
         yield
         return
 
+    armed, told = True, sys.unraisablehook
+
     def end(number: int, frame: Any) -> None:
-        signal.signal(number, signal.SIG_IGN)  # a second one would cut the cleaning short
-        raise Terminated
+        nonlocal armed
+        if armed:
+            armed = False  # a second one would cut the cleaning short
+            raise Terminated
+
+    def again(unraisable: Any) -> None:
+        # A signal that comes while an object is being removed raises where nobody hears it: it is sent once more.
+        nonlocal armed
+        if unraisable.exc_type is Terminated:
+            armed = True
+            number = signal.SIGTERM
+        elif unraisable.exc_type is KeyboardInterrupt:
+            number = signal.SIGINT
+        else:
+            told(unraisable)
+            return
+        timer = threading.Timer(AGAIN, os.kill, (os.getpid(), number))
+        timer.daemon = True
+        timer.start()
 
     before = signal.signal(signal.SIGTERM, end)
+    sys.unraisablehook = again
     try:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+        sys.unraisablehook = told
 
 
 @contextmanager

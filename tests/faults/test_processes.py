@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from ltca.output.processes import Terminated, ended_by_signals
+
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
 
 # A program under supervision that itself has a child: both sleep, both write who they are.
@@ -69,6 +71,26 @@ def test_a_supervised_program_ends_with_its_parent(number):
         assert all(map(alive, pids))
         parent.send_signal(number)
         assert gone(pids, folder)
+
+
+@pytest.mark.parametrize(("number", "kind"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])
+def test_a_signal_while_an_object_is_removed_is_heard(number, kind):
+    """One of the kills of `benchmarks/file_faults.py` came inside a weak reference's callback, and nothing ended."""
+
+    class Dying:
+        def __del__(self):
+            os.kill(os.getpid(), number)
+            time.sleep(0.001)
+
+    def work():
+        with ended_by_signals():
+            Dying()
+            time.sleep(5.0)
+
+    began = time.monotonic()
+    with pytest.raises(kind):
+        work()
+    assert time.monotonic() - began < 3.0
 
 
 @pytest.mark.parametrize("method", ["spawn", "forkserver"])
