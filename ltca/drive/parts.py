@@ -22,7 +22,7 @@ from ltca.drive.deviations import (
     Runout as Runout,
     SignedLength,
 )
-from ltca.drive.units import quantity
+from ltca.drive.units import COUNT, quantity
 
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
 NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
@@ -118,7 +118,7 @@ class PinWheel:
     that axis is a matter of `pin_errors`.
     """
 
-    number_of_pins: Annotated[int, Field(ge=4, le=1000)]
+    number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
     pin_circle_radius: PositiveLength
     pin_radius: PositiveLength
     pin_profile: LengthProfile = field(default_factory=LengthProfile)
@@ -152,9 +152,9 @@ class Disc:
         Centre of the flank against the bore.
     """
 
-    number_of_teeth: Annotated[int, Field(ge=3, le=1000)]
+    number_of_teeth: Annotated[int, Field(ge=3, le=1000), COUNT]
     thickness: PositiveLength
-    number_of_discs: Annotated[int, Field(ge=1, le=10)] = 1
+    number_of_discs: Annotated[int, Field(ge=1, le=10), COUNT] = 1
     torque_share: Annotated[float, quantity("dimensionless", gt=0.0, le=1.0)] = 1.0
     equidistant_offset: SignedLength = 0.0
     shifting_offset: SignedLength = 0.0
@@ -183,7 +183,7 @@ class CrankBearing:
 
     inner_race_radius: PositiveLength
     outer_race_radius: PositiveLength
-    number_of_rollers: Annotated[int, Field(ge=3, le=500)]
+    number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
     roller_radius: PositiveLength
     roller_length: PositiveLength
     roller_profile: LengthProfile = field(default_factory=LengthProfile)
@@ -208,7 +208,7 @@ class PinShaft:
         Errors of the shaft pins.
     """
 
-    number_of_pins: Annotated[int, Field(ge=3, le=200)]
+    number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]
     pin_circle_radius: PositiveLength
     pin_radius: PositiveLength
     hole_radius: PositiveLength

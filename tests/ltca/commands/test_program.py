@@ -194,7 +194,7 @@ try:
     main(["--help"])
 except SystemExit:
     pass
-heavy = {"numpy", "scipy", "xarray", "pydantic", "matplotlib", "pint"}
+heavy = {"numpy", "scipy", "xarray", "pydantic", "matplotlib"}
 print(sorted(heavy & {name.partition(".")[0] for name in sys.modules}))
 """
     assert python(code) == "[]"
