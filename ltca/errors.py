@@ -96,6 +96,14 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """Return the known name nearest to one that is not known, empty when none is near."""
     from difflib import get_close_matches
 
+    name = name[:80].casefold()
     spelled = {text.casefold(): text for text in known}
-    found = get_close_matches(name[:80].casefold(), spelled, n=1, cutoff=0.7)
-    return spelled[found[0]] if found else ""
+    found = get_close_matches(name, spelled, n=1, cutoff=0.8 if len(name) < 5 else 0.7)
+    # CS-9 is no misspelt CS-6: another number is another thing.
+    if not found or (found[0] != name and _letters(found[0]) == _letters(name)):
+        return ""
+    return spelled[found[0]]
+
+
+def _letters(name: str) -> str:
+    return "".join(sign for sign in name if not sign.isdigit())

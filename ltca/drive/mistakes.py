@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
+from ltca.drive.unit_table import label
 from ltca.errors import did_you_mean, nearest, printable, shortened
 
 
@@ -57,7 +58,7 @@ def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) 
         case "dataclass_type" | "dataclass_exact_type" | "model_type" | "dict_type":
             return f"{path} = {shortened(detail['input'])}: must be a table"
         case "tuple_type":
-            return f"{path} = {shortened(detail['input'])}: must be an array of numbers"
+            return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(path)}"
         case "literal_error":
             expected = detail["ctx"]["expected"]
             choices = [name.strip("' ") for name in expected.replace(" or ", ",").split(",")]
@@ -67,6 +68,13 @@ def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) 
             return f"{path} = {shortened(detail['input'])}: must be a whole number"
     message = str(detail["msg"]).replace("Input should be", "must be")
     return f"{path} = {shortened(detail['input'])}: {message}"
+
+
+def _unit_of(path: str) -> str:
+    from ltca.drive.fields import field_kinds
+
+    kind = field_kinds().get(path)
+    return f" in {label(kind.unit)}" if kind is not None and kind.unit else ""
 
 
 @cache

@@ -215,7 +215,7 @@ def _about_unit(name: str, kind: str, unit: str) -> str:
 RANGES = {
     "length": (1e-9, 1e6),
     "force": (1e-9, 1e12),
-    "pressure": (1e-6, 1e9),
+    "pressure": (1e-6, 1e18),
     "torque": (1e-9, 1e15),
     "angle": (1e-12, 1e6),
     "stiffness": (1e-9, 1e18),

@@ -19,8 +19,9 @@ CAUSES = (
     "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius", "pin_shaft.hole_radius", "clearance.bearing",
     "clearance.pin_hole",
 )  # fmt: skip
-# Steps of 1.12 (a hole leaves the eccentricity a factor of 1.5), from a typing error of a hundred down to one of 1 %.
-FACTORS = tuple(exp(sign * size) for size in (0.01, 0.03, 0.06, *(0.113 * k for k in range(1, 42))) for sign in (1, -1))
+COUNTS = ("pin_shaft.number_of_pins", "crank_bearing.number_of_rollers")
+# From 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as the eccentricity a hole leaves; then of 1.22.
+SIZES = (0.01, 0.03, 0.06, *(0.113 * k for k in range(1, 15)), *(1.6 + 0.2 * k for k in range(40)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,8 +48,17 @@ class Cause:
     def bounded(self) -> str:
         """Return the bound in words, rounded to the sound side."""
         least = self.bound > self.value
-        text = f"{self.bound * (1.0 + (5e-5 if least else -5e-5)):.4g}"
+        if self.path in COUNTS:
+            return f"{'at least' if least else 'at most'} {self.bound:g}"
+        # What fits exactly (races about a roller) is a round number again.
+        for text in (f"{self.bound:.4g}", f"{self.bound * (1.0 + (5e-5 if least else -5e-5)):.4g}"):
+            if float(text) == self.bound or (float(text) > self.bound) == least:
+                break
         return f"{'at least' if least else 'at most'} {text} mm"
+
+    def named(self) -> str:
+        """Return field and value."""
+        return f"{self.path} = {self.value:g}" + ("" if self.path in COUNTS else " mm")
 
 
 def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
@@ -69,14 +79,19 @@ def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
     if not problems:
         return []
     named = {problem.partition(" ")[0].rstrip(":") for problem in problems}
+    if not all(path in COUNTS or (path in CAUSES and read_field(drive, path) > 0.0) for path in named):
+        return problems  # of deviations and negative offsets, which are what is wrong themselves
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)
     # A field that is named already and mends everything is said well enough.
     if not causes or (len(named) == 1 and named <= {cause.path for cause in causes}):
         return problems
-    first, *others = causes
-    instead = "".join(f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance < 2 * first.distance)
-    reasons = "; ".join(dict.fromkeys(_consequence(problem) for problem in problems[:2]))
-    return [f"{first.path} = {first.value:g} mm: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"]
+    # One that breaks a bound itself is the likelier, unless another is very much nearer to what is sound.
+    least = causes[0].distance
+    near = [cause for cause in causes if cause.distance <= 10.0 * least]
+    first, *others = sorted(near, key=lambda cause: (cause.path not in named, cause.distance))
+    instead = "".join(f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance <= 2.5 * first.distance)
+    reasons = "; ".join(dict.fromkeys(_consequence(problem, first.path) for problem in problems[:2]))
+    return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"]
 
 
 def _causes(drive: Drive) -> Iterator[Cause]:
@@ -84,16 +99,36 @@ def _causes(drive: Drive) -> Iterator[Cause]:
         value = float(read_field(drive, path))
         if value <= 0.0:
             continue
-        for factor in FACTORS:
-            if _sound_with(drive, path, value * factor):
-                yield Cause(path=path, value=value, bound=_nearest(drive, path, value, factor))
+        fitting = _fitting(drive, path)
+        if fitting > 0.0 and fitting != value and _sound_with(drive, path, fitting):
+            yield Cause(path=path, value=value, bound=_nearest(drive, path, value, log(fitting / value)))
+            continue
+        for size in (sign * size for size in SIZES for sign in (1.0, -1.0)):
+            if _sound_with(drive, path, value * exp(size)):
+                yield Cause(path=path, value=value, bound=_nearest(drive, path, value, size))
+                break
+    for path in COUNTS:
+        count = int(read_field(drive, path))
+        for other in (other for step in range(1, 200) for other in (count - step, count + step)):
+            if other >= 3 and _sound_with(drive, path, other):
+                yield Cause(path=path, value=count, bound=other)
                 break
 
 
-def _nearest(drive: Drive, path: str, value: float, factor: float) -> float:
+def _fitting(drive: Drive, path: str) -> float:
+    """The value that follows from the other fields where little room is left; 0 elsewhere, mm."""
+    bearing = drive.crank_bearing
+    return {
+        "crank_bearing.inner_race_radius": bearing.outer_race_radius - 2.0 * bearing.roller_radius,
+        "crank_bearing.outer_race_radius": bearing.inner_race_radius + 2.0 * bearing.roller_radius,
+        "crank_bearing.roller_radius": 0.5 * (bearing.outer_race_radius - bearing.inner_race_radius),
+    }.get(path, 0.0)
+
+
+def _nearest(drive: Drive, path: str, value: float, size: float) -> float:
     """Sound value nearest to the present one, by bisection between it and one that is known to be sound."""
-    wrong, sound = 0.0, log(factor)
-    for _ in range(18):
+    wrong, sound = 0.0, size
+    for _ in range(16):
         middle = 0.5 * (wrong + sound)
         if _sound_with(drive, path, value * exp(middle)):
             sound = middle
@@ -111,9 +146,10 @@ def _sound_with(drive: Drive, path: str, value: float) -> bool:
         return False
 
 
-def _consequence(problem: str) -> str:
+def _consequence(problem: str, cause: str) -> str:
     """What a contradiction says beside its own bound."""
-    if match := re.search(r"(?:, or (?:the |these )?)(.+)$", problem):
+    if match := re.search(r", or (.+)$", problem):
         return match.group(1)
     head, _, tail = problem.partition(": ")
-    return f"{head} {'' if tail.startswith('must') else 'says that '}{tail.partition('; must')[0]}".replace(" says that", ":")
+    told = tail.partition("; must")[0]
+    return told if head.startswith(f"{cause} ") else f"{head}: {told}"

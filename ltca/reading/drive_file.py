@@ -75,7 +75,7 @@ class DriveFile:
             known = listed(self.cases)
             raise DriveError(
                 [
-                    f"case {shortened(name)} is not defined{did_you_mean(name, self.cases)}; the cases are {known}"
+                    f"case {shortened(name)} is not defined; the cases are {known}{did_you_mean(name, self.cases)}"
                     for name in unknown
                 ],
                 self.source,

@@ -208,7 +208,7 @@ def _holes(drive: Drive) -> Iterator[str]:
             f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: holes cut through the root circle of the disc "
             f"(radius {root:.6g} mm) by {-wall:.6g} mm; must be greater than {wheel.pin_circle_radius - wall:.6g} mm"
         )
-    if drive.bore_radius >= root:
+    if drive.bore_radius >= root > 0.0:
         yield (
             f"crank_bearing.outer_race_radius = {drive.crank_bearing.outer_race_radius:g} mm: must be less than "
             f"{root:.6g} mm, the root radius of the disc"
