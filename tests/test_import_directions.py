@@ -29,6 +29,10 @@ FEM_MAY_IMPORT = (
 LIGHT_COMMANDS = {
     "dataclasses",
     "ltca.errors",
+    "ltca.reading.arguments",
+    "ltca.output.terminal",
+    "traceback",
+    "warnings",
     "sys",
     "os",
     "re",

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import (
     add_position_arguments,
-    check_position_arguments,
     chosen_drive,
     output_folder,
 )
-from ltca.errors import CycloError
+from ltca.reading.arguments import add_out_argument, torque_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +25,12 @@ SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_position_arguments(parser)
-    parser.add_argument("--torque", type=float, metavar="T", help="output torque, N·mm (default: the drive's own)")
+    parser.add_argument(
+        "--torque",
+        metavar="T",
+        type=torque_argument,
+        help="output torque in N·mm (or a text such as '377.3 N m'); default that of the drive",
+    )
     parser.add_argument(
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
     )
@@ -38,7 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="mesh the disc's walls for the stress along them: within 1 %% of the largest instead of 3.4 %%",
     )
-    parser.add_argument("--out", metavar="DIR", default="fem", help="folder for the files (default: fem)")
+    add_out_argument(parser, "fem")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
     parser.add_argument(
         "--export", choices=("calculix",), help="write a complete input deck of the same problem for another code"
@@ -65,11 +69,9 @@ def execute(arguments: argparse.Namespace) -> int:
     from fem.drive.solution import solve_drive
     from fem.drive.solution_files import write_solution
 
-    check_position_arguments(arguments)
-    _check_torque(arguments.torque)
-    out = output_folder(arguments)
     referee = _referee(arguments.referee)
     name, case, drive = chosen_drive(arguments)
+    out = output_folder(arguments, name, "fem")
     solution = solve_drive(
         drive,
         arguments.angle,
@@ -97,13 +99,6 @@ def execute(arguments: argparse.Namespace) -> int:
         referee(solution, out)
     print(f"written to {out}")
     return 0
-
-
-def _check_torque(torque: float | None) -> None:
-    import math
-
-    if torque is not None and not (math.isfinite(torque) and torque > 0.0):
-        raise CycloError(f"--torque {torque:g}: must be a finite number greater than 0 (N·mm)")
 
 
 def _progress() -> Callable[[str], None] | None:

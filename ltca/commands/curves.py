@@ -7,6 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+    quantity_argument,
+)
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
@@ -25,16 +33,35 @@ HARMONICS = 7
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", action="append", metavar="NAME", help="case, repeatable; default all")
-    parser.add_argument("--turns", metavar="N", type=int, help="crank turns behind the orders; default z_P")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case, repeatable; default all")
     parser.add_argument(
-        "--pressure-limit", metavar="P", default="1500", help="permissible flank pressure in MPa; default 1500"
+        "--turns",
+        metavar="N",
+        type=count_argument("--turns", 1, 1000),
+        help="crank turns behind the orders; default z_P",
     )
-    parser.add_argument("--speed", metavar="N", type=float, help="crank speed in turns a minute, for the life in hours")
-    parser.add_argument("--load-rating", metavar="C", help="dynamic load rating of the crank bearing in N; by ISO 281")
+    parser.add_argument(
+        "--pressure-limit",
+        metavar="P",
+        type=quantity_argument("--pressure-limit", "MPa", gt=0.0),
+        default=1500.0,
+        help="permissible flank pressure in MPa (or a text such as '1.5 GPa'); default 1500",
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="N",
+        type=quantity_argument("--speed", "rpm", gt=0.0),
+        help="crank speed in turns a minute (or a text such as '1500 rpm'), for the life in hours",
+    )
+    parser.add_argument(
+        "--load-rating",
+        metavar="C",
+        type=quantity_argument("--load-rating", "N", gt=0.0),
+        help="dynamic load rating of the crank bearing in N (or a text such as '40 kN'); default by ISO 281",
+    )
     add_compliance_arguments(parser)
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>_curves")
+    add_out_argument(parser, "curves")
     parser.add_argument("--no-figures", action="store_true", help="write curves.json only")
 
 
@@ -96,16 +123,17 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.progress import progress
     from ltca.reading.drive_file import load_drive
 
-    limits, engine = _limits(arguments), compliance_of(arguments)
+    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
+    engine = compliance_of(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     find_coefficients_of(cases, arguments)
-    out = arguments.out or Path("out") / f"{file.name}_curves"
+    out = arguments.out or default_folder(file.name, "curves")
     contents, figures = {}, []
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
             title = f"{file.name} {name}"
-            found = _solve(drive, _turns(arguments.turns, drive), limits, engine)
+            found = _solve(drive, arguments.turns or drive.pin_wheel.number_of_pins, limits, engine)
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, limits)
             if not arguments.no_figures:
@@ -117,30 +145,6 @@ def execute(arguments: argparse.Namespace) -> int:
     write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
     print(f"results: {out / 'curves.json'}")
     return 0
-
-
-def _limits(arguments: argparse.Namespace) -> Limits:
-    from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError
-
-    limit = parse_quantity(arguments.pressure_limit, "MPa", "--pressure-limit")
-    if limit <= 0.0:
-        raise DriveError([f"--pressure-limit = {limit:g}: must be greater than 0 MPa"])
-    rating = None if arguments.load_rating is None else parse_quantity(arguments.load_rating, "N", "--load-rating")
-    if rating is not None and rating <= 0.0:
-        raise DriveError([f"--load-rating = {rating:g}: must be greater than 0 N"])
-    if arguments.speed is not None and not arguments.speed > 0.0:
-        raise DriveError([f"--speed = {arguments.speed:g}: must be greater than 0 turns a minute"])
-    return Limits(pressure=limit, load_rating=rating, speed=arguments.speed)
-
-
-def _turns(asked: int | None, drive: Drive) -> int:
-    from ltca.errors import DriveError
-
-    turns = drive.pin_wheel.number_of_pins if asked is None else asked
-    if not 1 <= turns <= 1000:
-        raise DriveError([f"--turns = {turns}: must be from 1 to 1000"])
-    return turns
 
 
 def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurves:

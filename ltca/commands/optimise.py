@@ -7,6 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.commands.study_arguments import add_positions_argument, add_seed_argument
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+)
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
@@ -18,8 +26,8 @@ SUMMARY = "vary fields of a drive for the least of one quantity, or the Pareto f
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", metavar="NAME", help="case to start from; default the first")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case to start from; default the first", several=False)
     parser.add_argument(
         "--vary",
         metavar="FIELD[=LOW:HIGH]",
@@ -31,13 +39,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--subject", metavar="LIMIT", action="append", default=[], help="'quantity <= value unit', repeatable"
     )
+    add_positions_argument(parser, "candidate")
     parser.add_argument(
-        "--positions", metavar="M", type=int, default=28, help="crank angles 2πk/M of every candidate; default 28"
+        "--generations",
+        metavar="G",
+        type=count_argument("--generations", 1, 10_000),
+        default=40,
+        help="of the search; default 40",
     )
-    parser.add_argument("--generations", metavar="G", type=int, default=40, help="of the search; default 40")
-    parser.add_argument("--seed", metavar="S", type=int, default=0, help="of the random numbers; default 0")
+    add_seed_argument(parser)
     add_compliance_arguments(parser)
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>_optimum")
+    add_out_argument(parser, "optimise")
     parser.add_argument("--no-figures", action="store_true", help="write the drive and the candidates only")
 
 
@@ -52,7 +64,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     engine = compliance_of(arguments)
     name, problem = _problem(arguments)
-    out = arguments.out or Path("out") / f"{name}_optimum"
+    out = arguments.out or default_folder(name, "optimise")
     _tell_beforehand(problem, engine, arguments)
     with progress("candidates", 0) as bar:
         optimum = optimise(
@@ -84,12 +96,6 @@ def _problem(arguments: argparse.Namespace) -> tuple[str, Problem]:
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
-    for name, value, bound in (
-        ("--positions", arguments.positions, 100_000),
-        ("--generations", arguments.generations, 10_000),
-    ):
-        if not 1 <= value <= bound:
-            raise DriveError([f"{name} = {value}: must be from 1 to {bound}"])
     aims = tuple(dict.fromkeys(arguments.minimise))
     unknown = [aim for aim in aims if aim not in QUANTITIES]
     if unknown or len(aims) > 2:

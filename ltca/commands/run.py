@@ -7,6 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+    quantity_argument,
+    torque_argument,
+)
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -22,14 +31,28 @@ DEFAULT_POSITIONS = 360
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", action="append", metavar="NAME", help="case to run, repeatable; default all")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case to run, repeatable; default all")
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
-        "--positions", metavar="N", type=int, help=f"crank angles 2πk/N, k = 0 … N−1; default {DEFAULT_POSITIONS}"
+        "--positions",
+        metavar="N",
+        type=count_argument("--positions", 1, 1_000_000),
+        help=f"crank angles 2πk/N, k = 0 … N−1; default {DEFAULT_POSITIONS}",
     )
-    where.add_argument("--angles", metavar="φ", nargs="+", help="crank angles in rad (or texts such as '20 deg')")
-    parser.add_argument("--torque", metavar="T", help="output torque in N·mm (or a text such as '377.3 N m')")
+    where.add_argument(
+        "--angles",
+        metavar="φ",
+        nargs="+",
+        type=quantity_argument("--angles", "rad"),
+        help="crank angles in rad (or texts such as '20 deg')",
+    )
+    parser.add_argument(
+        "--torque",
+        metavar="T",
+        type=torque_argument,
+        help="output torque in N·mm (or a text such as '377.3 N m'); default that of the drive",
+    )
     parser.add_argument(
         "--method",
         choices=("tables", "direct", "paper"),
@@ -44,9 +67,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--pressure",
         metavar="φ",
         nargs="*",
+        type=quantity_argument("--pressure", "rad"),
         help="pressure fields of all loaded contacts at these crank angles (default 0) into pressure.nc, with figures",
     )
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>")
+    add_out_argument(parser, "run")
     parser.add_argument("--no-figures", action="store_true", help="write results.nc and summary.json only")
 
 
@@ -59,12 +83,12 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.reading.drive_file import load_drive
 
     angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
-    torque, engine = _torque(arguments.torque), _engine(arguments)
+    torque, engine = arguments.torque, _engine(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
     find_coefficients_of(cases, arguments)
-    out = arguments.out or Path("out") / file.name
+    out = arguments.out or default_folder(file.name, "run")
     analyses = _analyse(cases, angles, torque, engine, "cases")
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
     dataset = build_dataset(file.name, analyses, file.text)
@@ -136,38 +160,17 @@ def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], fol
 def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
     import numpy as np
 
-    from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError
     from ltca.geometry.placement import position_angles
 
     if arguments.angles is not None:
-        return np.array([parse_quantity(text, "rad", "--angles") for text in arguments.angles])
-    positions = DEFAULT_POSITIONS if arguments.positions is None else arguments.positions
-    if not 1 <= positions <= 1_000_000:
-        raise DriveError([f"--positions = {positions}: must be from 1 to 1000000"])
-    return position_angles(positions)
+        return np.array(arguments.angles)
+    return position_angles(DEFAULT_POSITIONS if arguments.positions is None else arguments.positions)
 
 
 def _pressure_angles(arguments: argparse.Namespace) -> FloatArray | None:
     import numpy as np
 
-    from ltca.drive.units import parse_quantity
-
-    if arguments.pressure is None:
-        return None
-    return np.array([parse_quantity(text, "rad", "--pressure") for text in arguments.pressure or ["0"]])
-
-
-def _torque(text: str | None) -> float | None:
-    from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError
-
-    if text is None:
-        return None
-    torque = parse_quantity(text, "N*mm", "--torque")
-    if torque <= 0.0:
-        raise DriveError([f"--torque = {text}: must be greater than 0 N·mm (load.direction turns it)"])
-    return torque
+    return None if arguments.pressure is None else np.array(arguments.pressure or [0.0])
 
 
 ROWS = (

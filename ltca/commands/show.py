@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ltca.reading.arguments import (
+    add_angle_argument,
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    default_folder,
+)
 
 if TYPE_CHECKING:
     from ltca.analysis.loaded_analysis import LoadedAnalysis
@@ -16,10 +23,10 @@ SUMMARY = "derived geometry, backlash, checks and a picture with contact normals
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", action="append", metavar="NAME", help="case to show, repeatable; default the first")
-    parser.add_argument("--angle", metavar="φ", default="0", help="crank angle of the picture in rad; default 0")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the picture; default out/<drive>")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case to show, repeatable; default the first")
+    add_angle_argument(parser)
+    add_out_argument(parser, "show", "folder for the picture")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -27,14 +34,13 @@ def execute(arguments: argparse.Namespace) -> int:
     import numpy as np
 
     from ltca.analysis.loaded_analysis import analyse
-    from ltca.drive.units import parse_quantity
     from ltca.figures.drive_picture import draw_drive
     from ltca.reading.drive_file import load_drive
 
-    angle = parse_quantity(arguments.angle, "rad", "--angle")
+    angle = arguments.angle
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case or [next(iter(file.cases))])
-    out = arguments.out or Path("out") / file.name
+    out = arguments.out or default_folder(file.name, "show")
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
     for name, drive in cases.items():
         print(f"\ncase {name}")

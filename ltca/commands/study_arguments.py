@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.reading.arguments import add_out_argument, count_argument
 
 if TYPE_CHECKING:
     from ltca.studies.execution.storage import StudyFolder
@@ -18,16 +18,47 @@ if TYPE_CHECKING:
 DEFAULT_POSITIONS = 28
 
 
-def add_study_arguments(parser: argparse.ArgumentParser) -> None:
+def add_positions_argument(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the positions of every sample or candidate."""
+    parser.add_argument(
+        "--positions",
+        metavar="N",
+        type=count_argument("--positions", 1, 100_000),
+        default=DEFAULT_POSITIONS,
+        help=f"crank angles 2πk/N of every {what}; default {DEFAULT_POSITIONS}",
+    )
+
+
+def add_seed_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the seed of random numbers."""
+    parser.add_argument(
+        "--seed",
+        metavar="S",
+        type=count_argument("--seed", 0, 2**63 - 1),
+        default=0,
+        help="of the random numbers; default 0",
+    )
+
+
+def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what every study has: compliance, who solves it, folder, resuming, figures."""
     add_compliance_arguments(parser)
-    parser.add_argument("--workers", metavar="W", type=int, default=1, help="local processes; default 1")
+    parser.add_argument(
+        "--workers",
+        metavar="W",
+        type=count_argument("--workers", 1, 1024),
+        default=1,
+        help="local processes; default 1",
+    )
     parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results")
+    add_out_argument(parser, command)
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
     parser.add_argument("--no-figures", action="store_true", help="write results and summary only")
     parser.add_argument(
-        "--sample", metavar="I", type=int, help="write the drive of sample I as a drive file and solve nothing"
+        "--sample",
+        metavar="I",
+        type=count_argument("--sample", 0, 100_000_000),
+        help="write the drive of sample I as a drive file and solve nothing",
     )
 
 
@@ -37,13 +68,11 @@ def workers_of(arguments: argparse.Namespace) -> Workers:
     Raises
     ------
     DriveError
-        When the number of workers is out of range.
+        When both workers and a scheduler are given.
     """
     from ltca.errors import DriveError
     from ltca.studies.execution.workers import Workers
 
-    if not 1 <= arguments.workers <= 1024:
-        raise DriveError([f"--workers = {arguments.workers}: must be from 1 to 1024"])
     if arguments.scheduler and arguments.workers > 1:
         raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
     return Workers(processes=arguments.workers, scheduler=arguments.scheduler)

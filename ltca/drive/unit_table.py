@@ -50,7 +50,9 @@ def _spelled(*spellings: str) -> tuple[str, ...]:
     """Every way to write a product: with a dot, a space, a star, or side by side."""
     return tuple(
         dict.fromkeys(
-            form for text in spellings for form in (text, text.replace("·", " "), text.replace("·", ""), text.replace("·", "*"))
+            form
+            for text in spellings
+            for form in (text, text.replace("·", " "), text.replace("·", ""), text.replace("·", "*"))
         )
     )
 

@@ -89,7 +89,9 @@ def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
     least = causes[0].distance
     near = [cause for cause in causes if cause.distance <= 10.0 * least]
     first, *others = sorted(near, key=lambda cause: (cause.path not in named, cause.distance))
-    instead = "".join(f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance <= 2.5 * first.distance)
+    instead = "".join(
+        f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance <= 2.5 * first.distance
+    )
     reasons = "; ".join(dict.fromkeys(_consequence(problem, first.path) for problem in problems[:2]))
     return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"]
 

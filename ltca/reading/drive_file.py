@@ -31,9 +31,7 @@ LONGEST_NAME = 120
 UNPRINTED = ("Cc", "Cs", "Zl", "Zp")
 BACKWARD = "\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
 """Signs that turn what is printed behind them."""
-NAMING = (
-    f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\ and control characters"
-)
+NAMING = f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\ and control characters"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -254,7 +252,10 @@ def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
     disc = table.get("disc")
     if isinstance(disc, dict) and "torque_share" not in disc:
         with suppress(ValueError):  # of what is no count: the validation says so
-            table = {**table, "disc": {**disc, "torque_share": 1.0 / max(1, check_count(disc.get("number_of_discs", 1)))}}
+            table = {
+                **table,
+                "disc": {**disc, "torque_share": 1.0 / max(1, check_count(disc.get("number_of_discs", 1)))},
+            }
     try:
         return _ADAPTER.validate_python(table)
     except ValidationError as error:

@@ -185,7 +185,9 @@ def _holes(drive: Drive) -> Iterator[str]:
 
     wall = circle - radius - drive.bore_radius
     if wall <= 0.0:
-        yield hole_or_circle(-wall, f"holes cut into the bore by {-wall:.6g} mm", f"greater than {circle - wall:.6g} mm")
+        yield hole_or_circle(
+            -wall, f"holes cut into the bore by {-wall:.6g} mm", f"greater than {circle - wall:.6g} mm"
+        )
     sine = sin(pi / shaft.number_of_pins)
     wall = 2.0 * (circle * sine - radius)
     if wall <= 0.0:

@@ -7,6 +7,15 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    add_size_argument,
+    default_folder,
+    quantity_argument,
+)
+
 if TYPE_CHECKING:
     from validation.study import Plan, Study
 
@@ -15,33 +24,21 @@ SUMMARY = "compare the codes with closed forms, other codes, the paper and full 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument(
-        "--case",
-        action="append",
-        metavar="NAME",
-        help="case, repeatable; default the first, middle and last of the file",
-    )
+    add_drive_argument(parser)
+    add_case_argument(parser, "case, repeatable; default the first, middle and last of the file")
     parser.add_argument(
         "--angles",
         metavar="φ",
         nargs="+",
+        type=quantity_argument("--angles", "rad"),
         help="crank angles of full solutions in rad (or texts such as '20 deg'); default two (quick) or twelve (full) "
         "over one period of the flank",
     )
     parser.add_argument(
         "--level", choices=("quick", "full"), default="quick", help="how many angles; full also halves meshes"
     )
-    parser.add_argument(
-        "--size",
-        type=float,
-        default=1.0,
-        metavar="S",
-        help="element edges of the full solutions as a multiple of the default (limits are for 1)",
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="folder of report and kept solutions; default out/<drive>/validation"
-    )
+    add_size_argument(parser, "element edges of the full solutions as a multiple of the default (limits are for 1)")
+    add_out_argument(parser, "validate", "folder of report and kept solutions")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -57,11 +54,8 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input or when something does not converge.
     """
-    import math
-
     from threadpoolctl import threadpool_limits
 
-    from ltca.drive.units import parse_quantity
     from ltca.errors import CycloError
     from ltca.reading.drive_file import load_drive
     from validation.compare.finite_element_positions import Settings
@@ -70,12 +64,10 @@ def execute(arguments: argparse.Namespace) -> int:
     from validation.rows import failed_rows
     from validation.study import plan_study, run_validation
 
-    if not (math.isfinite(arguments.size) and arguments.size > 0.0):
-        raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
-    angles = [parse_quantity(text, "rad", "--angles") for text in arguments.angles or []]
+    angles = list(arguments.angles or [])
     file = load_drive(arguments.drive)
     plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
-    out: Path = arguments.out or Path("out") / file.name / "validation"
+    out: Path = arguments.out or default_folder(file.name, "validate")
     if out.exists() and not out.is_dir():
         raise CycloError(f"--out {out}: is a file, not a folder")
     progress = _Progress(plan)

@@ -74,8 +74,16 @@ def test_error_arrays_are_read():
     ("old", "new", "message"),
     [
         ("eccentricity = 4.0", "eccentricity = -4.0", "crank.eccentricity = -4.0: must be greater than 0 mm"),
-        ("eccentricity = 4.0", 'eccentricity = "4 kg"', "it must have the unit mm or another of length (m, µm, nm, in)"),
-        ("eccentricity = 4.0", "excentricity = 4.0", "crank.excentricity: is not a field; did you mean `eccentricity`, which is missing?"),
+        (
+            "eccentricity = 4.0",
+            'eccentricity = "4 kg"',
+            "it must have the unit mm or another of length (m, µm, nm, in)",
+        ),
+        (
+            "eccentricity = 4.0",
+            "excentricity = 4.0",
+            "crank.excentricity: is not a field; did you mean `eccentricity`, which is missing?",
+        ),
         ("eccentricity = 4.0", "", "crank.eccentricity: is missing"),
         ("eccentricity = 4.0", "eccentricity = nan", "crank.eccentricity = nan: must be finite in mm"),
         ("eccentricity = 4.0", "eccentricity = true", "crank.eccentricity = True: must be a number in mm"),

@@ -68,10 +68,18 @@ MALFORMED = [
     ("shifting_offset = 0.09", "shifting_offset = 0.9", ["equidistant_offset = 0.15 mm", "at least 0.9 mm"]),
     ("inner_race_radius = 19.5", "inner_race_radius = 22.0", ["roller_radius = 5 mm", "at most 3.75 mm"]),
     ("inner_race_radius = 19.5", "inner_race_radius = 10.0", ["inner_race_radius = 10 mm", "at least 18.39 mm"]),
-    ("outer_race_radius = 29.5", "outer_race_radius = 50.0", ["outer_race_radius = 50 mm", "at most 30.61 mm", "bore by 8.075 mm"]),
+    (
+        "outer_race_radius = 29.5",
+        "outer_race_radius = 50.0",
+        ["outer_race_radius = 50 mm", "at most 30.61 mm", "bore by 8.075 mm"],
+    ),
     ("roller_radius = 5.0", "roller_radius = 6.0", ["crank_bearing.roller_radius = 6 mm", "at most 5 mm"]),
     ("roller_length = 11.8", "roller_length = 20.0", ["crank_bearing.roller_length = 20 mm", "at most 11.8 mm"]),
-    ("pin_circle_radius = 56.0", "pin_circle_radius = 75.0", ["pin_shaft.pin_circle_radius = 75 mm", "root circle", "less than 63.365 mm"]),
+    (
+        "pin_circle_radius = 56.0",
+        "pin_circle_radius = 75.0",
+        ["pin_shaft.pin_circle_radius = 75 mm", "root circle", "less than 63.365 mm"],
+    ),
     ("pin_radius = 10.075", "pin_radius = 12.0", ["hole_radius = 14.075 mm", "at least 16 mm"]),
     ("hole_radius = 14.075", "hole_radius = 13.0", ["pin_shaft.hole_radius = 13 mm", "at least 14.075 mm"]),
     ("bearing = 0.0", "bearing = 20.0", ["clearance.bearing = 20 mm", "at most 5 mm"]),
@@ -129,7 +137,14 @@ def test_several_mistakes_come_together():
     with pytest.raises(DriveError) as caught:
         parse_drive(text, "bad.toml")
     told = str(caught.value)
-    for part in ("-4.0", "'11.8 N'", "number_of_rollers = 0", "stifness", "`stiffness`, which is missing", "bearing = nan"):
+    for part in (
+        "-4.0",
+        "'11.8 N'",
+        "number_of_rollers = 0",
+        "stifness",
+        "`stiffness`, which is missing",
+        "bearing = nan",
+    ):
         assert part in told
     assert told.startswith("bad.toml: 5 mistakes\n")
 
