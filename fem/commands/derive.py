@@ -114,7 +114,7 @@ def execute(arguments: argparse.Namespace) -> int:
     checks = check_coefficients(written)
     attributes = written.attrs
     print(
-        f"{written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
+        f"{file.name} {case}: {written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
         f"{attributes['plane']}, {time.perf_counter() - start:.1f} s"
     )
     left_out = ", those of the case left out" if attributes["clearances_left_out"] else ""

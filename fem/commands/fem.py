@@ -84,6 +84,10 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     fields = recover_fields(solution.model, solution.state, state=arguments.plane)
     write_solution(solution, fields, case, out)
+    load = drive.load_words(arguments.torque)
+    print(
+        f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
+    )
     _print_contacts(solution)
     if not arguments.no_pictures:
         from fem.pictures.solution_pictures import draw_solution

@@ -62,6 +62,7 @@ def execute(arguments: argparse.Namespace) -> int:
     def report(body: BodyMesh) -> None:
         print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
 
+    print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     start = time.perf_counter()
     contacts = expect_contacts(drive, arguments.angle)
     shapes = DriveShapes.of_drive(drive)

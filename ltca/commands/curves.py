@@ -196,12 +196,15 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
 def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: Limits) -> None:
     import numpy as np
 
+    from ltca.analysis.engines import describe_engine
     from ltca.drive.units import ARCMIN, ARCSEC
 
     curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
     discs = "" if drive.disc.torque_share == 1.0 else f", a disc carries {drive.disc.torque_share:g} of the torque"
     over = f"over {found.turns} turns, {found.crank_angle.size} positions"
-    print(f"{title}, {engine.compliance}: torque curve at {ANGLES} crank angles over one mesh{discs}")
+    print(
+        f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh{discs}"
+    )
     print(f"  backlash at the wheel, disc floating      {_range(curve.backlash * ARCMIN)}′")
     print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
     print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")

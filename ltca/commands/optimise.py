@@ -55,6 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Search, solve what was found and where it started finely, write, draw and print all of it."""
+    from ltca.analysis.engines import describe_engine
     from ltca.commands.compliance_arguments import compliance_of
     from ltca.output.files import whole_file, write_json
     from ltca.output.progress import progress
@@ -63,7 +64,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.studies.optimiser import batch_analysis, optimise
 
     engine = compliance_of(arguments)
-    name, problem = _problem(arguments)
+    name, case, problem = _problem(arguments)
     out = arguments.out or default_folder(name, "optimise")
     _tell_beforehand(problem, engine, arguments)
     with progress("candidates", 0) as bar:
@@ -80,6 +81,7 @@ def execute(arguments: argparse.Namespace) -> int:
         part.write_text(drive_text(best), encoding="utf-8")
     _write_candidates(optimum, out / "candidates.parquet")
     write_json(out / "optimum.json", _outcome(optimum, fine, engine, arguments.positions))
+    print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
     _print(optimum, fine, arguments.positions)
     print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
     if not arguments.no_figures:
@@ -89,25 +91,29 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _problem(arguments: argparse.Namespace) -> tuple[str, Problem]:
-    """Name of the drive file, and what is asked of its case."""
-    from ltca.errors import DriveError
+def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
+    """Name of the drive file, of the case, and what is asked of it."""
+    from ltca.errors import DriveError, shortened
     from ltca.reading.drive_file import load_drive
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
-    from ltca.studies.quantities import QUANTITIES
+    from ltca.studies.quantities import QUANTITIES, check_quantities
 
     aims = tuple(dict.fromkeys(arguments.minimise))
-    unknown = [aim for aim in aims if aim not in QUANTITIES]
-    if unknown or len(aims) > 2:
-        raise DriveError([f"--minimise {' '.join(aims)}: give one or two of {', '.join(QUANTITIES)}"])
+    check_quantities(aims)
+    if len(aims) > 2 or "all" in aims:
+        raise DriveError([f"--minimise {shortened(' '.join(aims))[1:-1]}: give one or two of {', '.join(QUANTITIES)}"])
     file = load_drive(arguments.drive)
     case = arguments.case or next(iter(file.cases))
     drive = file.select([case])[case]
-    return file.name, Problem(
-        drive=drive,
-        variables=tuple(parse_variable(text, drive) for text in arguments.vary),
-        aims=aims,
-        limits=tuple(parse_limit(text) for text in arguments.subject),
+    return (
+        file.name,
+        case,
+        Problem(
+            drive=drive,
+            variables=tuple(parse_variable(text, drive) for text in arguments.vary),
+            aims=aims,
+            limits=tuple(parse_limit(text) for text in arguments.subject),
+        ),
     )
 
 

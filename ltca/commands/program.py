@@ -37,7 +37,7 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """End with the message in one line and exit status 2."""
-        self.exit(USAGE_ERROR, f"cyclo: error: {printable(message)}; '{self.prog} --help' shows the usage\n")
+        self.exit(USAGE_ERROR, f"cyclo: error: {printable(message)} ('{self.prog} --help' shows the usage)\n")
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Return the arguments; for an option that is not there, name the one that was meant."""

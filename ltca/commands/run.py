@@ -76,6 +76,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
+    from ltca.analysis.engines import describe_engine
     from ltca.analysis.results import build_dataset, check_common_shape
     from ltca.analysis.summary import summarise
     from ltca.commands.compliance_arguments import find_coefficients_of
@@ -105,7 +106,8 @@ def execute(arguments: argparse.Namespace) -> int:
         with whole_file(out / "pressure.nc") as part:
             fields.to_netcdf(part, engine="h5netcdf", encoding=packed)
         files.append("pressure.nc")
-    print(_table(summaries))
+    print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
+    print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
     print(_sampling(cases, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
@@ -206,9 +208,12 @@ WALL_ROWS = (
 )
 
 
-def _table(summaries: dict[str, dict[str, float | None]]) -> str:
-    width = max(10, *(len(name) + 2 for name in summaries))
-    lines = [" " * 40 + "".join(f"{name:>{width}}" for name in summaries)]
+def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str]) -> str:
+    width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
+    lines = [
+        f"{'case':<40}" + "".join(f"{name:>{width}}" for name in summaries),
+        f"{'torque, direction of the crank':<40}" + "".join(f"{load:>{width}}" for load in loads.values()),
+    ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
     for title, key, unit, form in (*ROWS, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
@@ -223,12 +228,20 @@ def _refined(summary: dict[str, float | None], key: str) -> float | None:
     return summary[key] if refined is None else refined
 
 
+def _many(angles: FloatArray) -> str:
+    return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
+
+
 def _sampling(cases: dict[str, Drive], angles: FloatArray) -> str:
     """What the values stand for: which positions, and whether they see the mesh."""
     from ltca.analysis.extremes import is_full_turn, sampling_warning
+    from ltca.drive.unit_mistakes import stiffness_warning
 
-    many = f"{angles.size} positions" if angles.size > 1 else "1 position"
+    many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
-    warnings = {sampling_warning(drive, angles) for drive in cases.values()} - {None}
+    warnings = {
+        warn for drive in cases.values() for warn in (sampling_warning(drive, angles), stiffness_warning(drive))
+    }
+    warnings -= {None}
     return "\n".join([*lines, *(f"warning: {text}" for text in sorted(map(str, warnings)))])

@@ -33,7 +33,9 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print the drive and write its picture."""
     import numpy as np
 
+    from ltca.analysis.engines import describe_engine
     from ltca.analysis.loaded_analysis import analyse
+    from ltca.drive.unit_mistakes import stiffness_warning
     from ltca.figures.drive_picture import draw_drive
     from ltca.reading.drive_file import load_drive
 
@@ -44,10 +46,12 @@ def execute(arguments: argparse.Namespace) -> int:
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
     for name, drive in cases.items():
         print(f"\ncase {name}")
+        if warning := stiffness_warning(drive):
+            print(f"  warning: {warning}")
         for title, value in _properties(drive):
             print(f"  {title:<48}{value}")
         analysis = analyse(drive, np.array([angle]))
-        print(f"  at φ_C = {angle:g} rad")
+        print(f"  at φ_C = {angle:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
             print(f"    {title:<46}{value}")
         path = out / f"drive_{name}.png"

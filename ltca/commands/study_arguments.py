@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from ltca.studies.study import Study
 
 DEFAULT_POSITIONS = 28
+MOST_REASONS = 5
+"""Reasons of failing samples that are printed."""
 
 
 def add_positions_argument(parser: argparse.ArgumentParser, what: str) -> None:
@@ -116,10 +118,12 @@ def tell(message: str) -> None:
 
 
 def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+    from ltca.analysis.engines import describe_engine
     from ltca.studies.quantities import QUANTITIES
     from ltca.studies.run_study import write_sample
 
-    print(f"{study.name}: {study.design.samples} samples × {study.positions} positions, {study.engine.compliance}")
+    samples = f"{study.design.samples} samples × {study.positions} positions"
+    print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
@@ -141,8 +145,14 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         print(
             f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}"
         )
-        for sample, message in found.failures[:5]:
-            print(f"  sample {sample}: {' '.join(message.split())[:200]}")
+        reasons: dict[str, list[int]] = {}
+        for sample, message in found.failures:
+            reasons.setdefault(" ".join(message.split()), []).append(sample)
+        for message, samples in list(reasons.items())[:MOST_REASONS]:
+            more = f" and {len(samples) - 1} more" if len(samples) > 1 else ""
+            print(f"  sample {samples[0]}{more}: {message[:300]}")
+        if len(reasons) > MOST_REASONS:
+            print(f"  and {len(reasons) - MOST_REASONS} other reasons")
     leading = next(iter(found.quantities), None)
     if leading is not None:
         worst = found.quantities[leading].largest_sample

@@ -310,6 +310,17 @@ class Drive:
         total = self.load.torque if torque is None else torque
         return -self.driving_sign * total * self.disc.torque_share
 
+    def load_words(self, torque: float | None = None) -> str:
+        """Return torque and direction for the heading of a table.
+
+        Parameters
+        ----------
+        torque : float, optional
+            Output torque of the whole drive, N·mm; the drive's own by default.
+        """
+        total = self.load.torque if torque is None else torque
+        return f"{total / 1000.0:.6g} N·m {self.load.direction}"
+
     @property
     def bore_radius(self) -> float:
         """Outer-race radius with half the diametral bearing clearance, mm."""

@@ -100,6 +100,9 @@ def _print_headline(study: Study) -> None:
     from validation.report.headline import headline
 
     head = headline(study)
+    plan = study.plan
+    loads = ", ".join(f"{case} {drive.load_words()}" for case, drive in plan.drives.items())
+    print(f"{plan.name}: {loads}; {len(plan.crank_angles)} positions of full FE")
     print(f"{'against full FE':<14}{'load':>12}{'pressure':>12}{'wheel angle':>14}")
     for model, worst in head["worst_difference_from_full_fe"].items():
         print(
