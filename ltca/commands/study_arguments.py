@@ -148,9 +148,9 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
         reasons: dict[str, list[int]] = {}
         for sample, message in found.failures:
             reasons.setdefault(" ".join(message.split()), []).append(sample)
-        for message, samples in list(reasons.items())[:MOST_REASONS]:
-            more = f" and {len(samples) - 1} more" if len(samples) > 1 else ""
-            print(f"  sample {samples[0]}{more}: {message[:300]}")
+        for message, numbers in list(reasons.items())[:MOST_REASONS]:
+            more = f" and {len(numbers) - 1} more" if len(numbers) > 1 else ""
+            print(f"  sample {numbers[0]}{more}: {message[:300]}")
         if len(reasons) > MOST_REASONS:
             print(f"  and {len(reasons) - MOST_REASONS} other reasons")
     leading = next(iter(found.quantities), None)
