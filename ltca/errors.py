@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any, ClassVar
 
 MOST_TOLD = 10
@@ -25,17 +26,20 @@ class DriveError(CycloError):
         One complete sentence per mistake: field, value, bound and unit.
     source : str, optional
         Where the definition came from (a file name).
+    beside : str, optional
+        What was not looked at.
     """
 
-    def __init__(self, problems: Sequence[str], source: str = "") -> None:
+    def __init__(self, problems: Sequence[str], source: str = "", beside: str = "") -> None:
         self.problems = tuple(dict.fromkeys(problems))
         self.source = source
         head = f"{printable(source)}: " if source else ""
         count = len(self.problems)
         if count == 1:
-            text = head + self.problems[0]
+            text = head + self.problems[0] + (f" ({beside})" if beside else "")
         else:
             told = f"{count} mistakes" if count <= MOST_TOLD else f"{count} mistakes, the first {MOST_TOLD}"
+            told += f" ({beside})" if beside else ""
             text = f"{head}{told}\n" + "\n".join(f"  {problem}" for problem in self.problems[:MOST_TOLD])
         super().__init__(text)
 
@@ -94,9 +98,15 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return the known name nearest to one that is not known, empty when none is near."""
+    return _nearest(name[:80].casefold(), tuple(known))
+
+
+@lru_cache(maxsize=4096)
+def _nearest(name: str, known: tuple[str, ...]) -> str:
     from difflib import get_close_matches
 
-    name = name[:80].casefold()
+    if not known:
+        return ""
     spelled = {text.casefold(): text for text in known}
     found = get_close_matches(name, spelled, n=1, cutoff=0.8 if len(name) < 5 else 0.7)
     # CS-9 is no misspelt CS-6: another number is another thing.

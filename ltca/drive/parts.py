@@ -22,6 +22,7 @@ from ltca.drive.deviations import (
     Runout as Runout,
     SignedLength,
 )
+from ltca.drive.names import Name
 from ltca.drive.units import COUNT, quantity
 
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
@@ -269,7 +270,7 @@ class Drive:
         Material of each part.
     """
 
-    name: str = "drive"
+    name: Name = "drive"
     crank: Crank
     pin_wheel: PinWheel
     disc: Disc

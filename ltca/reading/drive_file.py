@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from ltca.drive.mistakes import describe_mistakes
+from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, parse_tolerances
 from ltca.drive.units import check_count
@@ -24,14 +24,10 @@ from ltca.reading.toml_text import parse_toml, read_text
 NOMINAL_CASE = "nominal"
 MOST_NAMES = 10
 """Names of cases in one message."""
-MANY_CASES = 1000
+MANY_CASES = 300
 """Cases with contradictions after which no more are looked at."""
-LONGEST_NAME = 120
-"""Bytes: file systems take 255 for a file, and names of figures go before it."""
-UNPRINTED = ("Cc", "Cs", "Zl", "Zp")
-BACKWARD = "\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
-"""Signs that turn what is printed behind them."""
-NAMING = f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\ and control characters"
+MOST_EXPLAINED = 3
+"""Contradictions of cases whose cause is looked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,48 +123,48 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     named = _named_cases(cases, problems)
     # Mistakes of the common part come back in every case: the base is validated alone, first.
     base_problems: list[str] = []
-    if isinstance(table["name"], str) and not _names_a_file(table["name"]):
-        base_problems.append(f"name = {shortened(table['name'])}: {NAMING}")
     base = _validate(table, base_problems)
     if base_problems or base is None:
         raise DriveError(problems + base_problems, source)
     drives: dict[str, Drive] = {}
     mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
-        drive = _validate(_merge(table, overrides), mistakes.setdefault(name, []))
+        # Parts that a case leaves alone are valid already.
+        changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
+        drive = _validate({**_parts(base), **changed}, mistakes.setdefault(name, []))
         if drive is not None:
             drives[name] = drive
     problems += _once(mistakes, {})
     if not named and not problems:
         drives[NOMINAL_CASE] = base
-    problems += _contradictions(base, drives)
+    found, left = _contradictions(base, drives)
+    problems += found
     if problems:
-        raise DriveError(problems, source)
+        raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
     return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, text=text)
 
 
-def _contradictions(base: Drive, drives: dict[str, Drive]) -> list[str]:
-    """What cannot be, once each: that of the common part which no case mends, then that of the cases."""
+def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], int]:
+    """What cannot be, once each: that of the common part which no case mends, then that of the cases; cases left over."""
     common = find_contradictions(base)
     found: dict[str, list[str]] = {}
-    for number, (name, drive) in enumerate(drives.items()):
+    wrong = 0
+    for name, drive in drives.items():
         found[name] = common if drive == base else find_contradictions(drive)
-        if number >= MANY_CASES and sum(map(bool, found.values())) >= MANY_CASES:
-            left = len(drives) - len(found)
+        wrong += bool(found[name])
+        if wrong >= MANY_CASES:
             break
-    else:
-        left = 0
     everywhere = [problem for problem in common if all(problem in told for told in found.values())]
-    explained = explain_contradictions(base, everywhere) if everywhere else []
+    problems = explain_contradictions(base, everywhere)
     told: dict[str, list[str]] = {}
-    for number, (name, problems) in enumerate((name, problems) for name, problems in found.items() if problems):
-        own = [problem for problem in problems if problem not in everywhere]
-        # Looking for the field behind a contradiction takes a tenth of a second: the first few cases are enough.
-        told[name] = explain_contradictions(drives[name], own) if number < 3 and not everywhere else own
-    problems = explained + _once(told, drives)
-    if left:
-        problems.append(f"{left} more cases were not looked at")
-    return problems
+    explained: dict[tuple[str, ...], list[str]] = {}
+    for name, those in found.items():
+        own = tuple(problem for problem in those if problem not in everywhere)
+        # Looking for the field behind a contradiction takes a tenth of a second: the first few are enough.
+        if own and own not in explained and len(explained) < MOST_EXPLAINED:
+            explained[own] = explain_contradictions(drives[name], [*own])
+        told[name] = explained.get(own, [*own])
+    return problems + _once(told, drives), len(drives) - len(found)
 
 
 def _once(mistakes: dict[str, list[str]], drives: dict[str, Drive]) -> list[str]:
@@ -200,7 +196,7 @@ def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
         name = case.get("name")
         if not isinstance(name, str):
             problems.append(f"case {number}: name is missing or no text; every [[case]] needs one")
-        elif not _names_a_file(name):
+        elif not names_a_file(name):
             problems.append(f"case {number}: name = {shortened(name)}: {NAMING}")
         elif name in named:
             problems.append(f"case {name}: name is used twice; must be unique")
@@ -209,21 +205,14 @@ def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
     return named
 
 
-def _names_a_file(name: str) -> bool:
-    """Results go to files and folders of these names, and names are printed."""
-    return (
-        bool(name.strip(" ."))
-        and not any(sign in "/\\" or unicodedata.category(sign) in UNPRINTED or sign in BACKWARD for sign in name)
-        and len(name.encode("utf-8", "replace")) <= LONGEST_NAME
-    )
+def _parts(drive: Drive) -> dict[str, Any]:
+    return {item.name: getattr(drive, item.name) for item in fields(drive)}
 
 
-def _merge(base: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
-    merged = dict(base)
-    for key, value in overrides.items():
-        below = merged.get(key)
-        merged[key] = _merge(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
-    return merged
+def _merged(below: Any, value: Any) -> Any:
+    if not isinstance(below, dict) or not isinstance(value, dict):
+        return value
+    return {**below, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
 _ADAPTER = TypeAdapter(Drive)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,8 @@ from ltca.errors import DriveError, printable
 
 DEEPEST = 20
 """Tables and arrays in each other; a drive file needs five."""
+# Possessive and anchored, so that long words cost their length once.
+_MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){60}""")
 LARGEST = 50_000_000
 """Bytes of a file; a drive of 10,000 cases has some 2 MB."""
 
@@ -59,6 +62,8 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
     DriveError
         When it is not TOML, or tables stand in each other more than `DEEPEST` deep.
     """
+    if _MANY_DOTS.search(text):  # the parser takes seconds for a key of thousands of parts
+        raise DriveError([_too_deep()], source)
     try:
         table = tomllib.loads(text.removeprefix("\ufeff").replace("\r\n", "\n"))
     except RecursionError as error:

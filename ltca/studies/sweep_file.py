@@ -124,7 +124,10 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
             f"case = {shortened(case)}: must be the name of one case, a text; several are factors: case = [...] in [factors]"
         )
     reader.check()
-    selected = file.select(None if case is None else [case])
+    try:
+        selected = file.select(None if case is None else [case])
+    except DriveError as error:
+        raise DriveError([f"{problem} (of {drive})" for problem in error.problems], source) from error
     base = next(iter(selected.values()))
     factors = tuple(_factors(factors_table, base, file.cases, reader))
     design = _design(table.get("design", {}), factors, reader)
