@@ -93,15 +93,17 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
     """Name of the drive file, of the case, and what is asked of it."""
-    from ltca.errors import DriveError, shortened
+    from ltca.errors import DriveError, did_you_mean, shortened
     from ltca.reading.drive_file import load_drive
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
-    from ltca.studies.quantities import QUANTITIES, check_quantities
+    from ltca.studies.quantities import QUANTITIES
 
     aims = tuple(dict.fromkeys(arguments.minimise))
-    check_quantities(aims)
-    if len(aims) > 2 or "all" in aims:
-        raise DriveError([f"--minimise {shortened(' '.join(aims))[1:-1]}: give one or two of {', '.join(QUANTITIES)}"])
+    unknown = [aim for aim in aims if aim not in QUANTITIES]
+    if unknown or len(aims) > 2:
+        meant = did_you_mean(unknown[0], QUANTITIES) if unknown else ""
+        told = shortened(" ".join(aims))[1:-1]
+        raise DriveError([f"--minimise {told}: give one or two of {', '.join(QUANTITIES)}{meant}"])
     file = load_drive(arguments.drive)
     case = arguments.case or next(iter(file.cases))
     drive = file.select([case])[case]

@@ -109,7 +109,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
 
         paths = list(write_study_figures(folder, study, found.ranking, found.nominal))
         print(f"figures: {folder.path / 'figures'} ({len(paths)} as SVG and PNG)")
-    return 0
+    return 1 if len(found.failures) == study.design.samples else 0
 
 
 def tell(message: str) -> None:
@@ -141,24 +141,28 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
-    if found.failures:
-        print(
-            f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}"
-        )
-        reasons: dict[str, list[int]] = {}
-        for sample, message in found.failures:
-            reasons.setdefault(" ".join(message.split()), []).append(sample)
-        for message, numbers in list(reasons.items())[:MOST_REASONS]:
-            more = f" and {len(numbers) - 1} more" if len(numbers) > 1 else ""
-            print(f"  sample {numbers[0]}{more}: {message[:300]}")
-        if len(reasons) > MOST_REASONS:
-            print(f"  and {len(reasons) - MOST_REASONS} other reasons")
+    _print_failures(study, folder, found)
     leading = next(iter(found.quantities), None)
     if leading is not None:
         worst = found.quantities[leading].largest_sample
         words = f"{write_sample(study, folder, worst)}{_compliance_words(study)}"
         print(f"worst by {QUANTITIES[leading].description}: cyclo run {words}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
+
+
+def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+    """How many samples failed, and each reason once with its first sample."""
+    if not found.failures:
+        return
+    print(f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}")
+    reasons: dict[str, list[int]] = {}
+    for sample, message in found.failures:
+        reasons.setdefault(" ".join(message.split()), []).append(sample)
+    for message, samples in list(reasons.items())[:MOST_REASONS]:
+        more = f" and {len(samples) - 1} more" if len(samples) > 1 else ""
+        print(f"  sample {samples[0]}{more}: {message[:300]}")
+    if len(reasons) > MOST_REASONS:
+        print(f"  and {len(reasons) - MOST_REASONS} other reasons")
 
 
 def _compliance_words(study: Study) -> str:

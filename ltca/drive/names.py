@@ -34,7 +34,7 @@ def names_a_file(name: str) -> bool:
 def _check(value: Any) -> Any:
     if isinstance(value, str) and names_a_file(value):
         return value
-    raise PydanticCustomError("name", NAMING)  # type: ignore[arg-type]  # no part of it is literal
+    raise PydanticCustomError("name", NAMING)
 
 
 Name = Annotated[str, BeforeValidator(_check)]

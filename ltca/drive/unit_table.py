@@ -128,6 +128,11 @@ def spellings_of(kind: str) -> list[tuple[str, ...]]:
     return [spellings for name, spellings, _, _ in _TABLE if name == kind]
 
 
+def is_plain_number(text: str) -> bool:
+    """Tell whether a text is a short number without a unit."""
+    return len(text) <= 24 and re.fullmatch(_NUMBER, text) is not None
+
+
 class QuantityError(ValueError):
     """A text is no quantity of the kind asked for; the message goes on after its value."""
 

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
-from ltca.drive.unit_table import QuantityError, label as label, range_of, read_quantity
+from ltca.drive.unit_table import QuantityError, is_plain_number, label as label, range_of, read_quantity
 from ltca.errors import DriveError, shortened
 
 ARCMIN = 180.0 / math.pi * 60.0
@@ -149,4 +149,5 @@ def parse_quantity(
     try:
         return check(text)
     except PydanticCustomError as error:
-        raise DriveError([f"{name} = {shortened(text)}: {error.message()}"]) from error
+        told = text if is_plain_number(text) else shortened(text)
+        raise DriveError([f"{name} = {told}: {error.message()}"]) from error

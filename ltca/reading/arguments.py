@@ -71,7 +71,7 @@ def add_size_argument(parser: argparse.ArgumentParser, what: str) -> None:
     parser.add_argument(
         "--size",
         metavar="S",
-        type=quantity_argument("--size", "dimensionless", ge=1e-3, le=1e3),
+        type=quantity_argument("--size", "dimensionless", gt=0.0, le=1e3),
         default=1.0,
         help=f"{what}; default 1, 0.5 halves it",
     )
@@ -114,12 +114,14 @@ def torque_argument(text: str) -> float:
         When it is none.
     """
     from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError, shortened
+    from ltca.errors import DriveError
 
-    torque = parse_quantity(text, "N*mm", "--torque")
-    if torque <= 0.0:
-        raise DriveError([f"--torque = {shortened(text)[1:-1]}: must be greater than 0 N·mm (load.direction turns it)"])
-    return parse_quantity(text, "N*mm", "--torque", gt=0.0)
+    try:
+        return parse_quantity(text, "N*mm", "--torque", gt=0.0)
+    except DriveError as error:
+        (problem,) = error.problems
+        hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""
+        raise DriveError([f"{problem}{hint}"]) from error
 
 
 def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:

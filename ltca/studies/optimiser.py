@@ -85,7 +85,7 @@ def parse_variable(text: str, drive: Drive) -> Variable:
         ends = span.split(":")
         if len(ends) != 2:
             raise DriveError([f"--vary {shortened(text)[1:-1]}: write the range as {name}=low:high"])
-        low, high = (parse_quantity(end, unit, f"--vary {path}") for end in ends)
+        low, high = (parse_quantity(end.strip(), unit, f"--vary {path}") for end in ends)
     else:
         value = float(read_field(drive, path))
         low, high = sorted((0.5 * value, 1.5 * value))
