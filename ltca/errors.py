@@ -31,7 +31,7 @@ class DriveError(CycloError):
     """
 
     def __init__(self, problems: Sequence[str], source: str = "", beside: str = "") -> None:
-        self.problems = tuple(dict.fromkeys(problems))
+        self.problems = tuple(dict.fromkeys(printable(problem) for problem in problems))
         self.source = source
         head = f"{printable(source)}: " if source else ""
         count = len(self.problems)
@@ -81,6 +81,8 @@ def shortened(value: Any, most: int = 60) -> str:
 
 def printable(text: str) -> str:
     """Return a text without control characters, which would act on the terminal; lines are kept apart by a space."""
+    if text.isprintable():
+        return text
     return "".join(sign if sign.isprintable() else " " if sign.isspace() else "\ufffd" for sign in text)
 
 

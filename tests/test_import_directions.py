@@ -31,6 +31,7 @@ LIGHT_COMMANDS = {
     "ltca.errors",
     "ltca.reading.arguments",
     "ltca.output.terminal",
+    "shlex",
     "traceback",
     "warnings",
     "sys",

@@ -84,7 +84,7 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``cyclo`` and return its exit status: 0 done, 1 a failed check, a fault or a partial result, 2 bad input."""
-    words = list(sys.argv[1:] if argv is None else argv)
+    words = [_decoded(word) for word in sys.argv[1:]] if argv is None else list(argv)
     debug = DEBUG in words
     prepare_streams()
     if argv is None and not debug and not sys.warnoptions:
@@ -110,12 +110,22 @@ def main(argv: Sequence[str] | None = None) -> int:
         return error.exit_status if isinstance(error, CycloError) else FAULT
 
 
+def _decoded(word: str) -> str:
+    """A word of the command line as UTF-8 where the locale could not read it."""
+    try:
+        return os.fsencode(word).decode("utf-8")
+    except UnicodeError:
+        return word
+
+
 def _told(error: Exception) -> str:
     """What an exception tells the user: its own message where it has one for them, else how to report it."""
     if isinstance(error, CycloError):
         return "\n".join(printable(line) for line in str(error).split("\n"))
     if isinstance(error, MemoryError):
         return "memory is not enough; ask for fewer positions or samples, or for larger elements"
+    if isinstance(error, UnicodeEncodeError):
+        return f"{printable(error.object)[:200]}: cannot be a file name in the encoding {error.encoding}; LC_ALL=C.UTF-8 helps"
     if isinstance(error, OSError) and error.strerror:
         return printable(f"{error.filename or 'a file'}: {error.strerror}")
     message = printable(" ".join(str(error).split()))[:200]

@@ -129,8 +129,8 @@ def spellings_of(kind: str) -> list[tuple[str, ...]]:
 
 
 def is_plain_number(text: str) -> bool:
-    """Tell whether a text is a short number without a unit."""
-    return len(text) <= 24 and re.fullmatch(_NUMBER, text) is not None
+    """Tell whether a text is a short finite number without a unit."""
+    return len(text) <= 24 and re.fullmatch(_NUMBER, text) is not None and math.isfinite(float(text))
 
 
 class QuantityError(ValueError):

@@ -87,8 +87,8 @@ def load_sweep(path: Path, engine: Engine | None = None) -> Study:
     table = parse_toml(text, str(path))
     source = table.get("drive")
     if not isinstance(source, str) or not source:
-        told = "is missing" if source is None else f"= {shortened(source)} is no text"
-        raise DriveError([f"drive: {told}; give 'paper' or a drive file"], str(path))
+        told = "drive: is missing" if source is None else f"drive = {shortened(source)}: is no name of a file"
+        raise DriveError([f"{told}; give 'paper' or a drive file"], str(path))
     # A drive file is looked for beside the study, so that both can be moved together.
     study = parse_sweep(table, source if source == "paper" else str(path.parent / source), str(path), engine)
     return replace(study, definition=text)
