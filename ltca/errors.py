@@ -110,7 +110,8 @@ def _nearest(name: str, known: tuple[str, ...]) -> str:
     if not known:
         return ""
     spelled = {text.casefold(): text for text in known}
-    found = get_close_matches(name, spelled, n=1, cutoff=0.8 if len(name) < 5 else 0.7)
+    swapped = [text for text in spelled if sorted(text) == sorted(name)]
+    found = swapped or get_close_matches(name, spelled, n=1, cutoff=0.8 if len(name) < 5 else 0.7)
     # CS-9 is no misspelt CS-6: another number is another thing.
     if not found or (found[0] != name and _letters(found[0]) == _letters(name)):
         return ""
