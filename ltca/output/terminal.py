@@ -1,4 +1,4 @@
-"""Streams that take every message: any encoding, no stream at all, a reader that has gone."""
+"""Streams that take every message: any encoding, no stream at all."""
 
 from __future__ import annotations
 
