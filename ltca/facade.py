@@ -68,8 +68,12 @@ class AnalysisResult:
 
     @property
     def dataset(self) -> xr.Dataset:
-        """Labelled dataset as in ``results.nc``, of this one case."""
-        return build_dataset(self.drive.name, {self.case: self.loaded})
+        """Labelled dataset as in ``results.nc``, of this one case; its arrays are read-only."""
+        found = build_dataset(self.drive.name, {self.case: self.loaded})
+        for variable in found.variables.values():
+            if isinstance(variable.data, np.ndarray):
+                variable.data.flags.writeable = False
+        return found
 
     @cached_property
     def _summary(self) -> dict[str, float | None]:
@@ -89,12 +93,12 @@ class AnalysisResult:
         """Say what was analysed and what came out, on a few lines."""
         positions = self.loaded.full.crank_angle.size
         head = (
-            f"{self.drive.name}: {self.engine.compliance}, {positions} positions, "
+            f"{self.drive.name}: {self.engine.compliance}, {positions} position{'s' * (positions > 1)}, "
             f"{self.torque / 1000.0:g} N·m {self.drive.load.direction}"
         )
         rows = [head]
         for title, key, unit, form in _SHOWN:
-            value = self._summary[key]
+            value = self._summary.get(f"refined_{key}") or self._summary[key]
             if value is not None and not (positions == 1 and key.startswith("ptp")):
                 rows.append(f"  {title:<34}{form.format(value)} {unit}")
         return "\n".join(rows)

@@ -43,17 +43,26 @@ ARRAYS: dict[str, tuple[str, str, str, str]] = {
     "roller_load": ("roller_load_outer", "roller", "N", "load of roller and bore (outer side)"),
     "roller_load_inner": ("roller_load_inner", "roller", "N", "load of roller and inner race"),
     "pin_shaft_load": ("pin_shaft_load", "hole", "N", "load of shaft pin and hole"),
-    "pin_pressure_max": ("pin_pressure_max", "pin", "MPa", "peak pressure of wheel pin and flank"),
-    "roller_pressure_max_outer": ("roller_pressure_max_outer", "roller", "MPa", "peak pressure of roller and bore"),
-    "roller_pressure_max_inner": ("roller_pressure_max_inner", "roller", "MPa", "peak pressure of roller and race"),
-    "pin_shaft_pressure_max": ("hole_pressure_max", "hole", "MPa", "peak pressure of shaft pin and hole"),
+    "pin_pressure_mid": ("pin_pressure_max", "pin", "MPa", "largest pressure of wheel pin and flank"),
+    "roller_pressure_mid_outer": ("roller_pressure_max_outer", "roller", "MPa", "largest pressure of roller and bore"),
+    "roller_pressure_mid_inner": ("roller_pressure_max_inner", "roller", "MPa", "largest pressure of roller and race"),
+    "pin_shaft_pressure_mid": ("hole_pressure_max", "hole", "MPa", "largest pressure of shaft pin and hole"),
     "pin_half_width": ("pin_half_width", "pin", "mm", "half-width 2√⟨x²⟩ of wheel pin and flank"),
     "roller_half_width_outer": ("roller_half_width_outer", "roller", "mm", "half-width of roller and bore"),
     "roller_half_width_inner": ("roller_half_width_inner", "roller", "mm", "half-width of roller and race"),
     "pin_shaft_half_width": ("hole_half_width", "hole", "mm", "half-width of shaft pin and hole"),
 }
 # Keys of summary.json that are older than the names of the datasets, and stay.
-SUMMARY_NAMES = {"roller_load": "roller_load_outer"}
+SUMMARY_NAMES = {
+    "roller_load": "roller_load_outer",
+    "pin_pressure_mid": "pin_pressure_max",
+    "roller_pressure_mid_outer": "roller_pressure_max_outer",
+    "roller_pressure_mid_inner": "roller_pressure_max_inner",
+    "pin_shaft_pressure_mid": "pin_shaft_pressure_max",
+}
+RIGID_SHAFT_PINS = (
+    "shaft pins are rigid: their material is not used, elastic ones of the disc's steel would read 1/√2 of it"
+)
 MULTI_BLOCK = "fem.vtm"
 
 
@@ -106,6 +115,8 @@ def build_dataset(solution: FullSolution, case: str) -> xr.Dataset:
         data[name] = (dimensions, spread, {"units": unit, "long_name": text})
 
     for name, (attribute, belongs, unit, text) in ARRAYS.items():
+        if name == "pin_shaft_pressure_mid" and not model.shaft_pins:
+            text = f"{text}; {RIGID_SHAFT_PINS}"
         add(name, getattr(contacts, attribute), belongs, unit, text)
     radial, tangential = bearing_components(contacts, model.crank_angle)
     bore, bore_rotation = bore_motion(model, solution.state)

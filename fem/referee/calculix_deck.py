@@ -79,6 +79,10 @@ class _Deck:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.equations: list[str] = []
+        self.springs: list[str] = []
+        self.interactions: list[str] = []
+        # By name: mesh, number before its first node and before its first element.
+        self.placed: dict[str, tuple[BodyMesh, int, int]] = {}
         self.preload: list[tuple[int, complex]] = []
         self.next_node = 1
         self.next_element = 1
@@ -108,6 +112,13 @@ class _Deck:
         ]
         self.next_element += len(nodes)
         return offset
+
+    def add_body(self, name: str, body: BodyMesh, at: Pose, material: Material, thickness: float) -> None:
+        """Write a body at its place."""
+        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+        nodes = self.add_nodes(at.centre + local * np.exp(1j * at.rotation))
+        elements = self.add_elements("CPE6", name, nodes + 1 + element_nodes(body), material, thickness)
+        self.placed[name] = (body, nodes, elements)
 
     def equate(self, terms: list[tuple[int, int, float]]) -> None:
         """Write Σ factor · u(node, direction) = 0; the first unknown is eliminated."""
@@ -149,85 +160,93 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
     """
     if solution.plane_state != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
-    model, pose = solution.model, solution.pose
-    if model.shaft_pins:
+    if solution.model.shaft_pins:
         raise CycloError("the CalculiX deck has rigid shaft pins; solve without --elastic-shaft-pins")
-    drive, meshes = model.drive, model.meshes
-    thickness, materials = drive.disc.thickness, drive.materials
+    model = solution.model
     deck = _Deck()
     deck.lines += [
-        f"** cyclo: {drive.name}, crank angle {model.crank_angle:.10g} rad, wheel moment "
-        f"{solution.state.wheel_moment:.10g} N mm, fingerprint {drive.fingerprint()}",
+        f"** cyclo: {model.drive.name}, crank angle {model.crank_angle:.10g} rad, wheel moment "
+        f"{solution.state.wheel_moment:.10g} N mm, fingerprint {model.drive.fingerprint()}",
         "** mm, N, MPa; all bodies undeformed at the loaded pose",
     ]
-    placed: dict[str, tuple[BodyMesh, int, int, float]] = {}
+    pairs = _carrying_pairs(solution)
+    _add_bodies(deck, solution, pairs)
+    wheel = deck.add_nodes(np.zeros(1, dtype=complex)) + 1
+    for pair in pairs:
+        _add_contact(deck, solution, pair, penalty)
+    for pair in pairs:
+        if pair.kind == "pin":
+            _tie_core(deck, model.circle_centre("pin", pair.index, solution.pose), pair, wheel)
+        elif pair.kind == "roller_outer":
+            _guide_roller(deck, complex(model.roller_rays[pair.index]), pair)
+    _add_step(deck, pairs, wheel, solution.state.wheel_moment)
+    with whole_file(path) as part:
+        part.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
+    return path
 
-    def add_body(name: str, body: BodyMesh, at: Pose, material: Material, turn: float = 0.0) -> None:
-        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
-        places = at.centre + local * np.exp(1j * (at.rotation + turn))
-        nodes = deck.add_nodes(places)
-        elements = deck.add_elements("CPE6", name, nodes + 1 + element_nodes(body), material, thickness)
-        placed[name] = (body, nodes, elements, 0.0)
 
-    add_body("DISC", meshes.disc, model.disc_pose(pose), materials.disc)
-    add_body("RACE", meshes.inner_race, Pose(centre=model.race_centre), materials.inner_race)
+def _carrying_pairs(solution: FullSolution) -> list[ContactPair]:
+    """All pins and holes, and both sides of the rollers that press on the disc: a free one would have no place."""
     own = solution.state.contact.pressure
-    carrying = {pair.index for pair in model.pairs if pair.kind == "roller_outer" and np.any(own[pair.unknowns] > 0.0)}
-    pairs = [pair for pair in model.pairs if pair.kind in ("pin", "hole") or pair.index in carrying]
+    pairs = solution.model.pairs
+    carrying = {pair.index for pair in pairs if pair.kind == "roller_outer" and np.any(own[pair.unknowns] > 0.0)}
+    return [pair for pair in pairs if pair.kind in ("pin", "hole") or pair.index in carrying]
+
+
+def _body_name(pair: ContactPair) -> str:
+    return f"{pair.kind[:6]}_{pair.index}".upper()
+
+
+def _add_bodies(deck: _Deck, solution: FullSolution, pairs: list[ContactPair]) -> None:
+    """Disc, race, then pins and rollers; `slave_faces` counts on this order."""
+    model, pose = solution.model, solution.pose
+    materials, thickness = model.drive.materials, model.drive.disc.thickness
+    deck.add_body("DISC", model.meshes.disc, model.disc_pose(pose), materials.disc, thickness)
+    deck.add_body("RACE", model.meshes.inner_race, Pose(centre=model.race_centre), materials.inner_race, thickness)
     for pair in pairs:
         if pair.kind in ("pin", "roller_outer"):
             # The mesh in the frame of its group, whose zones are known, turned to this body.
-            group = model.groups[pair.group]
-            at = Pose(centre=model.circle_centre(pair.kind, pair.index, pose))
+            centre = model.circle_centre(pair.kind, pair.index, pose)
             material = materials.wheel_pin if pair.kind == "pin" else materials.roller
-            add_body(f"{pair.kind[:6]}_{pair.index}".upper(), group.body, at, material, pair.turn)
-    wheel = deck.add_nodes(np.zeros(1, dtype=complex)) + 1
-    springs: list[str] = []
-    interactions: list[str] = []
-    for pair in pairs:
-        name = pair_name(pair)
-        carrier, _, elements, _ = placed["RACE" if pair.kind == "roller_inner" else "DISC"]
-        edge = float(np.abs(pair.zone.places[:, 2] - pair.zone.places[:, 0]).min())
-        faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
-        if pair.kind == "hole":
-            opposite = _add_rigid_arc(
-                deck,
-                pair,
-                model.disc_pose(pose),
-                model.circle_centre("hole", pair.index, pose),
-                drive.pin_shaft.stiffness,
-                thickness,
-                springs,
-                complex(pose.shaft_pin_displacements[pair.index]),
-            )
-        else:
-            body, _, first, _ = placed[f"{pair.kind[:6]}_{pair.index}".upper()]
-            zone: OppositeZone = model.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
-            opposite = _faces(body, zone.nodes[1::2], first)
-        deck.lines += [f"*SURFACE, NAME=S_{name}, TYPE=ELEMENT", *faces]
-        deck.lines += [f"*SURFACE, NAME=O_{name}, TYPE=ELEMENT", *opposite]
-        interactions += [
-            f"*SURFACE INTERACTION, NAME=I_{name}",
-            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-            f"{penalty * materials.disc.youngs_modulus / edge:.6g}",
-            f"*CONTACT PAIR, INTERACTION=I_{name}, TYPE=SURFACE TO SURFACE",
-            f"S_{name},O_{name}",
-        ]
-    for pair in pairs:
-        if pair.kind == "pin":
-            body, nodes, _, _ = placed[f"PIN_{pair.index}"]
-            _tie_core(deck, body, nodes, model.circle_centre("pin", pair.index, pose), pair.turn, wheel)
-        elif pair.kind == "roller_outer":
-            body, nodes, _, _ = placed[f"ROLLER_{pair.index}"]
-            _guide_roller(deck, body, nodes, complex(model.roller_rays[pair.index]), pair.turn)
-    race, offset, _, _ = placed["RACE"]
+            at = Pose(centre=centre, rotation=pair.turn)
+            deck.add_body(_body_name(pair), model.groups[pair.group].body, at, material, thickness)
+
+
+def _add_contact(deck: _Deck, solution: FullSolution, pair: ContactPair, penalty: float) -> None:
+    """Write both surfaces of a pair and what acts between them."""
+    model, pose = solution.model, solution.pose
+    drive, name = model.drive, pair_name(pair)
+    carrier, _, elements = deck.placed["RACE" if pair.kind == "roller_inner" else "DISC"]
+    edge = float(np.abs(pair.zone.places[:, 2] - pair.zone.places[:, 0]).min())
+    faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
+    if pair.kind == "hole":
+        opposite = _add_rigid_arc(
+            deck, pair, model.disc_pose(pose), model.circle_centre("hole", pair.index, pose),
+            drive.pin_shaft.stiffness, drive.disc.thickness, complex(pose.shaft_pin_displacements[pair.index]),
+        )  # fmt: skip
+    else:
+        body, _, first = deck.placed[_body_name(pair)]
+        zone: OppositeZone = model.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+        opposite = _faces(body, zone.nodes[1::2], first)
+    deck.lines += [f"*SURFACE, NAME=S_{name}, TYPE=ELEMENT", *faces]
+    deck.lines += [f"*SURFACE, NAME=O_{name}, TYPE=ELEMENT", *opposite]
+    deck.interactions += [
+        f"*SURFACE INTERACTION, NAME=I_{name}",
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+        f"{penalty * drive.materials.disc.youngs_modulus / edge:.6g}",
+        f"*CONTACT PAIR, INTERACTION=I_{name}, TYPE=SURFACE TO SURFACE",
+        f"S_{name},O_{name}",
+    ]
+
+
+def _add_step(deck: _Deck, pairs: list[ContactPair], wheel: int, wheel_moment: float) -> None:
+    """Write constraints, springs, contacts, then the load and what is printed."""
+    race, offset, _ = deck.placed["RACE"]
     fixed = np.unique(unknowns_of_boundary(race, "inner") // 2) + offset + 1
     deck.lines += ["*NSET, NSET=FIXED", *map(str, fixed.tolist())]
-    deck.lines += deck.equations
-    deck.lines += springs
-    deck.lines += interactions
+    deck.lines += [*deck.equations, *deck.springs, *deck.interactions]
     deck.lines += ["*BOUNDARY", "FIXED,1,2"]
-    deck.lines += ["*STEP, INC=200", "*STATIC", "1.,1.", "*CLOAD", f"{wheel},1,{solution.state.wheel_moment:.14g}"]
+    deck.lines += ["*STEP, INC=200", "*STATIC", "1.,1.", "*CLOAD", f"{wheel},1,{wheel_moment:.14g}"]
     for node, force in deck.preload:
         deck.lines += [f"{node},1,{force.real:.14g}", f"{node},2,{force.imag:.14g}"]
     for pair in pairs:
@@ -235,23 +254,22 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
         deck.lines += [f"*CONTACT PRINT, SLAVE=S_{name}, MASTER=O_{name}", "CFN"]
     deck.lines += ["*CONTACT PRINT", "CSTR"]
     deck.lines += ["*NSET, NSET=WHEEL", str(wheel), "*NODE PRINT, NSET=WHEEL", "U", "*END STEP"]
-    with whole_file(path) as part:
-        part.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
-    return path
 
 
-def _tie_core(deck: _Deck, body: BodyMesh, offset: int, centre: complex, turn: float, wheel: int) -> None:
+def _tie_core(deck: _Deck, centre: complex, pair: ContactPair, wheel: int) -> None:
     """Let the core of a pin turn with the wheel: u = ω × r, ω being the first unknown of the wheel's node."""
+    body, offset, _ = deck.placed[_body_name(pair)]
     for node in np.unique(unknowns_of_boundary(body, "core") // 2).tolist():
         x, y = body.mesh.doflocs[:, node]
-        at = centre + complex(x, y) * np.exp(1j * turn)
+        at = centre + complex(x, y) * np.exp(1j * pair.turn)
         deck.equate([(offset + node + 1, 1, 1.0), (wheel, 1, at.imag)])
         deck.equate([(offset + node + 1, 2, 1.0), (wheel, 1, -at.real)])
 
 
-def _guide_roller(deck: _Deck, body: BodyMesh, offset: int, ray: complex, turn: float) -> None:
+def _guide_roller(deck: _Deck, ray: complex, pair: ContactPair) -> None:
     """Hold a roller across its ray at two nodes near its axis of load."""
-    places = (body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]) * np.exp(1j * turn)
+    body, offset, _ = deck.placed[_body_name(pair)]
+    places = (body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]) * np.exp(1j * pair.turn)
     radius = float(np.abs(places).max())
     across = 1j * ray
     for target in (-0.3 * radius * ray, 0.3 * radius * ray):
@@ -267,7 +285,6 @@ def _add_rigid_arc(
     centre: complex,
     stiffness: float,
     thickness: float,
-    springs: list[str],
     displaced: complex,
 ) -> list[str]:
     """Write a rigid arc of a shaft pin on its springs; return its outer faces."""
@@ -296,7 +313,7 @@ def _add_rigid_arc(
         deck.equate([(offset + node, 2, 1.0), (reference, 2, -1.0)])
     # The pose holds the pin displaced by F/k; springs start without force, so a force makes up for it.
     for direction in (1, 2):
-        springs += [
+        deck.springs += [
             f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING_{pair.index}_{direction}",
             f"{deck.next_element},{reference}",
             f"*SPRING, ELSET=SPRING_{pair.index}_{direction}",
@@ -304,7 +321,7 @@ def _add_rigid_arc(
             f"{stiffness:.10e}",
         ]
         deck.next_element += 1
-    springs += ["*BOUNDARY", f"{reference},3,3"]
+    deck.springs += ["*BOUNDARY", f"{reference},3,3"]
     deck.preload.append((reference, -stiffness * displaced))
     order = nodes[0].tolist()
     side = next(i for i in range(4) if {order[i], order[(i + 1) % 4]} == {0, 2})

@@ -306,7 +306,7 @@ def engine_named(
         if value is not None
     }
     if not isinstance(compliance, str):
-        if not hasattr(compliance, "prepare"):
+        if not hasattr(compliance, "prepare") or isinstance(compliance, type):
             raise DriveError([f"compliance = {compliance!r}: must be an engine or one of {_listed(Compliance)}"])
         if given:
             raise DriveError([f"{name}: is an option of the engine given as compliance" for name in given])

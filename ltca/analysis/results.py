@@ -27,6 +27,10 @@ from ltca.reading.writing import drive_text
 
 FloatArray = NDArray[np.float64]
 
+RIGID_SHAFT_PINS = (
+    "the shaft pin is rigid on its spring: its material is not used, an elastic one of the disc's own would read 1/√2 "
+    "of it"
+)
 # What a quantity belongs to, and the dimensions behind `case` that follow from it.
 DIMENSIONS = {
     "drive": ("position",),
@@ -170,6 +174,7 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
         "crank": [0],
         "position": np.arange(first.full.crank_angle.size),
         **{name: np.arange(count) for name, count in counts.items()},
+        **({} if first.wall_stresses is None else {"lobe": np.arange(first.drive.disc.number_of_teeth)}),
         "crank_angle": ("position", first.full.crank_angle, {**rad, "long_name": "crank angle φ_C, held"}),
         "pin_x": (("case", "pin"), wheel_pins.real, {**mm, "long_name": "wheel pin, in the frame of the wheel"}),
         "pin_y": (("case", "pin"), wheel_pins.imag, {**mm, "long_name": "wheel pin, in the frame of the wheel"}),
@@ -268,7 +273,15 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         ("pin_shaft_pressure_max", first.pressures.holes),
     ):
         dataset[name].attrs["end_cell_mm"] = pressures.end_cell
+    if _has_rigid_shaft_pins(first):
+        for name in ("pin_shaft_pressure_mid", "pin_shaft_pressure_max"):
+            dataset[name].attrs["comment"] = RIGID_SHAFT_PINS
     return dataset
+
+
+def _has_rigid_shaft_pins(analysis: LoadedAnalysis) -> bool:
+    model = analysis.model
+    return isinstance(model, CoupledCompliance) and analysis.engine.options.get("hole_near_field") == "yes"
 
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int]]:

@@ -108,6 +108,8 @@ def execute(arguments: argparse.Namespace) -> int:
         files.append("pressure.nc")
     print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
+    if engine.options.get("hole_near_field") == "yes":
+        print(RIGID_SHAFT_PINS)
     print(_sampling(cases, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     if not arguments.no_figures:
@@ -201,6 +203,10 @@ ROWS = (
 )
 
 
+RIGID_SHAFT_PINS = (
+    "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
+    "--no-hole-near-field"
+)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
     ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
@@ -103,7 +105,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
             bar(f"{rate:.0f} positions/s" if rate else "", samples)
 
         found = run_study(study, folder, workers, resume=arguments.resume, advance=advance, told=tell)
-    _print(study, folder, found)
+    _print(study, folder, found, _compliance_words(study, arguments.coefficients))
     if found.quantities and not arguments.no_figures:
         from ltca.figures.study_figures import write_study_figures
 
@@ -117,7 +119,7 @@ def tell(message: str) -> None:
     print(message, file=sys.stderr)
 
 
-def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
     from ltca.analysis.engines import describe_engine
     from ltca.studies.quantities import QUANTITIES
     from ltca.studies.run_study import write_sample
@@ -145,7 +147,7 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary) -> None:
     leading = next(iter(found.quantities), None)
     if leading is not None:
         worst = found.quantities[leading].largest_sample
-        words = f"{write_sample(study, folder, worst)}{_compliance_words(study)}"
+        words = f"{write_sample(study, folder, worst)}{compliance}"
         print(f"worst by {QUANTITIES[leading].description}: cyclo run {words}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
 
@@ -165,8 +167,9 @@ def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> N
         print(f"  and {len(reasons) - MOST_REASONS} other reasons")
 
 
-def _compliance_words(study: Study) -> str:
+def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
     """What `cyclo run` has to be told to solve a sample as the study did."""
     options = study.engine.options
     words = "" if options["compliance"] == "half-space" else f" --compliance {options['compliance']}"
+    words += "".join(f" --coefficients {path}" for path in coefficients or ())
     return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")

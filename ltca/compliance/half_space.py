@@ -19,12 +19,16 @@ from ltca.compliance.response import (
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, Material, contact_modulus
+from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry, disc_displacement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+SAMPLES = 180
+"""Places of each lobe at which the range of effective radii is looked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,8 +59,12 @@ class HalfSpaceCompliance:
     def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
         """Return the half-space model of a drive."""
         geometry = ContactGeometry.of_drive(drive)
-        turn = np.linspace(0.0, 2.0 * np.pi / geometry.profile.reduction_ratio, 181)
-        pin_radii = geometry.profile.effective_radius(turn[:, None], geometry.placement.wheel_pin_radii)
+        pin_radii = np.ones(1)
+        if not drive.pin_wheel.pin_profile.is_cylinder:
+            # A flank without deviations has the same radii on every lobe.
+            lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
+            turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
+            pin_radii = _effective_radii(geometry.profile, geometry.placement.wheel_pin_radii, turn)
         return cls._of_geometry(geometry, drive, pin_radii, drive.pin_shaft.stiffness)
 
     @classmethod
@@ -73,14 +81,11 @@ class HalfSpaceCompliance:
         geometry = ContactGeometry.of_drives(drives, positions)
         stiffness = np.repeat([[drive.pin_shaft.stiffness] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
-        # One row for each drive: deviations of the flanks are summed row by row.
-        turn = np.tile(np.linspace(0.0, 2.0 * np.pi, 181 * drives[0].pin_wheel.number_of_pins), (len(drives), 1))
-        pin_radii = np.ones((1, 1))
+        pin_radii = np.ones(1)
         if not drives[0].pin_wheel.pin_profile.is_cylinder:
-            radii = each.placement.wheel_pin_radii
-            pin_radii = np.stack(
-                [each.profile.effective_radius(turn, r(radii, axis=1, keepdims=True)) for r in (np.min, np.max)]
-            )
+            # One row for each drive: deviations of the flanks are summed row by row.
+            turn = np.linspace(0.0, 2.0 * np.pi, SAMPLES * drives[0].pin_wheel.number_of_pins + 1)
+            pin_radii = _effective_radii(each.profile, each.placement.wheel_pin_radii, np.tile(turn, (len(drives), 1)))
         return cls._of_geometry(geometry, drives[0], pin_radii, stiffness)
 
     @classmethod
@@ -194,6 +199,17 @@ def batch_signature(drive: Drive) -> tuple[object, ...]:
     numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.pin_shaft.number_of_pins)
     lengths = (disc.thickness, bearing.roller_length)
     return (*numbers, *lengths, pin, roller, drive.materials, errors.orders, errors.parameter, errors.deviation)
+
+
+def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:
+    """Smallest and largest effective radius that pins of these radii meet on a flank, mm, outward by what samples miss."""
+    ends = []
+    for outermost in (np.min, np.max):
+        radii = profile.effective_radius(turn, outermost(pin_radii, axis=-1, keepdims=True))
+        # Between three samples of a parabola its top is higher than they are by an eighth of their second difference.
+        missed = np.max(np.abs(np.diff(radii, 2, axis=-1))) / 8.0
+        ends += [np.min(radii) - missed, np.max(radii) + missed]
+    return np.array(ends)
 
 
 def _rungs(radii: FloatArray) -> FloatArray:

@@ -42,7 +42,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     0.01
     """
     tree: dict[str, Any] = {}
-    if "disc.number_of_discs" in values and "disc.torque_share" not in values:  # as in a drive file
+    even = abs(drive.disc.torque_share * drive.disc.number_of_discs - 1.0) < 1e-12  # not a share of its own
+    if "disc.number_of_discs" in values and "disc.torque_share" not in values and even:  # as in a drive file
         with suppress(ValueError):  # of what is no count: the validation says so
             values = {**values, "disc.torque_share": 1.0 / max(1, check_count(values["disc.number_of_discs"]))}
     arrays: dict[str, list[Any]] = {}

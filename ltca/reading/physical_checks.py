@@ -30,6 +30,11 @@ def find_contradictions(drive: Drive) -> list[str]:
         One sentence each, with field, value, bound and unit; empty for a sound drive.
     """
     problems = list(find_deviation_problems(drive))
+    if drive.disc.number_of_discs == 1 and drive.disc.torque_share != 1.0:
+        problems.append(
+            f"disc.torque_share = {drive.disc.torque_share:g}: must be 1, a single disc (disc.number_of_discs = 1) carries "
+            "the whole torque"
+        )
     problems += _tooth_numbers(drive)
     if problems:
         return problems  # the geometry below needs them

@@ -56,7 +56,9 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "paper": _NAME | {"load.light_torque": "the paper's iteration is walked at full load alone"},
     "hybrid": _NAME | _RIGID_PIN,
     "fe": _NAME | _RIGID_PIN,
-    "curves": _NAME | {"load.light_torque": "curves are those of full load"},
+    "curves": _NAME
+    | {"load.light_torque": "curves are those of full load"}
+    | dict.fromkeys(_RIGID_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
     "studies": _NAME,
     "full FE": _NAME | _RIGID_PIN | {"load.light_torque": "a full solution is one of full load"},
 }

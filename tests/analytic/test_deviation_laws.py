@@ -152,6 +152,7 @@ def test_eccentricity_error_moves_the_mean_and_adds_no_order(paper_cases):
     np.testing.assert_allclose(rotation, rotation[0], rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_vanishing_errors_follow_the_trend_of_each_quantity():
     """Zero-mean errors of size s, drawn with both signs so that odd terms cancel.
 

@@ -16,6 +16,7 @@ import pytest
 import validation.compare.derived_coefficients
 import validation.compare.finite_element_positions
 import validation.levels.flexible_disc
+import validation.report.costs
 import validation.study
 from fem.coefficients.dataset import derive_coefficients
 from validation.commands import validate
@@ -39,6 +40,8 @@ def coarse():
         # These two have tests of their own and do not depend on the run: once is enough.
         for name in ("check_closed_forms", "compare_printed_results"):
             patch.setattr(validation.study, name, once(getattr(validation.study, name)))
+        # Only printed.
+        patch.setattr(validation.report.costs, "POSITIONS", 2)
         patch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 12)
         patch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
         patch.setattr(validation.compare.derived_coefficients, "derive_coefficients", derive)

@@ -136,6 +136,7 @@ def test_refined_values_do_not_hang_on_the_positions(paper_cases, case, position
         assert key == "max_bearing_load_N" or told[f"refined_{key}"] >= told[key]
 
 
+@pytest.mark.slow
 def test_other_engines_are_refined_on_their_own_loads(paper_cases, monkeypatch):
     """Hybrid with C = 0 is the half-space; grids are searched on tables and solved at the places found."""
     monkeypatch.setattr(extremes, "SCANNED", 8)  # quicker, and the same for all

@@ -176,6 +176,7 @@ def coarse_curves(monkeypatch, out, *words):
     return json.loads((out / "curves.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_all_cases_are_there(monkeypatch, tmp_path, capsys, paper_cases):
     """All but the last case given were dropped."""
     kept = coarse_curves(monkeypatch, tmp_path / "all")

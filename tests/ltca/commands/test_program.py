@@ -175,6 +175,7 @@ def test_version(capsys):
     assert capsys.readouterr().out.startswith("cyclo 0.")
 
 
+@pytest.mark.slow
 def test_run_in_a_pipe_is_silent_and_imports_no_finite_elements_and_no_system_libraries(tmp_path):
     code = f"""
 import sys

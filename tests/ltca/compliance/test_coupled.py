@@ -42,6 +42,7 @@ def test_without_coupling_it_is_the_half_space(paper_cases):
         np.testing.assert_allclose(found.pose, expected.pose, atol=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("near_field", ["plane-strain", "half-space"])
 def test_tangent_and_approaches_of_the_real_bodies(paper_cases, derived, near_field):
     drive = paper_cases["CS-3"]
@@ -69,6 +70,7 @@ def test_tangent_and_approaches_of_the_real_bodies(paper_cases, derived, near_fi
     assert np.all(np.abs(overlap - response.flank.approach)[response.pin_load > 0.0] < 5e-3)
 
 
+@pytest.mark.slow
 def test_softer_bodies_wind_up_more_and_share_more(paper_cases, derived):
     drive = paper_cases["CS-1"]
     coefficients = load_coefficients(derived, drive)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
 from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
 
 
 @dataclass(frozen=True)
@@ -179,3 +181,18 @@ def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases):
         alone = HalfSpaceCompliance.of_drive(drive).respond(np.array([0.3]), pose[:1])
         # Tables on a ladder of radii and tables of one drive: their interpolation differs.
         np.testing.assert_allclose(together.pin_load[row], alone.pin_load[0], rtol=2e-3, atol=1e-6)
+
+
+@pytest.mark.slow
+def test_radii_between_samples_and_on_other_lobes_are_in_the_table_of_crowned_pins():
+    """A crowned pin at the sharpest place of a flank was "asked for 2.85237" mm of a table from 2.85238 mm on."""
+    drive = load_drive(Path(__file__).parents[2] / "contract" / "drive.toml").cases["nominal"]
+    drive = with_fields(drive, {"pin_wheel.pin_profile.crown_drop": 0.001})
+    for model in (HalfSpaceCompliance.of_drive(drive), HalfSpaceCompliance.of_drives([drive, drive], 1)):
+        profile = (
+            model.geometry.profile.take(np.array([0])) if model.geometry.placement.is_batch else model.geometry.profile
+        )
+        turn = np.linspace(0.0, 2.0 * np.pi, 60_001)[None]
+        radii = model.geometry.placement.wheel_pin_radii
+        for radius in (radii.min(), radii.max()):
+            model.pin_law.load_and_stiffness(1e-3, profile.effective_radius(turn, radius))

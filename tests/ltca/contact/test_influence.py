@@ -49,6 +49,7 @@ def test_mean_coefficients_match_love_averaged_by_quadrature(slenderness):
     step = np.linspace(0.0, 1.0, 13)
     edges = slenderness / 2 * (1 - (1 - step) ** 3)
     found = lagged_influence(width, 24, edges, mirrored=False)
+    nodes, weights = np.polynomial.legendre.leggauss(48)
     generator = np.random.default_rng(7)
     for _ in range(60):
         lag = int(generator.integers(24))
@@ -58,7 +59,6 @@ def test_mean_coefficients_match_love_averaged_by_quadrature(slenderness):
 
         def across(y, lag=lag, send_half=send_half, send_centre=send_centre):
             # receiving points over x: Gauss on both halves, whose ends are where the kernel has its kinks
-            nodes, weights = np.polynomial.legendre.leggauss(48)
             x = np.concatenate([(nodes - 1) / 4, (nodes + 1) / 4]) * width + lag * width
             values = love_displacement(x, y - send_centre, width / 2, send_half)
             return float(np.concatenate([weights, weights]) @ values) * width / 4

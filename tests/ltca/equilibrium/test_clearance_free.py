@@ -30,7 +30,7 @@ def _differences(drive, angle, torque):
 @pytest.mark.parametrize(
     "drive",
     [
-        pytest.param(PAPER["CS-1"], id="paper"),
+        pytest.param(PAPER["CS-1"], id="paper", marks=pytest.mark.slow),
         pytest.param(WITHOUT_OFFSETS, id="no offsets", marks=pytest.mark.slow),
     ],
 )

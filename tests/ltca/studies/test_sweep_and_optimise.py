@@ -161,6 +161,7 @@ def test_limit_is_kept_and_met(drive):
         )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_pareto_front_is_the_line_between_the_optima(drive):
     problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load"), limits=())
     found = search(problem, quadratic, seed=1, generations=45)
@@ -279,4 +280,9 @@ def test_wrong_options_are_refused(tmp_path):
 def test_replacing_fields_keeps_the_rest(drive):
     changed = with_fields(drive, {"disc.number_of_discs": 2})
     assert changed.disc.torque_share == 0.5
+    # A share that somebody gave stays; a sweep over the number of discs replaced it by 1/n.
+    uneven = with_fields(changed, {"disc.torque_share": 0.6})
+    assert with_fields(uneven, {"disc.number_of_discs": 3}).disc.torque_share == 0.6
+    with pytest.raises(DriveError, match=r"disc\.torque_share = 0\.6: must be 1, a single disc"):
+        with_fields(uneven, {"disc.number_of_discs": 1})
     assert changed.pin_wheel is drive.pin_wheel or changed.pin_wheel == drive.pin_wheel

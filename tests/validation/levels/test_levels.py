@@ -92,6 +92,7 @@ def test_printed_figures_and_their_ranges_stay_what_they_are(printed_rows):
         assert (row.value > 0.0, row.difference) == (True, 0.0)
 
 
+@pytest.mark.slow
 def test_a_wrong_drive_fails_the_printed_results(monkeypatch, paper_cases):
     """With the bearing clearance read as radial (twice as much) the printed changes are not met."""
     from dataclasses import replace

@@ -165,6 +165,7 @@ def test_our_side_is_computed_beside_kept_answers(echo, tmp_path, monkeypatch):
     assert len(echo) == 1
 
 
+@pytest.mark.slow
 def test_a_code_that_fails_is_one_error(monkeypatch):
     only(monkeypatch, "CalculiX", installed=lambda: True, ours=dict)
     monkeypatch.setenv("PATH", "/nowhere")  # found here, gone in the process that runs it
