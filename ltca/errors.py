@@ -1,9 +1,13 @@
-"""Errors the suite raises on purpose; the command line turns them into one message and exit status 2."""
+"""Errors the suite raises on purpose; the command line turns them into one message and an exit status."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from typing import Any, ClassVar
+
+MOST_TOLD = 10
+"""Mistakes that are told one by one; of more there is a count."""
 
 
 class CycloError(Exception):
@@ -22,16 +26,21 @@ class DriveError(CycloError):
         One complete sentence per mistake: field, value, bound and unit.
     source : str, optional
         Where the definition came from (a file name).
+    beside : str, optional
+        What was not looked at.
     """
 
-    def __init__(self, problems: Sequence[str], source: str = "") -> None:
-        self.problems = tuple(problems)
+    def __init__(self, problems: Sequence[str], source: str = "", beside: str = "") -> None:
+        self.problems = tuple(dict.fromkeys(printable(problem) for problem in problems))
         self.source = source
-        head = f"{source}: " if source else ""
-        if len(self.problems) == 1:
-            text = head + self.problems[0]
+        head = f"{printable(source)}: " if source else ""
+        count = len(self.problems)
+        if count == 1:
+            text = head + self.problems[0] + (f" ({beside})" if beside else "")
         else:
-            text = f"{head}{len(self.problems)} mistakes\n" + "\n".join(f"  {p}" for p in self.problems)
+            told = f"{count} mistakes" if count <= MOST_TOLD else f"{count} mistakes, the first {MOST_TOLD}"
+            told += f" ({beside})" if beside else ""
+            text = f"{head}{told}\n" + "\n".join(f"  {problem}" for problem in self.problems[:MOST_TOLD])
         super().__init__(text)
 
 
@@ -60,7 +69,68 @@ class ConvergenceError(CycloError):
         The residual after each iteration, in the unit the message states.
     """
 
+    exit_status = 1
+
     def __init__(self, message: str, history: Sequence[float] = ()) -> None:
         self.history = tuple(float(value) for value in history)
         tail = ", ".join(f"{value:.3g}" for value in self.history[-8:])
         super().__init__(f"{message}; last residuals: {tail}" if tail else message)
+
+
+def shortened(value: Any, most: int = 60) -> str:
+    """Return a value as it is written, cut when it is long; texts in quotes, without control characters.
+
+    Examples
+    --------
+    >>> shortened("a\\nb"), shortened(4.5)
+    ("'a\\\\nb'", '4.5')
+    """
+    try:
+        text = repr(value[: most + 1]) if isinstance(value, str) else str(value)
+    except (ValueError, RecursionError):  # whole numbers of thousands of digits, tables in tables
+        text = f"a {type(value).__name__} too long to print"
+    text = printable(text)
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def printable(text: str) -> str:
+    """Return a text without control characters, which would act on the terminal; lines are kept apart by a space."""
+    if text.isprintable():
+        return text
+    return "".join(sign if sign.isprintable() else " " if sign.isspace() else "\ufffd" for sign in text)
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return a question after the name that was meant, with a space before it, or nothing when none is near.
+
+    Examples
+    --------
+    >>> did_you_mean("pin_radus", ["pin_radius", "hole_radius"])
+    '; did you mean `pin_radius`?'
+    """
+    found = nearest(name, known)
+    return f"; did you mean `{found}`?" if found else ""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return the known name nearest to one that is not known, empty when none is near."""
+    return _nearest(name[:80].casefold(), tuple(known))
+
+
+@lru_cache(maxsize=4096)
+def _nearest(name: str, known: tuple[str, ...]) -> str:
+    from difflib import get_close_matches
+
+    if not known:
+        return ""
+    spelled = {text.casefold(): text for text in known}
+    swapped = [text for text in spelled if sorted(text) == sorted(name)]
+    found = swapped or get_close_matches(name, spelled, n=1, cutoff=0.8 if len(name) < 5 else 0.7)
+    # CS-9 is no misspelt CS-6: another number is another thing.
+    if not found or (found[0] != name and _letters(found[0]) == _letters(name)):
+        return ""
+    return spelled[found[0]]
+
+
+def _letters(name: str) -> str:
+    return "".join(sign for sign in name if not sign.isdigit())

@@ -29,6 +29,11 @@ FEM_MAY_IMPORT = (
 LIGHT_COMMANDS = {
     "dataclasses",
     "ltca.errors",
+    "ltca.reading.arguments",
+    "ltca.output.terminal",
+    "shlex",
+    "traceback",
+    "warnings",
     "sys",
     "os",
     "re",

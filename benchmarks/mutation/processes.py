@@ -23,7 +23,7 @@ from typing import Any
 WARM = (
     "numpy", "numpy.testing", "scipy.linalg", "scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.optimize",
     "scipy.interpolate", "scipy.integrate", "scipy.special", "scipy.stats", "scipy.spatial", "skfem", "meshio", "xarray",
-    "h5netcdf", "h5py", "pydantic", "pint", "threadpoolctl", "jinja2", "rich.progress", "matplotlib.figure",
+    "h5netcdf", "h5py", "pydantic", "threadpoolctl", "jinja2", "rich.progress", "matplotlib.figure",
     "pytest", "hypothesis",
 )  # fmt: skip
 MEMORY = 8 * 2**30

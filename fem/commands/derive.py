@@ -7,6 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.errors import CycloError
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_size_argument,
+    default_folder,
+    quantity_argument,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -16,23 +23,22 @@ if TYPE_CHECKING:
 
 SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
 # Options that say how to derive, and their defaults.
-DERIVING = {"stations": 1.0, "size": 1.0, "plane": "strain", "without_clearance": False, "out": "coefficients.nc"}
+DERIVING = {"stations": 1.0, "size": 1.0, "plane": "strain", "without_clearance": False, "out": None}
+COEFFICIENTS = "coefficients.nc"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", nargs="?", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
-    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
+    add_drive_argument(parser, optional=True)
+    add_case_argument(parser, "case; default the first", several=False)
     parser.add_argument(
         "--stations",
-        type=float,
+        type=quantity_argument("--stations", "dimensionless", ge=1e-2, le=1e2),
         default=1.0,
         metavar="N",
-        help="number of stations as a multiple of the default (32 for each lobe, 48 on the bore, 24 on each hole)",
+        help="number of stations as a multiple of the default (32 for each lobe, 48 on the bore, 24 on each hole); default 1",
     )
-    parser.add_argument(
-        "--size", type=float, default=1.0, metavar="S", help="element edge as a multiple of the default; 0.5 halves it"
-    )
+    add_size_argument(parser, "element edge as a multiple of the default")
     parser.add_argument(
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
     )
@@ -42,7 +48,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="leave the clearances of the case out, so that one file serves all clearance cases about alike (up to 2 %% of "
         "the pressures); it says so, and so does a run with it",
     )
-    parser.add_argument("--out", metavar="FILE", default="coefficients.nc", help="file (default: coefficients.nc)")
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        type=Path,
+        help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}",
+    )
     parser.add_argument(
         "--check",
         metavar="FILE",
@@ -73,14 +84,16 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_file
     from ltca.reading.drive_file import load_drive
 
-    out = Path(arguments.out)
     file = load_drive(arguments.drive)
+    out = Path(arguments.out or default_folder(file.name, "derive") / COEFFICIENTS)
+    if out.is_dir():
+        raise CycloError(f"--out {out}: is a folder, not a file")
     case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
     with claimed_file(out, "derive"):
-        return _derive(case, drive, arguments, out)
+        return _derive(file.name, case, drive, arguments, out)
 
 
-def _derive(case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> int:
+def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> int:
     import time
 
     from fem.coefficients.dataset import derive_coefficients
@@ -104,7 +117,7 @@ def _derive(case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -
     checks = check_coefficients(written)
     attributes = written.attrs
     print(
-        f"{written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
+        f"{name} {case}: {written.sizes['station']} stations, {attributes['unknowns_disc']:,} unknowns of the disc, plane "
         f"{attributes['plane']}, {time.perf_counter() - start:.1f} s"
     )
     left_out = ", those of the case left out" if attributes["clearances_left_out"] else ""

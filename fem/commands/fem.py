@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import (
     add_position_arguments,
-    check_position_arguments,
     chosen_drive,
     output_folder,
 )
-from ltca.errors import CycloError
+from ltca.reading.arguments import add_out_argument, torque_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +25,12 @@ SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_position_arguments(parser)
-    parser.add_argument("--torque", type=float, metavar="T", help="output torque, N·mm (default: the drive's own)")
+    parser.add_argument(
+        "--torque",
+        metavar="T",
+        type=torque_argument,
+        help="output torque in N·mm (or a text such as '377.3 N m'); default that of the drive",
+    )
     parser.add_argument(
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
     )
@@ -38,7 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="mesh the disc's walls for the stress along them: within 1 %% of the largest instead of 3.4 %%",
     )
-    parser.add_argument("--out", metavar="DIR", default="fem", help="folder for the files (default: fem)")
+    add_out_argument(parser, "fem")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
     parser.add_argument(
         "--export", choices=("calculix",), help="write a complete input deck of the same problem for another code"
@@ -63,18 +67,16 @@ def execute(arguments: argparse.Namespace) -> int:
     """
     from ltca.output.run_folder import claimed_folder
 
-    check_position_arguments(arguments)
-    _check_torque(arguments.torque)
-    out = output_folder(arguments)
     referee = _referee(arguments.referee)
     name, case, drive = chosen_drive(arguments)
+    out = output_folder(arguments, name, "fem")
     with claimed_folder(out, "fem"):
-        _solve_and_write(f"{name}, {case}, {arguments.angle:g} rad", case, drive, arguments, out, referee)
+        _solve_and_write(name, case, drive, arguments, out, referee)
     return 0
 
 
 def _solve_and_write(
-    title: str,
+    name: str,
     case: str,
     drive: Drive,
     arguments: argparse.Namespace,
@@ -86,6 +88,7 @@ def _solve_and_write(
     from fem.drive.solution_files import write_solution
     from ltca.output.progress import steps
 
+    title = f"{name}, {case}, {arguments.angle:g} rad"
     with steps() as show:
         solution = solve_drive(
             drive,
@@ -100,6 +103,10 @@ def _solve_and_write(
         show("files")
         fields = recover_fields(solution.model, solution.state, state=arguments.plane)
         write_solution(solution, fields, case, out)
+    load = drive.load_words(arguments.torque)
+    print(
+        f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
+    )
     _print_contacts(solution)
     if not arguments.no_pictures:
         from fem.pictures.solution_pictures import draw_solution
@@ -114,13 +121,6 @@ def _solve_and_write(
     if referee:
         referee(solution, out)
     print(f"written to {out}")
-
-
-def _check_torque(torque: float | None) -> None:
-    import math
-
-    if torque is not None and not (math.isfinite(torque) and torque > 0.0):
-        raise CycloError(f"--torque {torque:g}: must be a finite number greater than 0 (N·mm)")
 
 
 def _print_contacts(solution: FullSolution) -> None:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import (
     add_position_arguments,
-    check_position_arguments,
     chosen_drive,
     output_folder,
 )
+from ltca.reading.arguments import add_out_argument, count_argument
 
 if TYPE_CHECKING:
     from fem.drive.expected_contacts import ExpectedContacts
@@ -26,8 +26,14 @@ SUMMARY: str = "mesh the bodies of a drive for the contacts expected at a crank 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_position_arguments(parser)
-    parser.add_argument("--order", type=int, choices=(1, 2), default=2, help="1 straight, 2 curved triangles (default)")
-    parser.add_argument("--out", metavar="DIR", default="mesh", help="folder for the files (default: mesh)")
+    parser.add_argument(
+        "--order",
+        type=count_argument("--order", 1, 2),
+        choices=(1, 2),
+        default=2,
+        help="1 straight, 2 curved triangles; default 2",
+    )
+    add_out_argument(parser, "mesh")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -46,14 +52,13 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     name, case, drive = chosen_drive(arguments)
-    check_position_arguments(arguments)
-    out = output_folder(arguments)
+    out = output_folder(arguments, name, "mesh")
     with claimed_folder(out, "mesh"):
-        _mesh_and_write(f"{name}, {case}, crank angle {arguments.angle:g} rad", drive, arguments, out)
+        _mesh_and_write(name, case, drive, arguments, out)
     return 0
 
 
-def _mesh_and_write(title: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
+def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
     import time
 
     from fem.drive.expected_contacts import expect_contacts
@@ -61,9 +66,12 @@ def _mesh_and_write(title: str, drive: Drive, arguments: argparse.Namespace, out
     from fem.mesh.quality import measure_quality
     from fem.shapes import DriveShapes
 
+    title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
+
     def report(body: BodyMesh) -> None:
         print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
 
+    print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     start = time.perf_counter()
     contacts = expect_contacts(drive, arguments.angle)
     shapes = DriveShapes.of_drive(drive)

@@ -7,6 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.errors import CycloError
+from ltca.reading.arguments import (
+    add_angle_argument,
+    add_case_argument,
+    add_drive_argument,
+    add_size_argument,
+    default_folder,
+)
 
 if TYPE_CHECKING:
     from ltca.drive.parts import Drive
@@ -14,38 +21,15 @@ if TYPE_CHECKING:
 
 def add_drive_arguments(parser: argparse.ArgumentParser) -> None:
     """Add drive file and case."""
-    parser.add_argument("drive", help="drive file (TOML), or 'paper' for the drive that ships with cyclo")
-    parser.add_argument("--case", metavar="NAME", help="case of the drive file; its first one by default")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case; default the first", several=False)
 
 
 def add_position_arguments(parser: argparse.ArgumentParser) -> None:
     """Add drive file, case, crank angle and element edge."""
     add_drive_arguments(parser)
-    parser.add_argument("--angle", type=float, default=0.0, metavar="PHI", help="crank angle, rad (default 0)")
-    parser.add_argument(
-        "--size",
-        type=float,
-        default=1.0,
-        metavar="S",
-        help="element edge as a multiple of the default of 8 elements for each contact half-width; 0.5 halves it",
-    )
-
-
-def check_position_arguments(arguments: argparse.Namespace) -> None:
-    """Refuse a crank angle or an element edge that is none.
-
-    Raises
-    ------
-    CycloError
-        Naming the argument.
-    """
-    import math
-
-    angle, size = arguments.angle, arguments.size
-    if not math.isfinite(angle):
-        raise CycloError(f"--angle {angle:g}: must be a finite number (rad)")
-    if not (math.isfinite(size) and size > 0.0):
-        raise CycloError(f"--size {size:g}: must be a finite number greater than 0 (a multiple of the default edge)")
+    add_angle_argument(parser)
+    add_size_argument(parser, "element edge as a multiple of the default of 8 elements for each contact half-width")
 
 
 def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
@@ -63,15 +47,22 @@ def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
     return file.name, case, drive
 
 
-def output_folder(arguments: argparse.Namespace) -> Path:
-    """Return the folder of ``--out``; it need not be there yet.
+def output_folder(arguments: argparse.Namespace, name: str, command: str) -> Path:
+    """Return the folder of ``--out``, or the default one of a command; it need not be there yet.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With ``out``.
+    name, command : str
+        Of the drive and of the command.
 
     Raises
     ------
     CycloError
         When there is a file in its place.
     """
-    out = Path(arguments.out)
+    out = Path(arguments.out or default_folder(name, command))
     if out.exists() and not out.is_dir():
         raise CycloError(f"--out {out}: is a file, not a folder")
     return out

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fem.contact.hertz import hertz_half_width
 from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
@@ -234,6 +235,7 @@ def _refuse_wheel_axis(drive: Drive) -> None:
         )
 
 
+@names_unit_mistakes
 def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = None) -> ExpectedContacts:
     """Guess places, loads and half-widths of all contacts at a crank angle.
 

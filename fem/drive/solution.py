@@ -31,6 +31,7 @@ from fem.mesh.triangulation import estimate_unknowns
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
 
 FloatArray = NDArray[np.float64]
@@ -147,6 +148,7 @@ class _Stopwatch:
         self._last = now
 
 
+@names_unit_mistakes
 def solve_drive(
     drive: Drive,
     crank_angle: float,

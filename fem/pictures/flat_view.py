@@ -31,6 +31,17 @@ def open_plotter(**options: Any) -> Any:
     return pyvista.Plotter(off_screen=True, **options)
 
 
+def plain_text(text: str) -> str:
+    """Return a text as VTK takes it: what stands between dollar signs is no formula to it.
+
+    Parameters
+    ----------
+    text : str
+        Title with names of the user's.
+    """
+    return text.replace("$", "\\$")
+
+
 def flat_surface(points: ComplexArray, faces: IntArray) -> pyvista.PolyData:
     """Return a surface of polygons at height 0.
 

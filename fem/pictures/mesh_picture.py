@@ -20,6 +20,7 @@ from fem.pictures.flat_view import (
     look_down,
     may_show,
     open_plotter,
+    plain_text,
 )
 from fem.pictures.offscreen import rendering_problem
 from fem.shapes import CircleShape
@@ -177,7 +178,7 @@ def _draw_with_pyvista(
         plotter.set_background("white")
         for mesh, colour in layers:
             plotter.add_mesh(mesh, color=colour, lighting=False, line_width=1)
-        plotter.add_text(zoom.title, font_size=10, color="black", position="upper_edge")
+        plotter.add_text(plain_text(zoom.title), font_size=10, color="black", position="upper_edge")
         look_down(plotter, zoom.centre, zoom.half_side, 10.0)
     plotter.screenshot(str(path))
     plotter.close()
@@ -213,7 +214,7 @@ def _draw_with_matplotlib(
             fill, line = COLOURS["shaft_pin"]
             axes.fill(circle.real, circle.imag, facecolor=fill, edgecolor=line, linewidth=1.0)
         axes.set_aspect("equal")
-        axes.set_title(title if window is None else window.title)
+        axes.set_title(title if window is None else window.title, parse_math=False)
         if window is None:
             axes.autoscale_view()
         else:

@@ -17,6 +17,7 @@ from fem.pictures.flat_view import (
     look_down,
     may_show,
     open_plotter,
+    plain_text,
 )
 from fem.pictures.offscreen import rendering_problem
 from ltca.output.files import whole_file
@@ -179,7 +180,7 @@ def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None
         for item in panel.lines:
             lines = flat_lines(item.points, 0.01 * panel.half_side)
             plotter.add_mesh(lines, color=item.colour, lighting=False, line_width=item.width)
-        plotter.add_text(panel.title, font_size=11, color="black", position="upper_edge")
+        plotter.add_text(plain_text(panel.title), font_size=11, color="black", position="upper_edge")
         look_down(plotter, panel.centre, panel.half_side, 10.0 * panel.half_side)
     plotter.screenshot(str(path))
     plotter.close()
@@ -216,7 +217,8 @@ def _render_with_matplotlib(path: Path, panels: Sequence[Panel], side: int) -> N
         axes.set_aspect("equal")
         axes.set_xlim(panel.centre.real - panel.half_side, panel.centre.real + panel.half_side)
         axes.set_ylim(panel.centre.imag - panel.half_side, panel.centre.imag + panel.half_side)
-        axes.set(title=panel.title, xlabel="x, mm", ylabel="y, mm")
+        axes.set(xlabel="x, mm", ylabel="y, mm")
+        axes.set_title(panel.title, parse_math=False)
     figure.savefig(path, dpi=100.0)
 
 

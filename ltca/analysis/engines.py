@@ -25,7 +25,7 @@ from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
-from ltca.errors import DriveError
+from ltca.errors import DriveError, did_you_mean, shortened
 
 FloatArray = NDArray[np.float64]
 
@@ -256,6 +256,21 @@ class Hybrid(_Coupled):
     compliance: ClassVar[Compliance] = "hybrid"
 
 
+def describe_engine(engine: Engine) -> str:
+    """Return what an engine is, for the heading of a table.
+
+    Examples
+    --------
+    >>> describe_engine(HalfSpace()), describe_engine(Hybrid(hole_near_field=False))
+    ('half-space (tables)', 'hybrid (no hole near field)')
+    """
+    options = engine.options
+    told = [options["method"]] if options["compliance"] == "half-space" else []
+    told += [options["contacts"]] if options["contacts"] not in ("tables", *told) else []
+    told += ["no hole near field"] if options.get("hole_near_field") == "no" else []
+    return options["compliance"] + (f" ({', '.join(told)})" if told else "")
+
+
 def engine_named(
     compliance: str | Engine = "half-space",
     *,
@@ -320,4 +335,7 @@ def _listed(names: Any) -> str:
 
 def _check_name(option: str, name: Any, known: tuple[str, ...]) -> None:
     if name not in known:
-        raise DriveError([f"{option} = {name!r}: is unknown; must be one of {', '.join(map(repr, known))}"])
+        meant = did_you_mean(name, known) if isinstance(name, str) else ""
+        raise DriveError(
+            [f"{option} = {shortened(name)}: is unknown; must be one of {', '.join(map(repr, known))}{meant}"]
+        )

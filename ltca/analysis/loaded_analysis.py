@@ -13,6 +13,8 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
+from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.drive.unit_table import range_of
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError
 from ltca.frozen_arrays import freeze
@@ -57,6 +59,7 @@ class LoadedAnalysis:
     wall_stresses: WallStresses | None
 
 
+@names_unit_mistakes
 def analyse(
     drive: Drive, crank_angle: FloatArray, torque: float | None = None, engine: Engine | None = None
 ) -> LoadedAnalysis:
@@ -139,6 +142,9 @@ def check_positions(crank_angle: FloatArray) -> FloatArray:
         raise DriveError([f"crank_angle has the shape {angle.shape}: must be one row of at least one angle in rad"])
     if not np.all(np.isfinite(angle)):
         raise DriveError([f"crank_angle holds {angle[~np.isfinite(angle)][0]:g}: must be finite, in rad"])
+    largest = range_of("rad")[1]
+    if np.max(np.abs(angle)) > largest:
+        raise DriveError([f"crank_angle holds {np.max(np.abs(angle)):g}: must be at most {largest:g} rad in size"])
     return angle
 
 
@@ -154,6 +160,13 @@ def check_torque(drive: Drive, torque: float | None) -> float:
         return drive.load.torque
     if isinstance(torque, bool) or not isinstance(torque, int | float | np.number):
         raise DriveError([f"torque = {torque!r}: must be a number in N·mm"])
-    if not (np.isfinite(torque) and torque > 0.0):
-        raise DriveError([f"torque = {torque:g}: must be finite and greater than 0 N·mm (load.direction turns it)"])
-    return float(torque)
+    smallest, largest = range_of("N*mm")
+    try:
+        number = float(torque)
+    except OverflowError:
+        number = np.inf
+    if not (np.isfinite(number) and number > 0.0):
+        raise DriveError([f"torque = {number:g}: must be finite and greater than 0 N·mm (load.direction turns it)"])
+    if not smallest <= number <= largest:
+        raise DriveError([f"torque = {number:g}: must be from {smallest:g} to {largest:g} N·mm"])
+    return number

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
+from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.geometry.pairs import WHEEL_ANGLE
 
@@ -56,6 +57,7 @@ class TorqueCurve:
     stiffness: FloatArray
 
 
+@names_unit_mistakes
 def torque_curve(
     drive: Drive,
     crank_angle: FloatArray,

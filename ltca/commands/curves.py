@@ -7,6 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+    quantity_argument,
+)
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
@@ -25,16 +33,35 @@ HARMONICS = 7
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", action="append", metavar="NAME", help="case, repeatable; default all")
-    parser.add_argument("--turns", metavar="N", type=int, help="crank turns behind the orders; default z_P")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case, repeatable; default all")
     parser.add_argument(
-        "--pressure-limit", metavar="P", default="1500", help="permissible flank pressure in MPa; default 1500"
+        "--turns",
+        metavar="N",
+        type=count_argument("--turns", 1, 1000),
+        help="crank turns behind the orders; default z_P",
     )
-    parser.add_argument("--speed", metavar="N", type=float, help="crank speed in turns a minute, for the life in hours")
-    parser.add_argument("--load-rating", metavar="C", help="dynamic load rating of the crank bearing in N; by ISO 281")
+    parser.add_argument(
+        "--pressure-limit",
+        metavar="P",
+        type=quantity_argument("--pressure-limit", "MPa", gt=0.0),
+        default=1500.0,
+        help="permissible flank pressure in MPa (or a text such as '1.5 GPa'); default 1500",
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="N",
+        type=quantity_argument("--speed", "rpm", gt=0.0),
+        help="crank speed in turns a minute (or a text such as '1500 rpm'), for the life in hours",
+    )
+    parser.add_argument(
+        "--load-rating",
+        metavar="C",
+        type=quantity_argument("--load-rating", "N", gt=0.0),
+        help="dynamic load rating of the crank bearing in N (or a text such as '40 kN'); default by ISO 281",
+    )
     add_compliance_arguments(parser)
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>_curves")
+    add_out_argument(parser, "curves")
     parser.add_argument("--no-figures", action="store_true", help="write curves.json only")
 
 
@@ -96,12 +123,13 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
-    limits, engine = _limits(arguments), compliance_of(arguments)
+    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
+    engine = compliance_of(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
-    out = arguments.out or Path("out") / f"{file.name}_curves"
+    out = arguments.out or default_folder(file.name, "curves")
     for drive in cases.values():
-        turns = _turns(arguments.turns, drive)
+        turns = arguments.turns or drive.pin_wheel.number_of_pins
         require_room_for([drive], turns * POSITIONS_PER_TURN, out, f"--turns {turns}")
     with claimed_folder(out, "curves"):
         find_coefficients_of(cases, arguments)
@@ -118,7 +146,7 @@ def _solve_and_write(
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
             title = f"{file} {name}"
-            found = _solve(drive, _turns(arguments.turns, drive), limits, engine)
+            found = _solve(drive, arguments.turns or drive.pin_wheel.number_of_pins, limits, engine)
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, limits)
             if not arguments.no_figures:
@@ -130,30 +158,6 @@ def _solve_and_write(
     write_json(out / "curves.json", {"drive": file, "cases": contents} if others else first)
     print(f"results: {out / 'curves.json'}")
     return 0
-
-
-def _limits(arguments: argparse.Namespace) -> Limits:
-    from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError
-
-    limit = parse_quantity(arguments.pressure_limit, "MPa", "--pressure-limit")
-    if limit <= 0.0:
-        raise DriveError([f"--pressure-limit = {limit:g}: must be greater than 0 MPa"])
-    rating = None if arguments.load_rating is None else parse_quantity(arguments.load_rating, "N", "--load-rating")
-    if rating is not None and rating <= 0.0:
-        raise DriveError([f"--load-rating = {rating:g}: must be greater than 0 N"])
-    if arguments.speed is not None and not arguments.speed > 0.0:
-        raise DriveError([f"--speed = {arguments.speed:g}: must be greater than 0 turns a minute"])
-    return Limits(pressure=limit, load_rating=rating, speed=arguments.speed)
-
-
-def _turns(asked: int | None, drive: Drive) -> int:
-    from ltca.errors import DriveError
-
-    turns = drive.pin_wheel.number_of_pins if asked is None else asked
-    if not 1 <= turns <= 1000:
-        raise DriveError([f"--turns = {turns}: must be from 1 to 1000"])
-    return turns
 
 
 def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurves:
@@ -205,12 +209,15 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
 def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: Limits) -> None:
     import numpy as np
 
+    from ltca.analysis.engines import describe_engine
     from ltca.drive.units import ARCMIN, ARCSEC
 
     curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
     discs = "" if drive.disc.torque_share == 1.0 else f", a disc carries {drive.disc.torque_share:g} of the torque"
     over = f"over {found.turns} turns, {found.crank_angle.size} positions"
-    print(f"{title}, {engine.compliance}: torque curve at {ANGLES} crank angles over one mesh{discs}")
+    print(
+        f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh{discs}"
+    )
     print(f"  backlash at the wheel, disc floating      {_range(curve.backlash * ARCMIN)}′")
     print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
     print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shlex
 from pathlib import Path
 
 SUMMARY = "write a commented copy of the paper's drive to start from"
@@ -17,15 +18,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the file."""
-    from ltca.errors import CycloError
+    from ltca.drive.names import NAMING, names_a_file
+    from ltca.errors import CycloError, DriveError, shortened
     from ltca.output.files import whole_file
     from ltca.reading.drive_file import shipped_drive
 
     path = Path(arguments.file)
+    if not names_a_file(path.stem):
+        raise DriveError([f"{shortened(str(path))}: the drive is named after the file, and its name {NAMING}"])
     if path.exists() and not arguments.force:
         raise CycloError(f"{path}: exists already; --force overwrites it")
     text = shipped_drive().replace('name = "paper"', f"name = {json.dumps(path.stem, ensure_ascii=False)}", 1)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")
-    print(f"{path}: written; 'cyclo show {path}' checks it, 'cyclo run {path}' analyses it")
+    word = shlex.quote(str(path))
+    print(f"{path}: written; 'cyclo show {word}' checks it, 'cyclo run {word}' analyses it")
     return 0

@@ -7,6 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.commands.study_arguments import add_positions_argument, add_seed_argument
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+)
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
@@ -18,8 +26,8 @@ SUMMARY = "vary fields of a drive for the least of one quantity, or the Pareto f
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", metavar="NAME", help="case to start from; default the first")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case to start from; default the first", several=False)
     parser.add_argument(
         "--vary",
         metavar="FIELD[=LOW:HIGH]",
@@ -31,13 +39,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--subject", metavar="LIMIT", action="append", default=[], help="'quantity <= value unit', repeatable"
     )
+    add_positions_argument(parser, "candidate")
     parser.add_argument(
-        "--positions", metavar="M", type=int, default=28, help="crank angles 2πk/M of every candidate; default 28"
+        "--generations",
+        metavar="G",
+        type=count_argument("--generations", 1, 10_000),
+        default=40,
+        help="of the search; default 40",
     )
-    parser.add_argument("--generations", metavar="G", type=int, default=40, help="of the search; default 40")
-    parser.add_argument("--seed", metavar="S", type=int, default=0, help="of the random numbers; default 0")
+    add_seed_argument(parser)
     add_compliance_arguments(parser)
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>_optimum")
+    add_out_argument(parser, "optimise")
     parser.add_argument("--no-figures", action="store_true", help="write the drive and the candidates only")
 
 
@@ -47,13 +59,16 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     engine = compliance_of(arguments)
-    name, problem = _problem(arguments)
-    out = arguments.out or Path("out") / f"{name}_optimum"
+    name, case, problem = _problem(arguments)
+    out = arguments.out or default_folder(name, "optimise")
     with claimed_folder(out, "optimise"):
-        return _search_and_write(problem, engine, arguments, out)
+        return _search_and_write(problem, name, case, engine, arguments, out)
 
 
-def _search_and_write(problem: Problem, engine: Engine, arguments: argparse.Namespace, out: Path) -> int:
+def _search_and_write(
+    problem: Problem, name: str, case: str, engine: Engine, arguments: argparse.Namespace, out: Path
+) -> int:
+    from ltca.analysis.engines import describe_engine
     from ltca.output.files import whole_file, write_json
     from ltca.output.progress import progress
     from ltca.reading.writing import drive_text
@@ -75,6 +90,7 @@ def _search_and_write(problem: Problem, engine: Engine, arguments: argparse.Name
         part.write_text(drive_text(best), encoding="utf-8")
     _write_candidates(optimum, out / "candidates.parquet")
     write_json(out / "optimum.json", _outcome(optimum, fine, engine, arguments.positions))
+    print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
     _print(optimum, fine, arguments.positions)
     print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
     if not arguments.no_figures:
@@ -84,31 +100,31 @@ def _search_and_write(problem: Problem, engine: Engine, arguments: argparse.Name
     return 0
 
 
-def _problem(arguments: argparse.Namespace) -> tuple[str, Problem]:
-    """Name of the drive file, and what is asked of its case."""
-    from ltca.errors import DriveError
+def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
+    """Name of the drive file, of the case, and what is asked of it."""
+    from ltca.errors import DriveError, did_you_mean, shortened
     from ltca.reading.drive_file import load_drive
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
-    for name, value, bound in (
-        ("--positions", arguments.positions, 100_000),
-        ("--generations", arguments.generations, 10_000),
-    ):
-        if not 1 <= value <= bound:
-            raise DriveError([f"{name} = {value}: must be from 1 to {bound}"])
     aims = tuple(dict.fromkeys(arguments.minimise))
     unknown = [aim for aim in aims if aim not in QUANTITIES]
     if unknown or len(aims) > 2:
-        raise DriveError([f"--minimise {' '.join(aims)}: give one or two of {', '.join(QUANTITIES)}"])
+        meant = did_you_mean(unknown[0], QUANTITIES) if unknown else ""
+        told = shortened(" ".join(aims))[1:-1]
+        raise DriveError([f"--minimise {told}: give one or two of {', '.join(QUANTITIES)}{meant}"])
     file = load_drive(arguments.drive)
     case = arguments.case or next(iter(file.cases))
     drive = file.select([case])[case]
-    return file.name, Problem(
-        drive=drive,
-        variables=tuple(parse_variable(text, drive) for text in arguments.vary),
-        aims=aims,
-        limits=tuple(parse_limit(text) for text in arguments.subject),
+    return (
+        file.name,
+        case,
+        Problem(
+            drive=drive,
+            variables=tuple(parse_variable(text, drive) for text in arguments.vary),
+            aims=aims,
+            limits=tuple(parse_limit(text) for text in arguments.subject),
+        ),
     )
 
 

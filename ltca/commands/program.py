@@ -10,22 +10,50 @@ import argparse
 import os
 import re
 import sys
+import traceback
+import warnings
 from collections.abc import Sequence
 from importlib.metadata import entry_points, version
-from typing import Any
+from typing import Any, NoReturn
 
-from ltca.errors import CycloError
+from ltca.errors import CycloError, did_you_mean, printable
+from ltca.output.terminal import prepare_streams
 
 GROUP = "cyclo.commands"
 ORDER = ("run", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
+USAGE_ERROR, FAULT = 2, 1
+DEBUG = "--debug"
 
 
 class _Parser(argparse.ArgumentParser):
-    """Parser that takes -1e-3 for a negative number, not for an option."""
+    """Parser that takes -1e-3 and -20deg for quantities, says what was meant, and tells every mistake in one line."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+        self._negative_number_matcher = re.compile(r"^-\.?\d")
+        self.add_argument(
+            DEBUG, action="store_true", default=argparse.SUPPRESS, help="show the traceback of an error, and warnings"
+        )
+
+    def error(self, message: str) -> NoReturn:
+        """End with the message in one line and exit status 2."""
+        self.exit(USAGE_ERROR, f"cyclo: error: {printable(message)} ('{self.prog} --help' shows the usage)\n")
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Return the arguments; for an option that is not there, name the one that was meant."""
+        found, rest = self.parse_known_args(args, namespace)
+        if rest:
+            options = getattr(found, "options", self._option_string_actions)
+            name = rest[0].partition("=")[0]
+            self.error(f"unrecognized arguments: {' '.join(rest)}{did_you_mean(name, options)}")
+        return found
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            error.message += did_you_mean(str(value), map(str, action.choices or ()))
+            raise
 
 
 def build_parser(wanted: str = "") -> argparse.ArgumentParser:
@@ -50,25 +78,27 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
         module = found[name].load()
         command = commands.add_parser(name, help=module.SUMMARY, description=module.SUMMARY)
         module.configure(command)
-        command.set_defaults(execute=module.execute)
+        command.set_defaults(execute=module.execute, options=tuple(command._option_string_actions))
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run ``cyclo`` and return its exit status: 0 done, 1 a check failed or a fault, 2 bad input."""
-    words = list(sys.argv[1:] if argv is None else argv)
+    """Run ``cyclo`` and return its exit status: 0 done, 1 a failed check, a fault or a partial result, 2 bad input."""
+    words = [_decoded(word) for word in sys.argv[1:]] if argv is None else list(argv)
+    debug = DEBUG in words
+    prepare_streams()
+    if argv is None and not debug and not sys.warnoptions:
+        warnings.simplefilter("ignore")  # of libraries, for those who write code
     # One thread each: the matrices of a batch are small, and threads that share two cores slow each other down.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
     from ltca.output.processes import Terminated, ended_by_signals
 
-    arguments = build_parser(words[0] if words else "").parse_args(words)
     try:
+        wanted = next((word for word in words if word != DEBUG), "")
+        arguments = build_parser(wanted).parse_args(words)
         with ended_by_signals():
             return int(arguments.execute(arguments))
-    except CycloError as error:
-        print(f"cyclo: error: {error}", file=sys.stderr)
-        return error.exit_status
     except Terminated:
         print("cyclo: terminated", file=sys.stderr)
         return 143
@@ -79,6 +109,36 @@ def main(argv: Sequence[str] | None = None) -> int:
         # The reader of our output (head, less) has gone: no message, and none from the interpreter's exit either.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
+    except Exception as error:  # noqa: BLE001  # the one place where everything ends
+        if debug:
+            traceback.print_exc()
+        print(f"cyclo: error: {_told(error)}", file=sys.stderr)
+        return error.exit_status if isinstance(error, CycloError) else FAULT
+
+
+def _decoded(word: str) -> str:
+    """A word of the command line as UTF-8 where the locale could not read it."""
+    try:
+        return os.fsencode(word).decode("utf-8")
+    except UnicodeError:
+        return word
+
+
+def _told(error: Exception) -> str:
+    """What an exception tells the user: its own message where it has one for them, else how to report it."""
+    if isinstance(error, CycloError):
+        return "\n".join(printable(line) for line in str(error).split("\n"))
+    if isinstance(error, MemoryError):
+        return "memory is not enough; ask for fewer positions or samples, or for larger elements"
+    if isinstance(error, UnicodeEncodeError):
+        return f"{printable(error.object)[:200]}: cannot be a file name in the encoding {error.encoding}; LC_ALL=C.UTF-8 helps"
+    if isinstance(error, OSError) and error.strerror:
+        return printable(f"{error.filename or 'a file'}: {error.strerror}")
+    message = printable(" ".join(str(error).split()))[:200]
+    return (
+        f"unforeseen {type(error).__name__}{f': {message}' if message else ''}. This is a fault of cyclo, please report it: "
+        f"the command, the drive file and what {DEBUG} adds (CONTRIBUTING.md)"
+    )
 
 
 if __name__ == "__main__":

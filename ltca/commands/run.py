@@ -7,6 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+    quantity_argument,
+    torque_argument,
+)
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -23,14 +32,28 @@ DEFAULT_POSITIONS = 360
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", action="append", metavar="NAME", help="case to run, repeatable; default all")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case to run, repeatable; default all")
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
-        "--positions", metavar="N", type=int, help=f"crank angles 2πk/N, k = 0 … N−1; default {DEFAULT_POSITIONS}"
+        "--positions",
+        metavar="N",
+        type=count_argument("--positions", 1, 1_000_000),
+        help=f"crank angles 2πk/N, k = 0 … N−1; default {DEFAULT_POSITIONS}",
     )
-    where.add_argument("--angles", metavar="φ", nargs="+", help="crank angles in rad (or texts such as '20 deg')")
-    parser.add_argument("--torque", metavar="T", help="output torque in N·mm (or a text such as '377.3 N m')")
+    where.add_argument(
+        "--angles",
+        metavar="φ",
+        nargs="+",
+        type=quantity_argument("--angles", "rad"),
+        help="crank angles in rad (or texts such as '20 deg')",
+    )
+    parser.add_argument(
+        "--torque",
+        metavar="T",
+        type=torque_argument,
+        help="output torque in N·mm (or a text such as '377.3 N m'); default that of the drive",
+    )
     parser.add_argument(
         "--method",
         choices=("tables", "direct", "paper"),
@@ -45,9 +68,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--pressure",
         metavar="φ",
         nargs="*",
+        type=quantity_argument("--pressure", "rad"),
         help="pressure fields of all loaded contacts at these crank angles (default 0) into pressure.nc, with figures",
     )
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results; default out/<drive>")
+    add_out_argument(parser, "run")
     parser.add_argument("--no-figures", action="store_true", help="write results.nc and summary.json only")
 
 
@@ -60,11 +84,11 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.reading.drive_file import load_drive
 
     angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
-    torque, engine = _torque(arguments.torque), _engine(arguments)
+    torque, engine = arguments.torque, _engine(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     check_common_shape(cases)
-    out = arguments.out or Path("out") / file.name
+    out = arguments.out or default_folder(file.name, "run")
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run"):
         find_coefficients_of(cases, arguments)
@@ -84,6 +108,7 @@ class _Chosen(NamedTuple):
 def _solve_and_write(
     chosen: _Chosen, angles: FloatArray, pressure_angles: FloatArray | None, out: Path, *, figures: bool
 ) -> int:
+    from ltca.analysis.engines import describe_engine
     from ltca.analysis.results import build_dataset
     from ltca.analysis.summary import summarise
     from ltca.output.files import whole_file, write_json
@@ -106,7 +131,8 @@ def _solve_and_write(
         with whole_file(out / "pressure.nc") as part:
             write_netcdf(fields, part, packed)
         files.append("pressure.nc")
-    print(_table(summaries))
+    print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
+    print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
     if engine.options.get("hole_near_field") == "yes":
         print(RIGID_SHAFT_PINS)
     print(_sampling(cases, angles))
@@ -163,38 +189,17 @@ def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], fol
 def _crank_angles(arguments: argparse.Namespace) -> FloatArray:
     import numpy as np
 
-    from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError
     from ltca.geometry.placement import position_angles
 
     if arguments.angles is not None:
-        return np.array([parse_quantity(text, "rad", "--angles") for text in arguments.angles])
-    positions = DEFAULT_POSITIONS if arguments.positions is None else arguments.positions
-    if not 1 <= positions <= 1_000_000:
-        raise DriveError([f"--positions = {positions}: must be from 1 to 1000000"])
-    return position_angles(positions)
+        return np.array(arguments.angles)
+    return position_angles(DEFAULT_POSITIONS if arguments.positions is None else arguments.positions)
 
 
 def _pressure_angles(arguments: argparse.Namespace) -> FloatArray | None:
     import numpy as np
 
-    from ltca.drive.units import parse_quantity
-
-    if arguments.pressure is None:
-        return None
-    return np.array([parse_quantity(text, "rad", "--pressure") for text in arguments.pressure or ["0"]])
-
-
-def _torque(text: str | None) -> float | None:
-    from ltca.drive.units import parse_quantity
-    from ltca.errors import DriveError
-
-    if text is None:
-        return None
-    torque = parse_quantity(text, "N*mm", "--torque")
-    if torque <= 0.0:
-        raise DriveError([f"--torque = {text}: must be greater than 0 N·mm (load.direction turns it)"])
-    return torque
+    return None if arguments.pressure is None else np.array(arguments.pressure or [0.0])
 
 
 ROWS = (
@@ -234,9 +239,12 @@ WALL_ROWS = (
 )
 
 
-def _table(summaries: dict[str, dict[str, float | None]]) -> str:
-    width = max(10, *(len(name) + 2 for name in summaries))
-    lines = [" " * 40 + "".join(f"{name:>{width}}" for name in summaries)]
+def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str]) -> str:
+    width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
+    lines = [
+        f"{'case':<40}" + "".join(f"{name:>{width}}" for name in summaries),
+        f"{'torque, direction of the crank':<40}" + "".join(f"{load:>{width}}" for load in loads.values()),
+    ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
     for title, key, unit, form in (*ROWS, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
@@ -251,12 +259,20 @@ def _refined(summary: dict[str, float | None], key: str) -> float | None:
     return summary[key] if refined is None else refined
 
 
+def _many(angles: FloatArray) -> str:
+    return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
+
+
 def _sampling(cases: dict[str, Drive], angles: FloatArray) -> str:
     """What the values stand for: which positions, and whether they see the mesh."""
     from ltca.analysis.extremes import is_full_turn, sampling_warning
+    from ltca.drive.unit_mistakes import stiffness_warning
 
-    many = f"{angles.size} positions" if angles.size > 1 else "1 position"
+    many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
-    warnings = {sampling_warning(drive, angles) for drive in cases.values()} - {None}
+    warnings = {
+        warn for drive in cases.values() for warn in (sampling_warning(drive, angles), stiffness_warning(drive))
+    }
+    warnings -= {None}
     return "\n".join([*lines, *(f"warning: {text}" for text in sorted(map(str, warnings)))])

@@ -6,6 +6,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.reading.arguments import (
+    add_angle_argument,
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    default_folder,
+)
+
 if TYPE_CHECKING:
     from ltca.analysis.loaded_analysis import LoadedAnalysis
     from ltca.drive.parts import Drive
@@ -16,24 +24,23 @@ SUMMARY = "derived geometry, backlash, checks and a picture with contact normals
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument("--case", action="append", metavar="NAME", help="case to show, repeatable; default the first")
-    parser.add_argument("--angle", metavar="φ", default="0", help="crank angle of the picture in rad; default 0")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the picture; default out/<drive>")
+    add_drive_argument(parser)
+    add_case_argument(parser, "case to show, repeatable; default the first")
+    add_angle_argument(parser)
+    add_out_argument(parser, "show", "folder for the picture")
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print the drive and write its picture."""
     import numpy as np
 
-    from ltca.drive.units import parse_quantity
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
 
-    angle = parse_quantity(arguments.angle, "rad", "--angle")
+    angle = arguments.angle
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case or [next(iter(file.cases))])
-    out = arguments.out or Path("out") / file.name
+    out = arguments.out or default_folder(file.name, "show")
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
     with claimed_folder(out, "show", adding=True):
         _show(cases, np.array([angle]), out)
@@ -41,15 +48,19 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
+    from ltca.analysis.engines import describe_engine
     from ltca.analysis.loaded_analysis import analyse
+    from ltca.drive.unit_mistakes import stiffness_warning
     from ltca.figures.drive_picture import draw_drive
 
     for name, drive in cases.items():
         print(f"\ncase {name}")
+        if warning := stiffness_warning(drive):
+            print(f"  warning: {warning}")
         for title, value in _properties(drive):
             print(f"  {title:<48}{value}")
         analysis = analyse(drive, angle)
-        print(f"  at φ_C = {angle[0]:g} rad")
+        print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
             print(f"    {title:<46}{value}")
         path = out / f"drive_{name}.png"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.reading.arguments import add_out_argument, count_argument
 
 if TYPE_CHECKING:
     from ltca.studies.execution.storage import StudyFolder
@@ -21,18 +22,51 @@ BESIDE = ("batches",)
 """Folders of a study that outlive an interrupted run."""
 COPIES = 3
 """Of all numbers of a study there are for a while batches, dataset and table."""
+MOST_REASONS = 5
+"""Reasons of failing samples that are printed."""
 
 
-def add_study_arguments(parser: argparse.ArgumentParser) -> None:
+def add_positions_argument(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the positions of every sample or candidate."""
+    parser.add_argument(
+        "--positions",
+        metavar="N",
+        type=count_argument("--positions", 1, 100_000),
+        default=DEFAULT_POSITIONS,
+        help=f"crank angles 2πk/N of every {what}; default {DEFAULT_POSITIONS}",
+    )
+
+
+def add_seed_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the seed of random numbers."""
+    parser.add_argument(
+        "--seed",
+        metavar="S",
+        type=count_argument("--seed", 0, 2**63 - 1),
+        default=0,
+        help="of the random numbers; default 0",
+    )
+
+
+def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what every study has: compliance, who solves it, folder, resuming, figures."""
     add_compliance_arguments(parser)
-    parser.add_argument("--workers", metavar="W", type=int, default=1, help="local processes; default 1")
+    parser.add_argument(
+        "--workers",
+        metavar="W",
+        type=count_argument("--workers", 1, 1024),
+        default=1,
+        help="local processes; default 1",
+    )
     parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the results")
+    add_out_argument(parser, command)
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
     parser.add_argument("--no-figures", action="store_true", help="write results and summary only")
     parser.add_argument(
-        "--sample", metavar="I", type=int, help="write the drive of sample I as a drive file and solve nothing"
+        "--sample",
+        metavar="I",
+        type=count_argument("--sample", 0, 100_000_000),
+        help="write the drive of sample I as a drive file and solve nothing",
     )
 
 
@@ -42,13 +76,11 @@ def workers_of(arguments: argparse.Namespace) -> Workers:
     Raises
     ------
     DriveError
-        When the number of workers is out of range.
+        When both workers and a scheduler are given.
     """
     from ltca.errors import DriveError
     from ltca.studies.execution.workers import Workers
 
-    if not 1 <= arguments.workers <= 1024:
-        raise DriveError([f"--workers = {arguments.workers}: must be from 1 to 1024"])
     if arguments.scheduler and arguments.workers > 1:
         raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
     return Workers(processes=arguments.workers, scheduler=arguments.scheduler)
@@ -104,7 +136,7 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
 
         paths = list(write_study_figures(folder, study, found.ranking, found.nominal))
         print(f"figures: {folder.path / 'figures'} ({len(paths)} as SVG and PNG)")
-    return 0
+    return 1 if len(found.failures) == study.design.samples else 0
 
 
 def tell(message: str) -> None:
@@ -113,10 +145,12 @@ def tell(message: str) -> None:
 
 
 def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
+    from ltca.analysis.engines import describe_engine
     from ltca.studies.quantities import QUANTITIES
     from ltca.studies.run_study import write_sample
 
-    print(f"{study.name}: {study.design.samples} samples × {study.positions} positions, {study.engine.compliance}")
+    samples = f"{study.design.samples} samples × {study.positions} positions"
+    print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
@@ -134,18 +168,28 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
-    if found.failures:
-        print(
-            f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}"
-        )
-        for sample, message in found.failures[:5]:
-            print(f"  sample {sample}: {' '.join(message.split())[:200]}")
+    _print_failures(study, folder, found)
     leading = next(iter(found.quantities), None)
     if leading is not None:
         worst = found.quantities[leading].largest_sample
         words = f"{write_sample(study, folder, worst)}{compliance}"
         print(f"worst by {QUANTITIES[leading].description}: cyclo run {words}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
+
+
+def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:
+    """How many samples failed, and each reason once with its first sample."""
+    if not found.failures:
+        return
+    print(f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}")
+    reasons: dict[str, list[int]] = {}
+    for sample, message in found.failures:
+        reasons.setdefault(" ".join(message.split()), []).append(sample)
+    for message, samples in list(reasons.items())[:MOST_REASONS]:
+        more = f" and {len(samples) - 1} more" if len(samples) > 1 else ""
+        print(f"  sample {samples[0]}{more}: {message[:300]}")
+    if len(reasons) > MOST_REASONS:
+        print(f"  and {len(reasons) - MOST_REASONS} other reasons")
 
 
 def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from ltca.commands.study_arguments import add_study_arguments
+from ltca.reading.arguments import default_folder
 
 SUMMARY = "vary any fields of a drive: grid, list, Latin hypercube, Sobol"
 
@@ -13,7 +14,7 @@ SUMMARY = "vary any fields of a drive: grid, list, Latin hypercube, Sobol"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML): drive, factors, design")
-    add_study_arguments(parser)
+    add_study_arguments(parser, "sweep")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -24,5 +25,5 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.studies.sweep_file import load_sweep
 
     study = load_sweep(arguments.study, compliance_of(arguments))
-    out = arguments.out or Path("out") / arguments.study.stem
+    out = arguments.out or default_folder(arguments.study.stem, "sweep")
     return execute_study(study, StudyFolder(path=out), arguments)

@@ -2,13 +2,18 @@
 
 Modules in the order data passes:
 
-============  ============================================================
-units         Quantities of the drive file: plain numbers are mm, N, MPa, N·mm, rad; a text may carry another unit
-deviations    Deviations of real parts from their drawing: part of the drive's definition, all zero unless given
-parts         The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
-plane_strain  What two dimensions cannot say about a drive: whatever varies along the length of its rollers and pins
-fields        Fields of a drive by dotted path: read, count, unit
-mistakes      Mistakes in a definition as sentences: field, value, bound
-tolerances    Distributions of the fields of a drive: the ``[tolerances]`` table that studies read
-============  ============================================================
+=============  ============================================================
+unit_table     The units a text may carry, and exact conversion between them
+units          Quantities of the drive file: plain numbers are mm, N, MPa, N·mm, rad; a text may carry another unit
+names          Names of drives and cases: files and folders are called after them, and they are printed, drawn and put on
+               pages
+deviations     Deviations of real parts from their drawing: part of the drive's definition, all zero unless given
+parts          The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
+plane_strain   What two dimensions cannot say about a drive: whatever varies along the length of its rollers and pins
+unit_mistakes  Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never
+               before
+fields         Fields of a drive by dotted path: read, count, unit
+mistakes       Mistakes in a definition as sentences: field, value, bound; a misspelt name with the one that was meant
+tolerances     Distributions of the fields of a drive: the ``[tolerances]`` table that studies read
+=============  ============================================================
 """

@@ -11,7 +11,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.units import quantity
+from ltca.drive.units import COUNT, quantity
 
 SignedLength = Annotated[float, quantity("mm")]
 Angle = Annotated[float, quantity("rad")]
@@ -104,7 +104,7 @@ class ProfileErrors:
         Deviation measured there, mm; a periodic cubic spline joins them.
     """
 
-    orders: tuple[Annotated[int, Field(ge=0, le=1000)], ...] = ()
+    orders: tuple[Annotated[int, Field(ge=0, le=1000), COUNT], ...] = ()
     cosine: Errors = ()
     sine: Errors = ()
     parameter: tuple[Angle, ...] = ()

@@ -11,7 +11,7 @@ from pydantic.functional_validators import BeforeValidator
 
 from ltca.drive.parts import Drive
 from ltca.drive.units import QuantityCheck
-from ltca.errors import DriveError
+from ltca.errors import DriveError, did_you_mean
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +70,7 @@ def element_count(drive: Drive, path: str) -> int | None:
     """
     kind = field_kinds().get(path)
     if kind is None:
-        raise DriveError([f"{path}: is not a field of the drive definition"])
+        raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
     if not kind.is_array:
         return None
     errors = drive.disc.profile_errors
@@ -82,6 +82,11 @@ def element_count(drive: Drive, path: str) -> int | None:
         "disc.profile_errors": len(errors.parameter) if path.endswith(".deviation") else len(errors.orders),
     }
     return counts[path.rpartition(".")[0]]
+
+
+def is_element(name: str) -> bool:
+    """Tell whether the last part of a path is the number of an element."""
+    return name.isascii() and name.isdigit() and len(name) <= 6
 
 
 def read_field(drive: Drive, path: str) -> Any:
@@ -100,7 +105,7 @@ def read_field(drive: Drive, path: str) -> Any:
         When there is no such field or element.
     """
     parent, _, last = path.rpartition(".")
-    if last.isdigit() and parent in field_kinds():
+    if is_element(last) and parent in field_kinds():
         values = read_field(drive, parent)
         if not isinstance(values, tuple) or int(last) >= len(values):
             raise DriveError([f"{path}: {parent} has no element {last}"])

@@ -1,28 +1,92 @@
-"""Mistakes in a definition as sentences: field, value, bound."""
+"""Mistakes in a definition as sentences: field, value, bound; a misspelt name with the one that was meant."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from functools import cache
 from typing import Any
 
+from ltca.drive.unit_table import label
+from ltca.errors import did_you_mean, nearest, printable, shortened
 
-def describe_mistake(detail: Any) -> str:
-    """Return one mistake pydantic found as a sentence with field, value and bound."""
-    path = ".".join(str(part) for part in detail["loc"])
+
+def describe_mistakes(
+    details: Sequence[Any], prefix: Sequence[str] = (), known: Sequence[str] | None = None
+) -> list[str]:
+    """Return the mistakes pydantic found as sentences, a missing field and its misspelling as one.
+
+    Parameters
+    ----------
+    details : sequence of dict
+        Of ``ValidationError.errors()``.
+    prefix : sequence of str
+        Tables above what was validated.
+    known : sequence of str, optional
+        Names there are in what was validated; the fields of the drive there by default.
+    """
+    found = [(tuple(map(str, (*prefix, *detail["loc"]))), detail) for detail in details]
+    missing = {place for place, detail in found if detail["type"].startswith("missing")}
+    meant: dict[tuple[str, ...], tuple[str, ...]] = {}
+    for place, detail in found:
+        if detail["type"] in UNKNOWN and (name := nearest(place[-1], [p[-1] for p in missing if p[:-1] == place[:-1]])):
+            meant[place] = (*place[:-1], name)
+    told = []
+    for place, detail in found:
+        if place in meant:
+            told.append(f"{_path(place)}: is not a field; did you mean `{meant[place][-1]}`, which is missing?")
+        elif place not in meant.values():
+            told.append(_sentence(place, detail, known))
+    return told
+
+
+UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
+
+
+def _path(place: Iterable[str]) -> str:
+    return printable(".".join(part[:60] for part in place))
+
+
+def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) -> str:
+    path = _path(place)
     match detail["type"]:
         case "missing" | "missing_argument" | "missing_keyword_only_argument":
             return f"{path}: is missing"
         case "unexpected_keyword_argument" | "extra_forbidden":
-            return f"{path}: is not a field of the drive definition"
+            siblings = fields_of(".".join(place[:-1])) if known is None else known
+            where = "the drive definition" if known is None else "such a table"
+            return f"{path}: is not a field of {where}{did_you_mean(place[-1], siblings)}"
         case "dataclass_type" | "dataclass_exact_type" | "model_type" | "dict_type":
-            return f"{path} = {_shown(detail['input'])}: must be a table"
+            return f"{path} = {shortened(detail['input'])}: must be a table"
         case "tuple_type":
-            return f"{path} = {_shown(detail['input'])}: must be an array of numbers in mm"
+            return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(path)}"
+        case "literal_error":
+            expected = detail["ctx"]["expected"]
+            choices = [name.strip("' ") for name in expected.replace(" or ", ",").split(",")]
+            meant = did_you_mean(detail["input"], choices) if isinstance(detail["input"], str) else ""
+            return f"{path} = {shortened(detail['input'])}: must be {expected}{meant}"
+        case "int_type" | "int_parsing" | "int_from_float" | "int_parsing_size":
+            return f"{path} = {shortened(detail['input'])}: must be a whole number"
     message = str(detail["msg"]).replace("Input should be", "must be")
-    message = message.replace("a valid integer, unable to parse string as an integer", "a whole number")
-    message = message.replace("a valid integer, got a number with a fractional part", "a whole number")
-    return f"{path} = {_shown(detail['input'])}: {message}"
+    return f"{path} = {shortened(detail['input'])}: {message}"
 
 
-def _shown(value: Any) -> str:
-    text = repr(value) if isinstance(value, str) else str(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+def _unit_of(path: str) -> str:
+    from ltca.drive.fields import field_kinds
+
+    kind = field_kinds().get(path)
+    return f" in {label(kind.unit)}" if kind is not None and kind.unit else ""
+
+
+@cache
+def fields_of(table: str) -> tuple[str, ...]:
+    """Return the names of the fields and tables in a table of the drive, by its dotted path; empty for none.
+
+    Examples
+    --------
+    >>> fields_of("clearance")
+    ('bearing', 'pin_hole')
+    """
+    from ltca.drive.fields import field_kinds
+
+    head = f"{table}." if table else ""
+    return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in field_kinds() if path.startswith(head)))

@@ -22,7 +22,8 @@ from ltca.drive.deviations import (
     Runout as Runout,
     SignedLength,
 )
-from ltca.drive.units import quantity
+from ltca.drive.names import Name
+from ltca.drive.units import COUNT, quantity
 
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
 NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
@@ -118,7 +119,7 @@ class PinWheel:
     that axis is a matter of `pin_errors`.
     """
 
-    number_of_pins: Annotated[int, Field(ge=4, le=1000)]
+    number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
     pin_circle_radius: PositiveLength
     pin_radius: PositiveLength
     pin_profile: LengthProfile = field(default_factory=LengthProfile)
@@ -152,9 +153,9 @@ class Disc:
         Centre of the flank against the bore.
     """
 
-    number_of_teeth: Annotated[int, Field(ge=3, le=1000)]
+    number_of_teeth: Annotated[int, Field(ge=3, le=1000), COUNT]
     thickness: PositiveLength
-    number_of_discs: Annotated[int, Field(ge=1, le=10)] = 1
+    number_of_discs: Annotated[int, Field(ge=1, le=10), COUNT] = 1
     torque_share: Annotated[float, quantity("dimensionless", gt=0.0, le=1.0)] = 1.0
     equidistant_offset: SignedLength = 0.0
     shifting_offset: SignedLength = 0.0
@@ -183,7 +184,7 @@ class CrankBearing:
 
     inner_race_radius: PositiveLength
     outer_race_radius: PositiveLength
-    number_of_rollers: Annotated[int, Field(ge=3, le=500)]
+    number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
     roller_radius: PositiveLength
     roller_length: PositiveLength
     roller_profile: LengthProfile = field(default_factory=LengthProfile)
@@ -208,7 +209,7 @@ class PinShaft:
         Errors of the shaft pins.
     """
 
-    number_of_pins: Annotated[int, Field(ge=3, le=200)]
+    number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]
     pin_circle_radius: PositiveLength
     pin_radius: PositiveLength
     hole_radius: PositiveLength
@@ -269,7 +270,7 @@ class Drive:
         Material of each part.
     """
 
-    name: str = "drive"
+    name: Name = "drive"
     crank: Crank
     pin_wheel: PinWheel
     disc: Disc
@@ -309,6 +310,17 @@ class Drive:
         """
         total = self.load.torque if torque is None else torque
         return -self.driving_sign * total * self.disc.torque_share
+
+    def load_words(self, torque: float | None = None) -> str:
+        """Return torque and direction for the heading of a table.
+
+        Parameters
+        ----------
+        torque : float, optional
+            Output torque of the whole drive, N·mm; the drive's own by default.
+        """
+        total = self.load.torque if torque is None else torque
+        return f"{total / 1000.0:.6g} N·m {self.load.direction}"
 
     @property
     def bore_radius(self) -> float:

@@ -8,18 +8,19 @@ parts outside ±T are sorted out.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.fields import element_count, field_kinds, read_field
-from ltca.drive.mistakes import describe_mistake
+from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units import quantity
-from ltca.errors import DriveError
+from ltca.errors import DriveError, did_you_mean, printable, shortened
 
 FloatArray = NDArray[np.float64]
 
@@ -41,9 +42,10 @@ class Distribution:
     """
 
     distribution: Literal["normal", "uniform", "truncated-normal"]
-    tolerance: float
+    # Validated in the unit of the field before; here only that they are numbers, and no truth values.
+    tolerance: Annotated[float, Strict()]
     cpk: Annotated[float, quantity("dimensionless", gt=0.0)] = 1.0
-    mean: float = 0.0
+    mean: Annotated[float, Strict()] = 0.0
 
     @property
     def standard_deviation(self) -> float:
@@ -102,7 +104,11 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
     for path, entry in _entries(table, "", problems):
         kind = field_kinds().get(path)
         if kind is None or not kind.unit:
-            problems.append(f"tolerances.{path}: is not a field of the drive that can scatter")
+            scattering = [name for name, known in field_kinds().items() if known.unit]
+            problems.append(
+                f"tolerances.{printable(path)}: is not a field of the drive that can scatter"
+                f"{did_you_mean(path, scattering)}"
+            )
             continue
         values = dict(entry)
         try:
@@ -114,9 +120,8 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
                     )
             distribution = _ADAPTER.validate_python(values)
         except ValidationError as error:
-            for detail in error.errors():
-                detail["loc"] = ("tolerances", path, *(detail["loc"] or (name,)))
-                problems.append(describe_mistake(detail))
+            details: list[Any] = [{**detail, "loc": detail["loc"] or (name,)} for detail in error.errors()]
+            problems += describe_mistakes(details, ("tolerances", path), [item.name for item in fields(Distribution)])
             continue
         if abs(distribution.mean) >= distribution.tolerance:
             problems.append(
@@ -131,7 +136,8 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
 
 def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Mapping[str, Any]]]:
     if not isinstance(table, Mapping):
-        problems.append(f"tolerances.{prefix.rstrip('.')}: must be a table with a distribution")
+        where = printable(f"tolerances.{prefix}".rstrip("."))
+        problems.append(f"{where} = {shortened(table)}: must be a table with a distribution")
         return []
     entries = []
     for name, value in table.items():

@@ -4,58 +4,30 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Any
 
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
-from ltca.errors import DriveError
+from ltca.drive.unit_table import QuantityError, is_plain_number, label as label, range_of, read_quantity
+from ltca.errors import DriveError, shortened
 
 ARCMIN = 180.0 / math.pi * 60.0
 """Arcminutes of one radian."""
 ARCSEC = 60.0 * ARCMIN
 """Arcseconds of one radian."""
 
-UNIT_LABELS = {"N*mm": "N·mm", "N/mm": "N/mm", "dimensionless": ""}
-
-
-def label(unit: str) -> str:
-    """Return the printed form of a unit, e.g. ``N·mm`` for ``N*mm``."""
-    return UNIT_LABELS.get(unit, unit)
-
 
 def _number(value: Any, unit: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise PydanticCustomError("quantity", "must be a number{unit}", {"unit": _in(unit)})
-    if not isinstance(value, str):
-        return float(value)
-    # pint costs half a second to import: only files that carry units in texts pay for it.
-    import pint
-
     try:
-        quantity = _registry().Quantity(value)
-        return float(quantity.to(unit).magnitude)
-    except pint.DimensionalityError as error:
-        raise PydanticCustomError(
-            "quantity", "must have the unit {unit} or one that converts to it", {"unit": label(unit) or "1"}
-        ) from error
-    except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, SyntaxError) as error:
-        raise PydanticCustomError(
-            "quantity",
-            'is not a quantity; write a number{unit} or a text like "{example}"',
-            {"unit": _in(unit), "example": f"12.5 {unit}".replace("*", " ")},
-        ) from error
-
-
-_REGISTRY: list[Any] = []
-
-
-def _registry() -> Any:
-    if not _REGISTRY:
-        import pint
-
-        _REGISTRY.append(pint.UnitRegistry(cache_folder=None))
-    return _REGISTRY[0]
+        return read_quantity(value, unit) if isinstance(value, str) else float(value)
+    except QuantityError as error:
+        raise PydanticCustomError("quantity", "{text}", {"text": str(error)}) from error
+    except OverflowError:  # a whole number of hundreds of digits
+        return math.inf
 
 
 def _in(unit: str) -> str:
@@ -108,6 +80,7 @@ class QuantityCheck:
         number = _number(value, self.unit)
         if not math.isfinite(number):
             raise PydanticCustomError("quantity", "must be finite{unit}", {"unit": _in(self.unit)})
+        unit = f" {label(self.unit)}".rstrip()
         gt, ge, lt, le = (bound for _, bound in self.bounds)
         holds = (
             (gt is None or number > gt)
@@ -117,13 +90,37 @@ class QuantityCheck:
         )
         if not holds:
             text = " and ".join(f"{word} {bound:g}" for word, bound in self.bounds if bound is not None)
-            raise PydanticCustomError(
-                "quantity", "must be {text}{unit}", {"text": text, "unit": f" {label(self.unit)}".rstrip()}
-            )
+            raise PydanticCustomError("quantity", "must be {text}{unit}", {"text": text, "unit": unit})
+        # Beyond any drive, and so that no product of a few of them leaves the range of floats.
+        smallest, largest = range_of(self.unit)
+        if abs(number) > largest:
+            text = f"at most {largest:g}{unit} in size"
+            raise PydanticCustomError("quantity", "must be {text}", {"text": text})
+        if gt == 0.0 and number < smallest:
+            text = f"at least {smallest:g}{unit}"
+            raise PydanticCustomError("quantity", "must be {text}", {"text": text})
         return number
 
 
-def parse_quantity(text: str, unit: str, name: str) -> float:
+def check_count(value: Any) -> int:
+    """Return a count, or refuse what is none: no truth value, no text but digits, no number that is not whole."""
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 10:
+        return int(value)
+    if isinstance(value, float) and abs(value) < 1e15 and value == int(value):
+        return int(value)
+    if isinstance(value, Integral) and not isinstance(value, bool):
+        # Of any length: the bounds say what is too many, without printing it.
+        return min(max(int(value), -(10**15)), 10**15)
+    raise PydanticCustomError("quantity", "must be a whole number")
+
+
+COUNT = BeforeValidator(check_count)
+"""To be used in ``Annotated[int, Field(ge=4, le=1000), COUNT]``."""
+
+
+def parse_quantity(
+    text: str, unit: str, name: str, *, gt: float | None = None, ge: float | None = None, le: float | None = None
+) -> float:
     """Return a number or a text with unit from the command line, in a unit of the suite.
 
     Parameters
@@ -134,6 +131,8 @@ def parse_quantity(text: str, unit: str, name: str) -> float:
         Unit of the result and of plain numbers.
     name : str
         Option, for the message.
+    gt, ge, le : float, optional
+        Bounds (greater than, at least, at most) in that unit.
 
     Returns
     -------
@@ -143,15 +142,12 @@ def parse_quantity(text: str, unit: str, name: str) -> float:
     Raises
     ------
     DriveError
-        When the text is no finite quantity of that kind.
+        When the text is no finite quantity of that kind within the bounds.
     """
+    bounds = (("greater than", gt), ("at least", ge), ("less than", None), ("at most", le))
+    check = QuantityCheck(unit=unit, bounds=bounds)
     try:
-        value = float(text)
-    except ValueError:
-        try:
-            value = _number(text, unit)
-        except PydanticCustomError as error:
-            raise DriveError([f"{name} = {text!r}: {error.message()}"]) from error
-    if not math.isfinite(value):
-        raise DriveError([f"{name} = {text!r}: must be finite{_in(unit)}"])
-    return value
+        return check(text)
+    except PydanticCustomError as error:
+        told = text if is_plain_number(text) else shortened(text)
+        raise DriveError([f"{name} = {told}: {error.message()}"]) from error

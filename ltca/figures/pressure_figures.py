@@ -249,7 +249,8 @@ def render_roller_pressure(fields: xr.Dataset, case: str, path: Path) -> None:
     for corner in ((0.5, -0.8, 0.0), (-0.5, -0.8, 0.9)):
         plotter.add_mesh(pv.Line((-0.5, -0.8, 0.0), corner), color="#888888")
     plotter.add_mesh(pv.Line((0.5, -0.8, 0.0), (0.5, 0.8, 0.0)), color="#888888")
-    plotter.add_text(f"{case}: {title}", font_size=11, color="black", position="upper_edge")
+    # VTK, too, reads what stands between dollar signs as a formula.
+    plotter.add_text(f"{case}: {title}".replace("$", "\\$"), font_size=11, color="black", position="upper_edge")
     plotter.camera_position = [(2.6, -2.9, 2.0), (0.05, 0.0, 0.33), (0.0, 0.0, 1.0)]
     with whole_file(path) as part:
         plotter.screenshot(str(part))

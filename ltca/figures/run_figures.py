@@ -29,6 +29,8 @@ STYLE: Any = {
     "grid.linewidth": 0.6,
     "axes.axisbelow": True,
     "lines.linewidth": 1.2,
+    # Names of drives and cases are the user's: a dollar sign in them starts no formula.
+    "text.parse_math": False,
     "svg.fonttype": "none",
     "svg.hashsalt": "cyclo",
     "figure.constrained_layout.use": True,

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import is_dataclass, replace
 from typing import Any
 
 from pydantic import ValidationError
 
-from ltca.drive.fields import field_kinds, read_field
-from ltca.drive.mistakes import describe_mistake
+from ltca.drive.fields import field_kinds, is_element, read_field
+from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.drive.units import check_count
+from ltca.errors import DriveError, did_you_mean
 from ltca.reading.physical_checks import find_contradictions
 
 
@@ -42,19 +44,20 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     tree: dict[str, Any] = {}
     even = abs(drive.disc.torque_share * drive.disc.number_of_discs - 1.0) < 1e-12  # not a share of its own
     if "disc.number_of_discs" in values and "disc.torque_share" not in values and even:  # as in a drive file
-        values = {**values, "disc.torque_share": 1.0 / max(1, int(values["disc.number_of_discs"]))}
+        with suppress(ValueError):  # of what is no count: the validation says so
+            values = {**values, "disc.torque_share": 1.0 / max(1, check_count(values["disc.number_of_discs"]))}
     arrays: dict[str, list[Any]] = {}
     whole = {}
     for path, value in values.items():
         parent, _, last = path.rpartition(".")
-        if last.isdigit() and parent in field_kinds():
+        if is_element(last) and parent in field_kinds():
             if parent not in arrays:
                 arrays[parent] = list(values.get(parent, read_field(drive, parent)))
             if int(last) >= len(arrays[parent]):
                 raise DriveError([f"{path}: {parent} has no element {last}"])
             arrays[parent][int(last)] = value
         elif path not in field_kinds():
-            raise DriveError([f"{path}: is not a field of the drive definition"])
+            raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
         else:
             whole[path] = value
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
@@ -81,7 +84,5 @@ def _replaced(part: Any, tree: dict[str, Any], prefix: str, problems: list[str])
     try:
         return replace(part, **changes)
     except ValidationError as error:
-        for detail in error.errors():
-            detail["loc"] = (*prefix.rstrip(".").split("."), *detail["loc"]) if prefix else detail["loc"]
-            problems.append(describe_mistake(detail))
+        problems += describe_mistakes(error.errors(), prefix.rstrip(".").split(".") if prefix else ())
         return part

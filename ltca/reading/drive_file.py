@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-import tomllib
-from dataclasses import dataclass
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass, fields
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from ltca.drive.mistakes import describe_mistake
+from ltca.drive.mistakes import describe_mistakes
+from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, parse_tolerances
-from ltca.errors import DriveError
+from ltca.drive.units import check_count
+from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.reading.contradictions import explain_contradictions
 from ltca.reading.physical_checks import find_contradictions
+from ltca.reading.toml_text import parse_toml, read_text
 
 NOMINAL_CASE = "nominal"
+MOST_NAMES = 10
+"""Names of cases in one message."""
+MANY_CASES = 300
+"""Cases with contradictions after which no more are looked at."""
+MOST_EXPLAINED = 3
+"""Contradictions of cases whose cause is looked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,8 +66,12 @@ class DriveFile:
             return dict(self.cases)
         unknown = [name for name in names if name not in self.cases]
         if unknown:
+            known = listed(self.cases)
             raise DriveError(
-                [f"case {name!r} is not defined; the cases are {', '.join(self.cases)}" for name in unknown],
+                [
+                    f"case {shortened(name)} is not defined; the cases are {known}{did_you_mean(name, self.cases)}"
+                    for name in unknown
+                ],
                 self.source,
             )
         return {name: self.cases[name] for name in dict.fromkeys(names)}
@@ -93,58 +108,83 @@ def load_drive(source: str | Path) -> DriveFile:
     if str(source) == "paper":
         return parse_drive(shipped_drive(), "paper")
     path = Path(source)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        raise DriveError(
-            [f"no such file; give a TOML file or 'paper' ('cyclo init {path.name}' writes a copy to start from)"],
-            str(source),
-        ) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise DriveError([f"cannot be read: {error}"], str(source)) from error
-    return parse_drive(text, str(source))
+    hint = f"no such file; give a TOML file or 'paper' ('cyclo init {path.name}' writes a copy to start from)"
+    return parse_drive(read_text(path, hint), str(source))
 
 
 def parse_drive(text: str, source: str = "drive") -> DriveFile:
     """Validate the text of a drive file; see `load_drive`."""
-    try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise DriveError([f"is not valid TOML: {error}"], source) from error
+    table = parse_toml(text, source)
     cases = table.pop("case", [])
     scatter = table.pop("tolerances", {})
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
     tolerances = parse_tolerances(scatter, problems)
     named = _named_cases(cases, problems)
-    drives: dict[str, Drive] = {}
     # Mistakes of the common part come back in every case: the base is validated alone, first.
     base_problems: list[str] = []
-    if isinstance(table["name"], str) and not _names_a_file(table["name"]):
-        base_problems.append(f"name = {table['name']!r}: must be a text that can name a folder, without / and \\")
     base = _validate(table, base_problems)
-    if base_problems:
+    if base_problems or base is None:
         raise DriveError(problems + base_problems, source)
-    contradictions: dict[str, list[str]] = {}
+    drives: dict[str, Drive] = {}
+    mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
-        case_problems: list[str] = []
-        drive = _validate(_merge(table, overrides), case_problems)
-        problems += [f"case {name}: {problem}" for problem in case_problems]
+        # Parts that a case leaves alone are valid already.
+        changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
+        drive = _validate({**_parts(base), **changed}, mistakes.setdefault(name, []))
         if drive is not None:
             drives[name] = drive
-            contradictions[name] = find_contradictions(drive)
-    if not named and base is not None:
+    problems += _once(mistakes, {})
+    if not named and not problems:
         drives[NOMINAL_CASE] = base
-        contradictions[NOMINAL_CASE] = find_contradictions(base)
-    # A contradiction of the common part that no case mends is said once.
-    common = [] if base is None else find_contradictions(base)
-    common = [problem for problem in common if all(problem in found for found in contradictions.values())]
-    problems += common
-    for name, found in contradictions.items():
-        problems += [f"case {name}: {problem}" for problem in found if problem not in common]
+    found, left = _contradictions(base, drives)
+    problems += found
     if problems:
-        raise DriveError(problems, source)
+        raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
     return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, text=text)
+
+
+def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], int]:
+    """What cannot be, once each: that of the common part which no case mends, then that of the cases; cases left over."""
+    common = find_contradictions(base)
+    found: dict[str, list[str]] = {}
+    wrong = 0
+    for name, drive in drives.items():
+        found[name] = common if drive == base else find_contradictions(drive)
+        wrong += bool(found[name])
+        if wrong >= MANY_CASES:
+            break
+    everywhere = [problem for problem in common if all(problem in told for told in found.values())]
+    problems = explain_contradictions(base, everywhere)
+    told: dict[str, list[str]] = {}
+    explained: dict[tuple[str, ...], list[str]] = {}
+    for name, those in found.items():
+        own = tuple(problem for problem in those if problem not in everywhere)
+        # Looking for the field behind a contradiction takes a tenth of a second: the first few are enough.
+        if own and own not in explained and len(explained) < MOST_EXPLAINED:
+            explained[own] = explain_contradictions(drives[name], [*own])
+        told[name] = explained.get(own, [*own])
+    return problems + _once(told, drives), len(drives) - len(found)
+
+
+def _once(mistakes: dict[str, list[str]], drives: dict[str, Drive]) -> list[str]:
+    """Mistakes of cases, each once with the names of its cases."""
+    owners: dict[str, list[str]] = {}
+    for name, problems in mistakes.items():
+        for problem in problems:
+            owners.setdefault(problem, []).append(name)
+    alone = list(drives) == [NOMINAL_CASE]
+    return [
+        problem if alone else f"case{'' if len(names) == 1 else 's'} {listed(names)}: {problem}"
+        for problem, names in owners.items()
+    ]
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names in a row, the first few of many."""
+    names = [*names]
+    shown = ", ".join(names[:MOST_NAMES])
+    return shown if len(names) <= MOST_NAMES else f"{shown} and {len(names) - MOST_NAMES} more"
 
 
 def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
@@ -156,8 +196,8 @@ def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
         name = case.get("name")
         if not isinstance(name, str):
             problems.append(f"case {number}: name is missing or no text; every [[case]] needs one")
-        elif not _names_a_file(name):
-            problems.append(f"case {number}: name = {name!r}: must be a text that can name a file, without / and \\")
+        elif not names_a_file(name):
+            problems.append(f"case {number}: name = {shortened(name)}: {NAMING}")
         elif name in named:
             problems.append(f"case {name}: name is used twice; must be unique")
         else:
@@ -165,17 +205,14 @@ def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
     return named
 
 
-def _names_a_file(name: str) -> bool:
-    """Results go to files and folders of these names."""
-    return bool(name.strip(" .")) and not any(sign in name for sign in "/\\\0")
+def _parts(drive: Drive) -> dict[str, Any]:
+    return {item.name: getattr(drive, item.name) for item in fields(drive)}
 
 
-def _merge(base: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
-    merged = dict(base)
-    for key, value in overrides.items():
-        below = merged.get(key)
-        merged[key] = _merge(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
-    return merged
+def _merged(below: Any, value: Any) -> Any:
+    if not isinstance(below, dict) or not isinstance(value, dict):
+        return value
+    return {**below, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
 _ADAPTER = TypeAdapter(Drive)
@@ -194,7 +231,7 @@ def build_drive(table: dict[str, Any]) -> Drive:
     problems: list[str] = []
     drive = _validate({name: value for name, value in table.items() if name != "tolerances"}, problems)
     if drive is not None:
-        problems += find_contradictions(drive)
+        problems += explain_contradictions(drive, find_contradictions(drive))
     if problems or drive is None:
         raise DriveError(problems)
     return drive
@@ -203,11 +240,13 @@ def build_drive(table: dict[str, Any]) -> Drive:
 def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
     disc = table.get("disc")
     if isinstance(disc, dict) and "torque_share" not in disc:
-        discs = disc.get("number_of_discs", 1)
-        if isinstance(discs, int) and discs >= 1:
-            table = {**table, "disc": {**disc, "torque_share": 1.0 / discs}}
+        with suppress(ValueError):  # of what is no count: the validation says so
+            table = {
+                **table,
+                "disc": {**disc, "torque_share": 1.0 / max(1, check_count(disc.get("number_of_discs", 1)))},
+            }
     try:
         return _ADAPTER.validate_python(table)
     except ValidationError as error:
-        problems += [describe_mistake(detail) for detail in error.errors()]
+        problems += describe_mistakes(error.errors())
         return None

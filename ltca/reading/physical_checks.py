@@ -48,6 +48,14 @@ def find_contradictions(drive: Drive) -> list[str]:
     return problems
 
 
+def is_sound(drive: Drive) -> bool:
+    """Tell whether a drive is without contradictions; quicker than naming them, for what is cheap comes first."""
+    if any(any(True for _ in check(drive)) for check in (find_deviation_problems, _tooth_numbers)):
+        return False
+    checks = (_pins, _bearing, _length_profiles, _flank, _holes, find_flank_problems)
+    return not any(any(True for _ in check(drive)) for check in checks)
+
+
 def _tooth_numbers(drive: Drive) -> Iterator[str]:
     pins, teeth = drive.pin_wheel.number_of_pins, drive.disc.number_of_teeth
     if pins - teeth != 1:
@@ -170,27 +178,44 @@ def _holes(drive: Drive) -> Iterator[str]:
             f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be at most {0.5 * e:g} mm, "
             "half the eccentricity"
         )
-    radius = drive.hole_radius
-    wall = shaft.pin_circle_radius - radius - drive.bore_radius
+    radius, circle = drive.hole_radius, shaft.pin_circle_radius
+    # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
+    smallest = shaft.pin_radius + e
+
+    def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> str:
+        bound = shaft.hole_radius - excess
+        if bound > smallest or play < e - ROUNDING:
+            return f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: {trouble}; must be less than {max(bound, 0.0):.6g} mm"
+        return f"pin_shaft.pin_circle_radius = {circle:g} mm: {trouble}; must be {circle_bound}"
+
+    wall = circle - radius - drive.bore_radius
     if wall <= 0.0:
-        yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: holes cut into the bore by {-wall:.6g} mm; "
-            f"must be less than {shaft.hole_radius + wall:.6g} mm"
+        yield hole_or_circle(
+            -wall, f"holes cut into the bore by {-wall:.6g} mm", f"greater than {circle - wall:.6g} mm"
         )
-    wall = 2.0 * (shaft.pin_circle_radius * sin(pi / shaft.number_of_pins) - radius)
+    sine = sin(pi / shaft.number_of_pins)
+    wall = 2.0 * (circle * sine - radius)
     if wall <= 0.0:
-        yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: neighbouring holes cut into each other by "
-            f"{-wall:.6g} mm; must be less than {shaft.hole_radius + 0.5 * wall:.6g} mm"
+        yield hole_or_circle(
+            -0.5 * wall,
+            f"neighbouring holes cut into each other by {-wall:.6g} mm",
+            f"greater than {radius / sine:.6g} mm",
         )
     root = FlankProfile.of_drive(drive).root_radius
-    wall = root - shaft.pin_circle_radius - radius
-    if wall <= 0.0:
-        yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: holes cut through the root circle of the disc "
-            f"(radius {root:.6g} mm) by {-wall:.6g} mm; must be less than {shaft.hole_radius + wall:.6g} mm"
+    wall = root - circle - radius
+    if wall <= 0.0 and root - radius > radius + drive.bore_radius:
+        yield hole_or_circle(
+            -wall,
+            f"holes cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
+            f"less than {root - radius:.6g} mm",
         )
-    if drive.bore_radius >= root:
+    elif wall <= 0.0:  # no circle has room for the holes
+        wheel = drive.pin_wheel
+        yield (
+            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: holes cut through the root circle of the disc "
+            f"(radius {root:.6g} mm) by {-wall:.6g} mm; must be greater than {wheel.pin_circle_radius - wall:.6g} mm"
+        )
+    if drive.bore_radius >= root > 0.0:
         yield (
             f"crank_bearing.outer_race_radius = {drive.crank_bearing.outer_race_radius:g} mm: must be less than "
             f"{root:.6g} mm, the root radius of the disc"

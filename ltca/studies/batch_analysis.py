@@ -12,6 +12,7 @@ from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
 from ltca.drive.parts import Drive
+from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.first_contact import backlash
@@ -164,9 +165,9 @@ def _solve_group(
             try:
                 values[members] = _quantities([drives[members[0]]], settings, None)
             except CycloError as second:
-                messages[members[0]] = str(second)
+                messages[members[0]] = str(explain_failure(second, drives[members[0]]))
         else:
-            messages[members[0]] = str(error)
+            messages[members[0]] = str(explain_failure(error, drives[members[0]]))
 
 
 def _quantities(drives: list[Drive], settings: BatchSettings, nominal: Nominal | None) -> FloatArray:

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.tolerances import Factors
-from ltca.errors import DriveError
 
 FloatArray = NDArray[np.float64]
 
@@ -233,15 +232,3 @@ class SweepDesign:
     def fields(self, row: FloatArray) -> dict[str, Any]:
         """Return the fields of one row."""
         return {factor.path: factor.value(number) for factor, number in zip(self.factors, row, strict=True)}
-
-
-def check_samples(samples: int, name: str) -> None:
-    """Refuse numbers of samples out of range.
-
-    Raises
-    ------
-    DriveError
-        Naming the option.
-    """
-    if not 1 <= samples <= 100_000_000:
-        raise DriveError([f"{name} = {samples}: must be from 1 to 100000000"])

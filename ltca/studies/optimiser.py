@@ -19,7 +19,7 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.parts import Drive
 from ltca.drive.units import label, parse_quantity
-from ltca.errors import CycloError, DriveError
+from ltca.errors import CycloError, DriveError, did_you_mean, shortened
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
@@ -69,10 +69,14 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     element = parent in kinds and kinds[parent].is_array
     found = [name] if name in kinds or element else [path for path in kinds if path.rpartition(".")[2] == name]
     if len(found) != 1:
+        last = [path.rpartition(".")[2] for path in kinds]
+        meant = did_you_mean(name, [*kinds, *last])
         hint = (
-            f"may be {' or '.join(found)}: give the whole path" if found else "is not a field of the drive definition"
+            f"may be {' or '.join(found)}: give the whole path"
+            if found
+            else f"is not a field of the drive definition{meant}"
         )
-        raise DriveError([f"--vary {name}: {hint}"])
+        raise DriveError([f"--vary {shortened(name)[1:-1]}: {hint}"])
     path = found[0]
     unit = kinds[parent if element else path].unit
     if not unit or (kinds.get(path) is not None and kinds[path].is_array):
@@ -80,8 +84,8 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     if span:
         ends = span.split(":")
         if len(ends) != 2:
-            raise DriveError([f"--vary {text}: write the range as {name}=low:high"])
-        low, high = (parse_quantity(end, unit, f"--vary {path}") for end in ends)
+            raise DriveError([f"--vary {shortened(text)[1:-1]}: write the range as {name}=low:high"])
+        low, high = (parse_quantity(end.strip(), unit, f"--vary {path}") for end in ends)
     else:
         value = float(read_field(drive, path))
         low, high = sorted((0.5 * value, 1.5 * value))
@@ -105,7 +109,7 @@ def parse_limit(text: str) -> Limit:
     """
     match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", text)
     if match is None:
-        raise DriveError([f"--subject {text!r}: write it as 'quantity <= value unit'"])
+        raise DriveError([f"--subject {shortened(text)}: write it as 'quantity <= value unit'"])
     name, sign, value = match.groups()
     check_quantities((name,))
     unit = QUANTITIES[name].unit

@@ -13,7 +13,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ContactPressures
 from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
-from ltca.errors import DriveError
+from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.geometry.pairs import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
@@ -193,5 +193,11 @@ def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
         return tuple(QUANTITIES)
     unknown = [name for name in names if name not in QUANTITIES]
     if unknown:
-        raise DriveError([f"{name}: is no quantity of a study; there are {', '.join(QUANTITIES)}" for name in unknown])
+        known = ", ".join(QUANTITIES)
+        raise DriveError(
+            [
+                f"{shortened(name)[1:-1]}: is no quantity of a study{did_you_mean(name, QUANTITIES) or f'; there are {known}'}"
+                for name in unknown
+            ]
+        )
     return tuple(name for name in QUANTITIES if name in names)

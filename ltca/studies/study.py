@@ -91,6 +91,14 @@ class Study:
         """Number of batches."""
         return -(-self.design.samples // self.batch_samples)
 
+    def load_words(self) -> str:
+        """Return torque and direction of its drives for the heading of a table."""
+        varied = [path for path in self.design.names if path in ("load.torque", "load.direction")]
+        if varied:
+            return f"{' and '.join(varied)} varied"
+        loads = dict.fromkeys(drive.load_words() for _, drive in self.cases)
+        return ", ".join(loads) if len(loads) < 4 else f"{len(loads)} torques, by case"
+
     def fingerprint(self) -> str:
         """Return a hash of everything the results depend on, the code included (hex, 16 digits)."""
         parts = (

@@ -22,7 +22,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -33,16 +32,23 @@ from pydantic import TypeAdapter, ValidationError
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.fields import field_kinds, read_field
-from ltca.drive.mistakes import describe_mistake
+from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units import quantity
-from ltca.errors import DriveError
-from ltca.reading.drive_file import load_drive
-from ltca.studies.designs import SweepDesign, SweepFactor, check_samples
+from ltca.errors import MOST_TOLD, DriveError, did_you_mean, shortened
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import listed, load_drive
+from ltca.reading.toml_text import parse_toml, read_text
+from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
 from ltca.studies.study import Study, positions_together
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
+SCALES = ("linear", "logarithmic")
+RANGE = {"low", "high", "levels", "scale"}
+DESIGN = {"kind", "samples", "seed"}
+MOST_LEVELS = 100_000
+MOST_SAMPLES = 100_000_000
 KEYS = {"drive", "case", "positions", "quantities", "design", "factors"}
 
 
@@ -77,16 +83,12 @@ def load_sweep(path: Path, engine: Engine | None = None) -> Study:
     DriveError
         When file, drive, design or a factor is wrong; all mistakes together.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-        table = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError) as error:
-        raise DriveError([f"cannot be read: {error}"], str(path)) from error
-    except tomllib.TOMLDecodeError as error:
-        raise DriveError([f"is not valid TOML: {error}"], str(path)) from error
+    text = read_text(path, "no such file; the README says what a study file holds")
+    table = parse_toml(text, str(path))
     source = table.get("drive")
-    if not isinstance(source, str):
-        raise DriveError(["drive: is missing; give 'paper' or a drive file"], str(path))
+    if not isinstance(source, str) or not source:
+        told = "drive: is missing" if source is None else f"drive = {shortened(source)}: is no name of a file"
+        raise DriveError([f"{told}; give 'paper' or a drive file"], str(path))
     # A drive file is looked for beside the study, so that both can be moved together.
     study = parse_sweep(table, source if source == "paper" else str(path.parent / source), str(path), engine)
     return replace(study, definition=text)
@@ -96,7 +98,8 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     """Validate the table of a sweep file; see `load_sweep`."""
     reader = _Reader(source=source, problems=[])
     reader.problems += [
-        f"{key}: is not a key of a study; there are {', '.join(sorted(KEYS))}" for key in table.keys() - KEYS
+        f"{shortened(key)[1:-1]}: is not a key of a study; there are {', '.join(sorted(KEYS))}{did_you_mean(key, KEYS)}"
+        for key in table.keys() - KEYS
     ]
     file = load_drive(drive)
     factors_table = table.get("factors")
@@ -104,14 +107,27 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         reader.problems.append("factors: is missing or empty; name at least one field to vary")
         factors_table = {}
     positions = table.get("positions", 28)
-    if not isinstance(positions, int) or not 1 <= positions <= 100_000:
-        reader.problems.append(f"positions = {positions}: must be a whole number from 1 to 100000")
+    if not _is_count(positions) or not 1 <= positions <= 100_000:
+        reader.problems.append(f"positions = {shortened(positions)}: must be a whole number from 1 to 100000")
     quantities = table.get("quantities", list(DEFAULT_QUANTITIES))
     names = tuple(quantities) if isinstance(quantities, list) and all(isinstance(n, str) for n in quantities) else ()
-    if not names:
-        reader.problems.append("quantities: must be an array of names")
+    if names:
+        try:
+            names = check_quantities(names)
+        except DriveError as error:
+            reader.problems += [f"quantities: {problem}" for problem in error.problems]
+    else:
+        reader.problems.append(f"quantities = {shortened(quantities)}: must be an array of names")
+    case = table.get("case")
+    if case is not None and not isinstance(case, str):
+        reader.problems.append(
+            f"case = {shortened(case)}: must be the name of one case, a text; several are factors: case = [...] in [factors]"
+        )
     reader.check()
-    selected = file.select([table["case"]] if "case" in table else None)
+    try:
+        selected = file.select(None if case is None else [case])
+    except DriveError as error:
+        raise DriveError([f"{problem} (of {drive})" for problem in error.problems], source) from error
     base = next(iter(selected.values()))
     factors = tuple(_factors(factors_table, base, file.cases, reader))
     design = _design(table.get("design", {}), factors, reader)
@@ -125,24 +141,38 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         cases=cases,
         design=design,
         positions=positions,
-        quantities=check_quantities(names),
+        quantities=names,
         near_nominal=False,
         engine=used,
         batch_positions=positions_together(used),
-        definition=json.dumps(table, ensure_ascii=False),
+        definition=json.dumps(table, ensure_ascii=False, default=str),
         drive_file=file.text,
     )
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive], reader: _Reader) -> list[SweepFactor]:
     found: list[SweepFactor] = []
     for path, entry in _flat(table, ""):
+        if path in [factor.path for factor in found]:
+            reader.problems.append(f"factors.{path}: is given twice, as a table and by its path")
+            continue
         if path == "case":
-            unknown = [name for name in entry if name not in cases] if isinstance(entry, list) else [entry]
-            if unknown or not entry:
-                reader.problems.append(f"factors.case: must be an array of cases; there are {', '.join(cases)}")
+            names = entry if isinstance(entry, list) and all(isinstance(name, str) for name in entry) else []
+            unknown = [name for name in names if name not in cases]
+            if unknown or not names:
+                told = shortened(unknown[0] if unknown else entry)
+                meant = did_you_mean(unknown[0], cases) if unknown else ""
+                reader.problems.append(
+                    f"factors.case = {told}: must be an array of cases; there are {listed(cases)}{meant}"
+                )
+            elif len(names) > MOST_LEVELS:
+                reader.problems.append(f"factors.case: has {len(names)} values, must be at most {MOST_LEVELS}")
             else:
-                found.append(SweepFactor(path=path, levels=tuple(entry)))
+                found.append(SweepFactor(path=path, levels=tuple(names)))
             continue
         try:
             read_field(drive, path)
@@ -152,7 +182,21 @@ def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive],
         factor = _factor(path, entry, reader)
         if factor is not None:
             found.append(factor)
+            reader.problems += _refused(drive, factor)
     return found
+
+
+def _refused(drive: Drive, factor: SweepFactor) -> list[str]:
+    """What the definition of the field says to the levels, or to the ends of the range, each by itself."""
+    problems: list[str] = []
+    for level in factor.levels or (factor.low, factor.high):
+        try:
+            with_fields(drive, {factor.path: level}, check=False)
+        except DriveError as error:
+            problems += error.problems
+            if len(problems) >= MOST_TOLD:
+                break
+    return [f"factors.{problem}" for problem in problems]
 
 
 def _flat(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
@@ -176,30 +220,44 @@ def _factor(path: str, entry: Any, reader: _Reader) -> SweepFactor | None:
 
     def number(value: Any) -> Any:
         if not kind.unit:
-            return value
+            # Counts and names: a range has numbers at its ends, the field itself says what it takes.
+            if isinstance(value, bool) or not isinstance(value, int | str):
+                raise DriveError(
+                    [f"factors.{path} = {shortened(value)}: must be a whole number or a name"], reader.source
+                )
+            return value if isinstance(value, str) or abs(value) < 10**9 else 10**9
         return TypeAdapter(Annotated[float, quantity(kind.unit)]).validate_python(value)
 
     try:
+        if isinstance(entry, list) and len(entry) > MOST_LEVELS:
+            reader.problems.append(f"factors.{path}: has {len(entry)} values, must be at most {MOST_LEVELS}")
+            return None
         if isinstance(entry, list) and entry:
             return SweepFactor(path=path, levels=tuple(number(value) for value in entry))
-        if isinstance(entry, Mapping) and entry.keys() <= {"low", "high", "levels", "scale"}:
-            return _range(path, entry, number(entry.get("low")), number(entry.get("high")), reader)
+        if isinstance(entry, Mapping) and "low" in entry and "high" in entry and entry.keys() <= RANGE:
+            return _range(path, entry, number(entry["low"]), number(entry["high"]), reader)
     except ValidationError as error:
-        for detail in error.errors():
-            detail["loc"] = ("factors", path)
-            reader.problems.append(describe_mistake(detail))
+        reader.problems += describe_mistakes([{**detail, "loc": ()} for detail in error.errors()], ("factors", path))
         return None
-    reader.problems.append(f"factors.{path}: must be an array of values or a table with low and high")
+    unknown = sorted(entry.keys() - RANGE) if isinstance(entry, Mapping) else []
+    meant = f"; {unknown[0]} is no key of it{did_you_mean(unknown[0], RANGE)}" if unknown else ""
+    reader.problems.append(
+        f"factors.{path} = {shortened(entry)}: must be an array of values or a table with low and high{meant}"
+    )
     return None
 
 
 def _range(path: str, entry: Mapping[str, Any], low: Any, high: Any, reader: _Reader) -> SweepFactor | None:
-    logarithmic = entry.get("scale", "linear") == "logarithmic"
-    if entry.get("scale", "linear") not in ("linear", "logarithmic"):
-        reader.problems.append(f"factors.{path}.scale = {entry['scale']}: must be linear or logarithmic")
+    scale = entry.get("scale", "linear")
+    logarithmic = scale == "logarithmic"
+    if scale not in SCALES:
+        meant = did_you_mean(scale, SCALES) if isinstance(scale, str) else ""
+        reader.problems.append(f"factors.{path}.scale = {shortened(scale)}: must be linear or logarithmic{meant}")
         return None
     if not isinstance(low, int | float) or not isinstance(high, int | float) or not low < high:
-        reader.problems.append(f"factors.{path}: low = {low} must be a number less than high = {high}")
+        reader.problems.append(
+            f"factors.{path}: low = {shortened(low)} must be a number less than high = {shortened(high)}"
+        )
         return None
     if logarithmic and low <= 0:
         reader.problems.append(f"factors.{path}.low = {low:g}: must be greater than 0 on a logarithmic scale")
@@ -207,8 +265,10 @@ def _range(path: str, entry: Mapping[str, Any], low: Any, high: Any, reader: _Re
     levels = entry.get("levels")
     if levels is None:
         return SweepFactor(path=path, low=float(low), high=float(high), logarithmic=logarithmic)
-    if not isinstance(levels, int) or levels < 2:
-        reader.problems.append(f"factors.{path}.levels = {levels}: must be a whole number of at least 2")
+    if not _is_count(levels) or not 2 <= levels <= MOST_LEVELS:
+        reader.problems.append(
+            f"factors.{path}.levels = {shortened(levels)}: must be a whole number from 2 to {MOST_LEVELS}"
+        )
         return None
     places = np.geomspace(low, high, levels) if logarithmic else np.linspace(low, high, levels)
     whole = isinstance(low, int) and isinstance(high, int) and bool(np.all(places == np.round(places)))
@@ -216,29 +276,36 @@ def _range(path: str, entry: Mapping[str, Any], low: Any, high: Any, reader: _Re
 
 
 def _design(table: Any, factors: tuple[SweepFactor, ...], reader: _Reader) -> SweepDesign | None:
-    if not isinstance(table, Mapping) or not table.keys() <= {"kind", "samples", "seed"}:
-        reader.problems.append("design: must be a table with kind, samples and seed")
+    if not isinstance(table, Mapping) or not table.keys() <= DESIGN:
+        unknown = sorted(table.keys() - DESIGN) if isinstance(table, Mapping) else []
+        meant = f"; {unknown[0]} is no key of it{did_you_mean(unknown[0], DESIGN)}" if unknown else ""
+        reader.problems.append(f"design = {shortened(table)}: must be a table with kind, samples and seed{meant}")
         return None
     kind = table.get("kind", "grid")
-    if kind not in KINDS:
-        reader.problems.append(f"design.kind = {kind}: must be one of {', '.join(KINDS)}")
+    if not isinstance(kind, str) or kind not in KINDS:
+        meant = did_you_mean(kind, KINDS) if isinstance(kind, str) else ""
+        reader.problems.append(f"design.kind = {shortened(kind)}: must be one of {', '.join(KINDS)}{meant}")
         return None
     ranges = [factor.path for factor in factors if not factor.levels]
     if kind in ("grid", "list"):
         reader.problems += [f"factors.{path}: must have levels in a {kind}" for path in ranges]
+        reader.problems += [f"design.{key}: has no meaning in a {kind}" for key in ("samples", "seed") if key in table]
         if kind == "list" and len({len(factor.levels) for factor in factors}) > 1:
             reader.problems.append("factors: must all have equally many values in a list")
-        return SweepDesign(factors=factors, kind=kind)
+        design = SweepDesign(factors=factors, kind=kind)
+        if factors and not ranges and design.samples > MOST_SAMPLES:
+            reader.problems.append(f"factors: make a grid of {design.samples} samples, must be at most {MOST_SAMPLES}")
+        return design
     samples, seed = table.get("samples"), table.get("seed", 0)
-    if not isinstance(samples, int):
-        reader.problems.append(f"design.samples = {samples}: must be a whole number for {kind}")
+    if samples is None:
+        reader.problems.append(f"design.samples: is missing; {kind} needs a whole number of them")
         return None
-    if not isinstance(seed, int) or seed < 0:
-        reader.problems.append(f"design.seed = {seed}: must be a whole number of at least 0")
+    if not _is_count(samples) or not 1 <= samples <= MOST_SAMPLES:
+        reader.problems.append(
+            f"design.samples = {shortened(samples)}: must be a whole number from 1 to {MOST_SAMPLES}"
+        )
         return None
-    try:
-        check_samples(samples, "design.samples")
-    except DriveError as error:
-        reader.problems += error.problems
+    if not _is_count(seed) or not 0 <= seed < 2**63:
+        reader.problems.append(f"design.seed = {shortened(seed)}: must be a whole number from 0 to 2⁶³ − 1")
         return None
     return SweepDesign(factors=factors, kind=kind, number=samples, seed=seed)

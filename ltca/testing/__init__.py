@@ -6,6 +6,8 @@ Modules in the order data passes:
 random_drives       Random but valid drives, to try the analysis on what nobody thought of
 balance_check       Whether a pose balances, found without the code that balances it
 field_changes       One sensible change for every leaf field of a drive: what the contract is walked with
+malformed           Malformed drive and study files by a seeded generator: values, texts, structures and bytes nobody
+                    should write
 closed_form_bodies  Influence coefficients of bodies in closed form: a coefficient file without finite elements
 ==================  ============================================================
 """

@@ -6,6 +6,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    add_size_argument,
+    default_folder,
+    quantity_argument,
+)
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -16,33 +25,21 @@ SUMMARY = "compare the codes with closed forms, other codes, the paper and full 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("drive", metavar="DRIVE", help="drive file (TOML), or 'paper' for the shipped drive")
-    parser.add_argument(
-        "--case",
-        action="append",
-        metavar="NAME",
-        help="case, repeatable; default the first, middle and last of the file",
-    )
+    add_drive_argument(parser)
+    add_case_argument(parser, "case, repeatable; default the first, middle and last of the file")
     parser.add_argument(
         "--angles",
         metavar="φ",
         nargs="+",
+        type=quantity_argument("--angles", "rad"),
         help="crank angles of full solutions in rad (or texts such as '20 deg'); default two (quick) or twelve (full) "
         "over one period of the flank",
     )
     parser.add_argument(
         "--level", choices=("quick", "full"), default="quick", help="how many angles; full also halves meshes"
     )
-    parser.add_argument(
-        "--size",
-        type=float,
-        default=1.0,
-        metavar="S",
-        help="element edges of the full solutions as a multiple of the default (limits are for 1)",
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="folder of report and kept solutions; default out/<drive>/validation"
-    )
+    add_size_argument(parser, "element edges of the full solutions as a multiple of the default (limits are for 1)")
+    add_out_argument(parser, "validate", "folder of report and kept solutions")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -58,20 +55,15 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input or when something does not converge.
     """
-    import math
-
     from fem.drive.solution import require_solution_memory
     from fem.errors import MemoryLimitError
-    from ltca.drive.units import parse_quantity
     from ltca.errors import CycloError
     from ltca.output.run_folder import claimed_folder
     from ltca.reading.drive_file import load_drive
     from validation.compare.finite_element_positions import Settings
     from validation.study import plan_study
 
-    if not (math.isfinite(arguments.size) and arguments.size > 0.0):
-        raise CycloError(f"--size {arguments.size:g}: must be a finite number greater than 0")
-    angles = [parse_quantity(text, "rad", "--angles") for text in arguments.angles or []]
+    angles = list(arguments.angles or [])
     file = load_drive(arguments.drive)
     plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
     try:
@@ -79,7 +71,7 @@ def execute(arguments: argparse.Namespace) -> int:
             require_solution_memory(drive, plan.crank_angles[0], arguments.size)
     except MemoryLimitError as error:
         raise CycloError(f"--size {arguments.size:g}: {error}") from error
-    out: Path = arguments.out or Path("out") / file.name / "validation"
+    out: Path = arguments.out or default_folder(file.name, "validate")
     with claimed_folder(out, "validate", beside=("kept",)):
         return _run_and_write(plan, out)
 
@@ -120,6 +112,9 @@ def _print_headline(study: Study) -> None:
     from validation.report.headline import headline
 
     head = headline(study)
+    plan = study.plan
+    loads = ", ".join(f"{case} {drive.load_words()}" for case, drive in plan.drives.items())
+    print(f"{plan.name}: {loads}; {len(plan.crank_angles)} positions of full FE")
     print(f"{'against full FE':<14}{'load':>12}{'pressure':>12}{'wheel angle':>14}")
     for model, worst in head["worst_difference_from_full_fe"].items():
         print(

@@ -98,8 +98,8 @@ def _context(study: Study) -> dict[str, Any]:
         "levels": [_level(number, [row for row in study.rows if row.level == number]) for number in LEVELS],
         "pictures": _pictures(study),
         "shared": SHARED,
-        # "</" would end the script element early.
-        "data": json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
+        # "</" would end the script element early, "<!--<script" keep it from ending.
+        "data": json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c"),
     }
 
 

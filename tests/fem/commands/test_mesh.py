@@ -108,10 +108,10 @@ def test_the_probe_tells_how_the_rendering_ended(monkeypatch: pytest.MonkeyPatch
     [
         (["paper", "--case", "CS-9"], "case 'CS-9' is not defined"),
         (["none.toml"], "none.toml"),
-        (["paper", "--size", "0"], "--size 0: must be a finite number greater than 0"),
-        (["paper", "--size", "-1"], "--size -1: must be"),
-        (["paper", "--size", "nan"], "--size nan: must be"),
-        (["paper", "--angle", "inf"], "--angle inf: must be a finite number"),
+        (["paper", "--size", "0"], "--size = 0: must be greater than 0"),
+        (["paper", "--size", "-1"], "--size = -1: must be greater than 0"),
+        (["paper", "--size", "nan"], "--size = 'nan': must be finite"),
+        (["paper", "--angle", "inf"], "--angle = 'inf': must be finite in rad"),
         (["paper", "--size", "0.0001"], r"the drive's mesh would have about [\d,]+ unknowns"),
     ],
 )

@@ -116,7 +116,7 @@ def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys)
     assert "singular tangent" in str(caught.value)
     monkeypatch.setattr(ltca.analysis.engines, "solve_equilibrium", lambda model, angle, moment, start: _Floating)
     command = ["run", "paper", "--case", "CS-6", "--positions", "1", "--method", "paper", "--out", str(tmp_path)]
-    assert main(command) == 2
+    assert main(command) == 1
     assert "the iteration of the paper fails at crank angle 0 rad" in capsys.readouterr().err
 
 

@@ -184,7 +184,7 @@ def test_all_cases_are_there(monkeypatch, tmp_path, capsys, paper_cases):
     printed = capsys.readouterr().out
     safeties = re.findall(r"safety ([\d.]+) against", printed)
     for (name, case), safety in zip(kept["cases"].items(), safeties, strict=True):
-        assert f"paper {name}, half-space: torque curve" in printed
+        assert f"paper {name}, 377.3 N·m ccw, half-space (tables): torque curve" in printed
         assert case["drive"] == f"paper {name}"
         analysis = analyse(paper_cases[name], 2.0 * np.pi * np.arange(44) / 44)
         assert case["pressure_safety"]["largest_MPa"] == pytest.approx(analysis.pressures.pins.mid.max(), rel=1e-9)

@@ -58,7 +58,7 @@ WRONG = {
     ),
     "wheel pins overlap": (
         {"pin_wheel": {"pin_radius": 19.7}},
-        r"pin_wheel\.pin_radius = 19\.7 mm: must be less than 19\.5818 mm, or neighbouring pins overlap",
+        r"pin_wheel\.pin_radius = 19\.7 mm: must be at most 13\.86 mm .*neighbouring pins overlap; .*root circle",
     ),
     "shaft pins overlap": (
         {"pin_shaft": {"pin_radius": 22.0, "hole_radius": 26.0}},
@@ -98,15 +98,15 @@ WRONG = {
     ),
     "holes cut into the bore": (
         {"pin_shaft": {"pin_circle_radius": 43.5}},
-        r"pin_shaft\.hole_radius = 14\.075 mm: holes cut into the bore by 0\.075 mm; must be less than 14 mm",
+        r"pin_shaft\.pin_circle_radius = 43\.5 mm: holes cut into the bore by 0\.075 mm; must be greater than 43\.575 mm",
     ),
     "holes cut into each other": (
         {"pin_shaft": {"number_of_pins": 13}},
-        r"neighbouring holes cut into each other by 1\.34\d+ mm; must be less than 13\.4017 mm",
+        r"neighbouring holes cut into each other by 1\.34\d+ mm; must be greater than 58\.8135 mm",
     ),
     "holes cut through the root circle": (
         {"pin_shaft": {"pin_circle_radius": 63.5}},
-        r"holes cut through the root circle of the disc \(radius 77\.44 mm\) by 0\.135 mm; must be less than 13\.94 mm",
+        r"holes cut through the root circle of the disc \(radius 77\.44 mm\) by 0\.135 mm; must be less than 63\.365 mm",
     ),
     "bore larger than the disc": (
         {"crank_bearing": {"inner_race_radius": 70.0, "outer_race_radius": 80.0}},

@@ -107,8 +107,8 @@ def test_wrong_sweeps_are_refused(change, message):
 
 def test_wrong_designs_are_refused():
     for text, message in (
-        ('design = { kind = "star" }\nfactors.case = ["CS-1"]', "design.kind = star"),
-        ('design = { kind = "sobol" }\nfactors.case = ["CS-1"]', "design.samples = None"),
+        ('design = { kind = "star" }\nfactors.case = ["CS-1"]', "design.kind = .star"),
+        ('design = { kind = "sobol" }\nfactors.case = ["CS-1"]', "design.samples: is missing"),
         ('colour = 3\nfactors.case = ["CS-1"]', "colour: is not a key"),
         ("positions = 3", "factors: is missing"),
         ('quantities = ["beauty"]\nfactors.case = ["CS-1"]', "beauty: is no quantity"),

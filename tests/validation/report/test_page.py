@@ -13,7 +13,7 @@ from validation.report.page import write_report
 
 def embedded(text):
     found = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.S)
-    return json.loads(found.group(1).replace("<\\/", "</"))
+    return json.loads(found.group(1))
 
 
 def test_nothing_is_loaded_from_elsewhere(small_report):
@@ -74,3 +74,23 @@ def test_failures_show(small_study, tmp_path):
 def test_same_study_same_page(small_study, small_report, tmp_path):
     again = write_report(small_study, tmp_path / "again.html")
     assert again.read_bytes() == small_report.read_bytes()
+
+
+def test_names_are_text_in_the_page(small_study, tmp_path):
+    """'<!--<script>' within a script element keeps '</script>' from ending it, and the page stays empty."""
+    odd = "a$x_{b$ <!--<script>\"'&"
+    case = "CS-1"
+    plan = replace(small_study.plan, name=odd, drives={odd: small_study.plan.drives[case]})
+    items = [replace(item, full=replace(item.full, case=odd)) for item in small_study.compared[case]]
+    study = replace(
+        small_study,
+        plan=plan,
+        compared={odd: items},
+        flexibility={odd: small_study.flexibility[case]},
+        coefficients={odd: small_study.coefficients[case]},
+        rows=tuple(replace(row, case=odd) for row in small_study.rows if row.case == case),
+    )
+    text = write_report(study, tmp_path / "odd.html").read_text(encoding="utf-8")
+    assert "<!--<script" not in text
+    assert text.count("<script") == text.count("</script>")
+    assert list(embedded(text)["drives"]) == [odd]

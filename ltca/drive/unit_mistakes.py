@@ -1,0 +1,150 @@
+"""Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never before.
+
+A soft drive under a light torque is sound (printed plastics have some 3000 MPa, TPU 30 MPa), so nothing is refused for
+its modulus. Where no balance is found, a modulus as of rubber, a torque that no steel bears or a pin that yields by more
+than its hole is the likelier cause than slipping teeth.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable
+from math import pi, sqrt
+from typing import ParamSpec, TypeVar
+
+from ltca.drive.parts import Drive, contact_modulus
+from ltca.errors import ConvergenceError, CycloError, DriveError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+SOFT = 1000.0
+"""Young's modulus below that of the softest rigid plastics (polyethylene, some 1000 MPa), MPa."""
+DIAMOND, STIFF = 1.2e6, 2e6
+"""Young's modulus of diamond, and one that nothing has, MPa."""
+PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+BORNE = 10_000.0
+"""Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
+
+
+def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]:
+    """Return what looks like a number in another unit, one sentence each, the likeliest first.
+
+    Parameters
+    ----------
+    drive : Drive
+        A drive whose solution failed.
+    torque : float, optional
+        Output torque, N·mm; the drive's own by default.
+    """
+    used = drive.load.torque if torque is None else torque
+    modulus = _modulus(drive)
+    if modulus:
+        return modulus  # what follows from it is no mistake of its own
+    share = used * drive.disc.torque_share
+    pressure = _pressure(drive, share)
+    if pressure > BORNE:
+        named = "load.torque" if used == drive.load.torque else "torque"
+        return [
+            f"{named} = {used:g} N·mm is {used / 1000.0:g} N·m and would press the wheel pins with some {pressure:.2g} MPa, "
+            f'which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
+        ]
+    shaft = drive.pin_shaft
+    # Some third of the pins carry, on a lever of about two thirds of their circle.
+    load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)
+    if load / shaft.stiffness > 0.5 * shaft.hole_radius:
+        return [
+            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: a shaft pin would yield by {load / shaft.stiffness:.3g} mm "
+            'under its load; a plain number is N/mm, a thousand newtons a micrometre are 1e6 or "1000 N/µm"'
+        ]
+    return []
+
+
+def _modulus(drive: Drive) -> list[str]:
+    values: dict[float, list[str]] = {}
+    for part in PARTS:
+        values.setdefault(getattr(drive.materials, part).youngs_modulus, []).append(part)
+    return [
+        f"materials.{', '.join(names)}: youngs_modulus = {value:g} MPa is softer than any rigid plastic (some {SOFT:g} MPa) "
+        f'and does not carry this torque; {value:g} GPa are written {1000.0 * value:g} or "{value:g} GPa"'
+        for value, names in values.items()
+        if value < SOFT
+    ]
+
+
+def _pressure(drive: Drive, share: float) -> float:
+    """Hertz pressure of a wheel pin under its part of the torque, a third of the pins carrying, MPa."""
+    lever = drive.crank.eccentricity * drive.reduction_ratio
+    load = share / (lever * drive.pin_wheel.number_of_pins / 3.0)
+    modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
+    return sqrt(load * modulus / (pi * drive.disc.thickness * drive.pin_wheel.pin_radius))
+
+
+def explain_failure(error: CycloError, drive: Drive, torque: float | None = None) -> CycloError:
+    """Return an error that names the likely mistake of units in the place of what followed from it.
+
+    Parameters
+    ----------
+    error : CycloError
+        What a solution ended with.
+    drive : Drive
+        What was solved.
+    torque : float, optional
+        Output torque, N·mm; the drive's own by default.
+
+    Returns
+    -------
+    CycloError
+        The error itself where nothing looks like a mistake, or where it is about something else.
+    """
+    carried = isinstance(error, DriveError) and any("cannot be carried" in problem for problem in error.problems)
+    if not carried and not isinstance(error, ConvergenceError):
+        return error
+    found = likely_unit_mistakes(drive, torque)
+    if not found:
+        return error
+    told = f"; {error.problems[0]}" if isinstance(error, DriveError) else ""
+    return DriveError([*found[:-1], f"{found[-1]}{told}"])
+
+
+def names_unit_mistakes(solve: Callable[P, R]) -> Callable[P, R]:
+    """Let a function of a drive, and perhaps a torque, name a likely mistake of units where it fails.
+
+    Parameters
+    ----------
+    solve : callable
+        With parameters ``drive`` and, if it has one, ``torque``.
+    """
+    signature = inspect.signature(solve)
+
+    @functools.wraps(solve)
+    def explained(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            return solve(*args, **kwargs)
+        except (ConvergenceError, DriveError) as error:
+            given = signature.bind(*args, **kwargs).arguments
+            raised = explain_failure(error, given["drive"], given.get("torque"))
+            if raised is error:
+                raise
+            raise raised from error
+
+    return explained
+
+
+def stiffness_warning(drive: Drive) -> str | None:
+    """Return a warning where a modulus is beyond that of any material, None elsewhere: pascals are likely.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    for part in PARTS:
+        modulus = getattr(drive.materials, part).youngs_modulus
+        if modulus > STIFF:
+            return (
+                f"materials.{part}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
+                "number is MPa, not Pa"
+            )
+    return None

@@ -1,0 +1,159 @@
+"""Arguments that commands share: the same names, metavars, units, bounds and default folders in all of them.
+
+Quantities are numbers or texts with a unit (``"20 deg"``); what is wrong is told as in a drive file. Light: commands
+import it at their head.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
+LONGEST_COUNT = 19
+"""Digits of a whole number; what is longer is out of every range."""
+
+
+def add_drive_argument(parser: argparse.ArgumentParser, what: str = DRIVE, *, optional: bool = False) -> None:
+    """Add the drive file."""
+    if optional:
+        parser.add_argument("drive", metavar="DRIVE", nargs="?", help=what)
+    else:
+        parser.add_argument("drive", metavar="DRIVE", help=what)
+
+
+def add_case_argument(parser: argparse.ArgumentParser, what: str, *, several: bool = True) -> None:
+    """Add the case, or cases."""
+    if several:
+        parser.add_argument("--case", metavar="NAME", action="append", help=what)
+    else:
+        parser.add_argument("--case", metavar="NAME", help=what)
+
+
+def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = "folder for the results") -> None:
+    """Add the folder for what a command writes."""
+    shown = default_folder("<drive>" if command != "sweep" else "<study>", command)
+    parser.add_argument("--out", metavar="DIR", type=Path, help=f"{what}; default {shown}")
+
+
+def default_folder(name: str, command: str) -> Path:
+    """Return where a command writes when it is not told: ``out/<name>`` for ``run``, ``out/<name>_<command>`` else.
+
+    Parameters
+    ----------
+    name : str
+        Of the drive, or of the study file.
+    command : str
+        Of the program.
+
+    Examples
+    --------
+    >>> default_folder("paper", "curves").as_posix()
+    'out/paper_curves'
+    """
+    return Path("out") / (name if command == "run" else f"{name}_{command}")
+
+
+def add_angle_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the one crank angle of a command."""
+    parser.add_argument(
+        "--angle",
+        metavar="φ",
+        type=quantity_argument("--angle", "rad"),
+        default=0.0,
+        help="crank angle in rad (or a text such as '20 deg'); default 0",
+    )
+
+
+def add_size_argument(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the element edge as a multiple of the default."""
+    parser.add_argument(
+        "--size",
+        metavar="S",
+        type=quantity_argument("--size", "dimensionless", gt=0.0, le=1e3),
+        default=1.0,
+        help=f"{what}; default 1, 0.5 halves it",
+    )
+
+
+def quantity_argument(
+    option: str, unit: str, *, gt: float | None = None, ge: float | None = None, le: float | None = None
+) -> Callable[[str], float]:
+    """Return what reads the text of an option as a quantity.
+
+    Parameters
+    ----------
+    option : str
+        For messages.
+    unit : str
+        Unit of the result and of plain numbers, see `ltca.drive.units.quantity`.
+    gt, ge, le : float, optional
+        Bounds (greater than, at least, at most) in that unit.
+
+    Returns
+    -------
+    callable
+        For ``type=`` of an argument; it raises `DriveError`.
+    """
+
+    def read(text: str) -> float:
+        from ltca.drive.units import parse_quantity
+
+        return parse_quantity(text, unit, option, gt=gt, ge=ge, le=le)
+
+    return read
+
+
+def torque_argument(text: str) -> float:
+    """Return the output torque of ``--torque``, N·mm.
+
+    Raises
+    ------
+    DriveError
+        When it is none.
+    """
+    from ltca.drive.units import parse_quantity
+    from ltca.errors import DriveError
+
+    try:
+        return parse_quantity(text, "N*mm", "--torque", gt=0.0)
+    except DriveError as error:
+        (problem,) = error.problems
+        hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""
+        raise DriveError([f"{problem}{hint}"]) from error
+
+
+def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
+    """Return what reads the text of an option as a whole number within bounds.
+
+    Parameters
+    ----------
+    option : str
+        For messages.
+    least, most : int
+        Bounds, both allowed.
+
+    Returns
+    -------
+    callable
+        For ``type=`` of an argument; it raises `DriveError`.
+
+    Examples
+    --------
+    >>> count_argument("--positions", 1, 1_000_000)("360")
+    360
+    """
+
+    def read(text: str) -> int:
+        from ltca.errors import DriveError, shortened
+
+        digits = text.removeprefix("-").removeprefix("+")
+        if not (digits.isascii() and digits.isdigit()):
+            raise DriveError([f"{option} = {shortened(text)}: must be a whole number from {least} to {most}"])
+        number = int(text) if len(digits) <= LONGEST_COUNT else -1
+        if len(digits) > LONGEST_COUNT or not least <= number <= most:
+            raise DriveError([f"{option} = {shortened(text)[1:-1]}: must be from {least} to {most}"])
+        return number
+
+    return read

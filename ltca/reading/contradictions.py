@@ -1,0 +1,157 @@
+"""Which field is behind a contradiction: the one that alone can mend all of it, not the one whose bound it breaks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import exp, log
+from typing import Any
+
+from ltca.drive.fields import read_field
+from ltca.drive.parts import Drive
+from ltca.reading.physical_checks import is_sound
+
+CAUSES = (
+    "pin_wheel.pin_circle_radius", "crank.eccentricity", "pin_wheel.pin_radius", "disc.thickness",
+    "disc.equidistant_offset", "disc.shifting_offset", "crank_bearing.inner_race_radius",
+    "crank_bearing.outer_race_radius", "crank_bearing.roller_radius", "crank_bearing.roller_length",
+    "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius", "pin_shaft.hole_radius", "clearance.bearing",
+    "clearance.pin_hole",
+)  # fmt: skip
+COUNTS = ("pin_shaft.number_of_pins", "crank_bearing.number_of_rollers")
+# From 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as the eccentricity a hole leaves; then of 1.22.
+SIZES = (0.01, 0.03, 0.06, *(0.113 * k for k in range(1, 15)), *(1.6 + 0.2 * k for k in range(40)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cause:
+    """A field that alone can mend a drive.
+
+    Attributes
+    ----------
+    path : str
+        The field.
+    value, bound : float
+        What it is, and the nearest value that is sound, mm.
+    """
+
+    path: str
+    value: float
+    bound: float
+
+    @property
+    def distance(self) -> float:
+        """How far off the field is, as a logarithm."""
+        return abs(log(self.bound / self.value))
+
+    def bounded(self) -> str:
+        """Return the bound in words, rounded to the sound side."""
+        least = self.bound > self.value
+        if self.path in COUNTS:
+            return f"{'at least' if least else 'at most'} {self.bound:g}"
+        # What fits exactly (races about a roller) is a round number again.
+        for text in (f"{self.bound:.4g}", f"{self.bound * (1.0 + (5e-5 if least else -5e-5)):.4g}"):
+            if float(text) == self.bound or (float(text) > self.bound) == least:
+                break
+        return f"{'at least' if least else 'at most'} {text} mm"
+
+    def named(self) -> str:
+        """Return field and value."""
+        return f"{self.path} = {self.value:g}" + ("" if self.path in COUNTS else " mm")
+
+
+def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
+    """Return contradictions with the field that causes them in the place of those that suffer from it.
+
+    Parameters
+    ----------
+    drive : Drive
+        What they were found in.
+    problems : list of str
+        Of `ltca.reading.physical_checks.find_contradictions`.
+
+    Returns
+    -------
+    list of str
+        One sentence that names the cause, when one field mends all; otherwise the problems as they are.
+    """
+    if not problems:
+        return []
+    named = {problem.partition(" ")[0].rstrip(":") for problem in problems}
+    if not all(path in COUNTS or (path in CAUSES and read_field(drive, path) > 0.0) for path in named):
+        return problems  # of deviations and negative offsets, which are what is wrong themselves
+    causes = sorted(_causes(drive), key=lambda cause: cause.distance)
+    # A field that is named already and mends everything is said well enough.
+    if not causes or (len(named) == 1 and named <= {cause.path for cause in causes}):
+        return problems
+    # One that breaks a bound itself is the likelier, unless another is very much nearer to what is sound.
+    least = causes[0].distance
+    near = [cause for cause in causes if cause.distance <= 10.0 * least]
+    first, *others = sorted(near, key=lambda cause: (cause.path not in named, cause.distance))
+    instead = "".join(
+        f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance <= 2.5 * first.distance
+    )
+    reasons = "; ".join(dict.fromkeys(_consequence(problem, first.path) for problem in problems[:2]))
+    return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"]
+
+
+def _causes(drive: Drive) -> Iterator[Cause]:
+    for path in CAUSES:
+        value = float(read_field(drive, path))
+        if value <= 0.0:
+            continue
+        fitting = _fitting(drive, path)
+        if fitting > 0.0 and fitting != value and _sound_with(drive, path, fitting):
+            yield Cause(path=path, value=value, bound=_nearest(drive, path, value, log(fitting / value)))
+            continue
+        for size in (sign * size for size in SIZES for sign in (1.0, -1.0)):
+            if _sound_with(drive, path, value * exp(size)):
+                yield Cause(path=path, value=value, bound=_nearest(drive, path, value, size))
+                break
+    for path in COUNTS:
+        count = int(read_field(drive, path))
+        for other in (other for step in range(1, 200) for other in (count - step, count + step)):
+            if other >= 3 and _sound_with(drive, path, other):
+                yield Cause(path=path, value=count, bound=other)
+                break
+
+
+def _fitting(drive: Drive, path: str) -> float:
+    """The value that follows from the other fields where little room is left; 0 elsewhere, mm."""
+    bearing = drive.crank_bearing
+    return {
+        "crank_bearing.inner_race_radius": bearing.outer_race_radius - 2.0 * bearing.roller_radius,
+        "crank_bearing.outer_race_radius": bearing.inner_race_radius + 2.0 * bearing.roller_radius,
+        "crank_bearing.roller_radius": 0.5 * (bearing.outer_race_radius - bearing.inner_race_radius),
+    }.get(path, 0.0)
+
+
+def _nearest(drive: Drive, path: str, value: float, size: float) -> float:
+    """Sound value nearest to the present one, by bisection between it and one that is known to be sound."""
+    wrong, sound = 0.0, size
+    for _ in range(16):
+        middle = 0.5 * (wrong + sound)
+        if _sound_with(drive, path, value * exp(middle)):
+            sound = middle
+        else:
+            wrong = middle
+    return value * exp(sound)
+
+
+def _sound_with(drive: Drive, path: str, value: float) -> bool:
+    part, name = path.split(".")
+    try:
+        changed: Any = replace(getattr(drive, part), **{name: value})
+        return is_sound(replace(drive, **{part: changed}))
+    except (ValueError, ArithmeticError):
+        return False
+
+
+def _consequence(problem: str, cause: str) -> str:
+    """What a contradiction says beside its own bound."""
+    if match := re.search(r", or (.+)$", problem):
+        return match.group(1)
+    head, _, tail = problem.partition(": ")
+    told = tail.partition("; must")[0]
+    return told if head.startswith(f"{cause} ") else f"{head}: {told}"

@@ -1,0 +1,88 @@
+"""TOML files as plain tables: whatever the file holds, it is read or refused in one sentence."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from ltca.errors import DriveError, printable
+
+DEEPEST = 20
+"""Tables and arrays in each other; a drive file needs five."""
+# Possessive and anchored, so that long words cost their length once.
+_MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){60}""")
+LARGEST = 50_000_000
+"""Bytes of a file; a drive of 10,000 cases has some 2 MB."""
+
+
+def read_text(path: Path, missing: str = "no such file") -> str:
+    """Return the text of a TOML file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    missing : str
+        What to say when it is not there.
+
+    Raises
+    ------
+    DriveError
+        When it cannot be read.
+    """
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(LARGEST + 1)
+        if len(content) > LARGEST:
+            raise DriveError([f"is larger than {LARGEST // 1_000_000} MB: no file of cyclo is"], str(path))
+        return content.decode("utf-8")
+    except FileNotFoundError as error:
+        raise DriveError([missing], str(path)) from error
+    except UnicodeDecodeError as error:
+        raise DriveError([f"cannot be read: byte {error.start} is not UTF-8"], str(path)) from error
+    except (OSError, ValueError) as error:  # ValueError: a name with a null character
+        reason = error.strerror if isinstance(error, OSError) else None
+        raise DriveError([f"cannot be read: {reason or error}"], str(path)) from error
+
+
+def parse_toml(text: str, source: str) -> dict[str, Any]:
+    """Return the tables of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+        The text; a byte-order mark before it is passed over.
+    source : str
+        Its file, for the message.
+
+    Raises
+    ------
+    DriveError
+        When it is not TOML, or tables stand in each other more than `DEEPEST` deep.
+    """
+    if _MANY_DOTS.search(text):  # the parser takes seconds for a key of thousands of parts
+        raise DriveError([_too_deep()], source)
+    try:
+        table = tomllib.loads(text.removeprefix("\ufeff").replace("\r\n", "\n"))
+    except RecursionError as error:
+        raise DriveError([_too_deep()], source) from error
+    except ValueError as error:  # TOMLDecodeError, and what int() says to thousands of digits
+        about = "a whole number has thousands of digits" if "digits" in str(error) else printable(str(error))[:200]
+        raise DriveError([f"is not valid TOML: {about}"], source) from error
+    level: list[Any] = [table]
+    for _ in range(DEEPEST):
+        level = [
+            inner
+            for outer in level
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+            if isinstance(inner, dict | list)
+        ]
+        if not level:
+            return table
+    raise DriveError([_too_deep()], source)
+
+
+def _too_deep() -> str:
+    return f"tables or arrays stand in each other more than {DEEPEST} deep"

@@ -1,0 +1,130 @@
+"""The same option means the same in every command: metavar, unit, default folder; numbers are checked where they enter."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+import pytest
+
+from ltca.commands.program import ORDER, build_parser, main
+from ltca.errors import CycloError
+
+PARSER = build_parser()
+(COMMANDS,) = (action.choices for action in PARSER._actions if isinstance(action, argparse._SubParsersAction))
+POSITIONALS = {"sweep": ["x.toml"], "init": ["x.toml"], "optimise": ["paper", "--vary", "x", "--minimise", "y"]}
+
+
+def options(name):
+    return {word: action for action in COMMANDS[name]._actions for word in action.option_strings}
+
+
+def parse(name, *words):
+    return PARSER.parse_args([name, *POSITIONALS.get(name, ["paper"]), *words])
+
+
+def test_every_command_is_looked_at():
+    assert tuple(COMMANDS) == ORDER
+
+
+def test_metavars_are_the_same_in_all_commands():
+    seen = {}
+    for name in COMMANDS:
+        for action in COMMANDS[name]._actions:
+            words = action.option_strings or [action.dest]
+            seen.setdefault(words[-1], {}).setdefault(str(action.metavar), []).append(name)
+    assert seen.pop("--out") == {"DIR": [name for name in ORDER if name not in ("init", "derive")], "FILE": ["derive"]}
+    assert {word: found for word, found in seen.items() if len(found) > 1} == {}
+
+
+def test_folders_are_named_after_drive_and_command():
+    for name in set(ORDER) - {"init", "run", "sweep", "derive"}:
+        assert f"default out/<drive>_{name}" in " ".join(options(name)["--out"].help.split())
+    assert "default out/<drive>" in options("run")["--out"].help
+    assert "default out/<study>_sweep" in options("sweep")["--out"].help
+    assert "default out/<drive>_derive/coefficients.nc" in options("derive")["--out"].help
+
+
+QUANTITIES = [
+    (name, word, text, value)
+    for word, text, value in (
+        ("--angle", "20 deg", math.radians(20.0)), ("--angles", "-20deg", math.radians(-20.0)),
+        ("--pressure", "30′", math.radians(0.5)), ("--torque", "377.3 N m", 377_300.0), ("--torque", "377.3", 377.3),
+        ("--pressure-limit", "1.5 GPa", 1500.0), ("--load-rating", "40 kN", 40_000.0), ("--speed", "1500 rpm", 1500.0),
+        ("--speed", "1500", 1500.0), ("--size", "50 %", 0.5), ("--stations", "2", 2.0),
+    )
+    for name in ORDER
+    if word in options(name)
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "word", "text", "value"), QUANTITIES)
+def test_quantities_take_units_wherever_they_are_asked_for(name, word, text, value):
+    found = getattr(parse(name, word, text), word.strip("-").replace("-", "_"))
+    assert (found[0] if isinstance(found, list) else found) == value
+
+
+def test_every_number_is_read_by_our_own_grammar():
+    """float and int of Python take nan, inf, 1_000 and Arabic digits."""
+    for name in ORDER:
+        for word, action in options(name).items():
+            assert action.type not in (int, float), (name, word)
+    assert {name for name, *_ in QUANTITIES} >= {"run", "show", "curves", "mesh", "fem", "derive", "validate"}
+
+
+NUMBERS = sorted(
+    {word for name in ORDER for word, action in options(name).items() if action.type is not None} - {"--out"}
+)
+
+
+@pytest.mark.parametrize("word", NUMBERS)
+def test_what_is_no_number_is_refused_in_one_line(word, capsys):
+    (name, *_) = [name for name in ORDER if word in options(name)]
+    if word in ("--coefficients", "--order"):
+        pytest.skip("a file, a choice")
+    for text in ("nan", "inf", "-inf", "1e999", "1e9", "x", "", "1,5", "1_000", "٣", "7" * 400, "1/0", "true", "5 kg"):
+        if text == "1e9" and word in {word for _, word, *_ in QUANTITIES}:
+            continue  # large, but a quantity
+        assert main([name, *POSITIONALS.get(name, ["paper"]), f"{word}={text}"]) == 2, text
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.count("\n") == 1, err
+        assert err.startswith(f"cyclo: error: {word} = "), err
+        assert err[:-1].isprintable()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["rnu", "paper"], "did you mean `run`?"),
+        (["run", "paper", "--postions", "3"], "did you mean `--positions`?"),
+        (["run", "paper", "--compliance", "hybird"], "did you mean `hybrid`?"),
+        (["run"], "the following arguments are required: DRIVE"),
+    ],
+)
+def test_usage_is_told_in_one_line_with_what_was_meant(words, told, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(words)
+    assert stopped.value.code == 2
+    err = capsys.readouterr().err
+    assert told in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["tolerance", "paper", "--quantities", "max_pin_laod"], "did you mean `max_pin_load`?"),
+        (["optimise", "paper", "--vary", "thicknes", "--minimise", "max_pin_load"], "did you mean `thickness`?"),
+        (["optimise", "paper", "--vary", "thickness", "--minimise", "max_pin_laod"], "did you mean `max_pin_load`?"),
+        (["run", "paper", "--case", "cs-1"], "did you mean `CS-1`?"),
+    ],
+)
+def test_names_that_are_not_there_ask_for_the_nearest(words, told, capsys):
+    assert main(words) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_torque_turned_round_says_what_turns_it():
+    with pytest.raises(CycloError, match=r"--torque = -5: must be greater than 0 N·mm \(load.direction turns it\)"):
+        parse("fem", "--torque=-5")

@@ -1,0 +1,61 @@
+"""A drive that cannot carry its load names the number in a wrong unit; a soft drive under a light torque is sound."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning
+from ltca.errors import ConvergenceError, CycloError, DriveError
+
+ANGLE = np.array([0.5])
+
+
+def all_of(modulus):
+    return {part: {"youngs_modulus": modulus} for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")}
+
+
+def test_gigapascals_as_plain_number(vary):
+    """E = 206 ended in 'the teeth slip'."""
+    with pytest.raises(DriveError) as caught:
+        analyse(vary(materials=all_of(206.0)), ANGLE)
+    assert "youngs_modulus = 206 MPa is softer" in str(caught.value)
+    assert '206000 or "206 GPa"' in str(caught.value)
+    assert "slip" not in str(caught.value)
+
+
+def test_a_torque_a_thousand_times_too_large(vary):
+    with pytest.raises(
+        DriveError, match=r"^load.torque = 3.773e\+08 N·mm is 377300 N·m and would press .*\"377.3 N m\""
+    ):
+        analyse(vary(load={"torque": 377.3e6}), ANGLE)
+    with pytest.raises(DriveError, match=r"^torque = 3.773e\+08 N·mm is"):
+        analyse(vary(), ANGLE, 377.3e6)
+
+
+def test_a_stiffness_in_another_unit(vary):
+    with pytest.raises(DriveError, match=r"pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
+        analyse(vary(pin_shaft={"stiffness": 1.0}), ANGLE)
+
+
+@pytest.mark.parametrize(("modulus", "torque"), [(3000.0, 20_000.0), (30.0, 300.0)])
+def test_printed_plastics_are_sound(modulus, torque, vary):
+    """PLA has some 3000 MPa, TPU 30 MPa: the drive balances, and its bearing carries T/(u e)."""
+    found = analyse(vary(materials=all_of(modulus), load={"torque": torque, "light_torque": 0.1 * torque}), ANGLE)
+    # The share of one position about the mean over a turn, which is exact: 1 % (README).
+    assert found.bearing_tangential[0] == pytest.approx(torque / (14 * 4.0), rel=0.02)
+
+
+def test_what_is_in_order_is_not_explained(vary):
+    drive = vary()
+    assert likely_unit_mistakes(drive) == []
+    lost = ConvergenceError("no equilibrium")
+    assert explain_failure(lost, drive) is lost
+    other = CycloError("a file is missing")
+    assert explain_failure(other, vary(materials=all_of(206.0))) is other
+
+
+def test_pascals_are_warned_about(vary):
+    assert stiffness_warning(vary()) is None
+    assert "stiffer than diamond" in stiffness_warning(vary(materials={"disc": {"youngs_modulus": 206e9}}))

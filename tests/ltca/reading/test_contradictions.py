@@ -1,0 +1,160 @@
+"""A contradiction names the field that is wrong; its bound follows from the checks by hand."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from ltca.errors import DriveError
+from ltca.reading.drive_file import build_drive, parse_drive, shipped_drive
+
+BASE = shipped_drive().partition("[[case]]")[0]
+# The root circle (radius R_C − e − r_P − Δr_P + ΔR_C = 77.44 mm) leaves 7.365 mm beside the holes (56 + 14.075 mm).
+SMALLEST_PIN_CIRCLE = 88.0 - (77.44 - 56.0 - 14.075)
+# A hole leads its pin: e ≤ r_PSH − r_PS ≤ 1.5 e; rollers: 0.9 space ≤ 2 r_BR ≤ space.
+WRONG = [
+    ("pin_wheel", "pin_circle_radius", 8.8, "at least", SMALLEST_PIN_CIRCLE),
+    ("pin_wheel", "pin_circle_radius", "88 µm", "at least", SMALLEST_PIN_CIRCLE),
+    ("pin_wheel", "pin_circle_radius", 40.0, "at least", SMALLEST_PIN_CIRCLE),
+    ("crank", "eccentricity", 40.0, "at most", 4.0),
+    ("crank", "eccentricity", 0.4, "at least", 4.0 / 1.5),
+    ("crank_bearing", "outer_race_radius", 290.5, "at most", 19.5 + 10.0 / 0.9),
+    ("crank_bearing", "inner_race_radius", 1.95, "at least", 29.5 - 10.0 / 0.9),
+    ("crank_bearing", "roller_radius", 50.0, "at most", 5.0),
+    ("pin_shaft", "pin_circle_radius", 5.6, "at least", 29.5 + 14.075),
+    ("pin_shaft", "hole_radius", 140.75, "at most", 10.075 + 6.0),
+]
+
+
+@pytest.mark.parametrize(("part", "field", "value", "side", "bound"), WRONG)
+def test_the_field_that_was_spoilt_is_named_with_its_bound(part, field, value, side, bound, paper_table):
+    """A pin circle too small read 'hole_radius must be less than −29.06'."""
+    with pytest.raises(DriveError) as caught:
+        build_drive(paper_table(**{part: {field: value}}))
+    (problem,) = caught.value.problems
+    found = re.match(rf"{part}\.{field} = \S+ mm: must be {side} ([\d.]+) mm .*for the rest of the drive: ", problem)
+    assert found, problem
+    # Four digits are printed, rounded to the sound side.
+    assert float(found[1]) == pytest.approx(bound, rel=1.1e-3)
+    assert not re.search(r"-\d", problem)  # no length is bounded by less than nothing
+    build_drive(paper_table(**{part: {field: float(found[1])}}))
+
+
+def test_a_count_that_was_spoilt_is_named(paper_table):
+    with pytest.raises(
+        DriveError, match=r"^pin_shaft.number_of_pins = 18: must be at most 12 for the rest of the drive"
+    ):
+        build_drive(paper_table(pin_shaft={"number_of_pins": 18}))
+
+
+def test_two_spoilt_fields_keep_their_own_sentences(paper_table):
+    """No single field mends it: each contradiction is told, and none with a negative bound."""
+    spoilt = {"pin_wheel": {"pin_circle_radius": 8.8}, "crank_bearing": {"number_of_rollers": 400}}
+    with pytest.raises(DriveError) as caught:
+        build_drive(paper_table(**spoilt))
+    assert len(caught.value.problems) > 1
+    assert not re.search(r"(than|most) -\d", str(caught.value))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("pin_radius = 6.5", "pin_wheel.pin_radus: is not a field; did you mean `pin_radius`, which is missing?"),
+        ('direction = "ccw"', "load.direction = 'CCW': must be 'ccw' or 'cw'; did you mean `ccw`?"),
+        ("[clearance]", "clearence: is not a field of the drive definition; did you mean `clearance`?"),
+        (
+            "disc = { youngs_modulus",
+            "materials.disc.yongs_modulus: is not a field of the drive definition; did you mean",
+        ),
+        (
+            "crank.eccentricity_error =",
+            "tolerances.crank.excentricity_error: is not a field of the drive that can scatter; did",
+        ),
+        ('distribution = "normal"', "crank.eccentricity_error.distribution = 'normel': must be 'normal', 'uniform' or"),
+    ],
+)
+def test_what_was_meant_is_asked(text, told):
+    wrong = {
+        "pin_radius = 6.5": "pin_radus = 6.5", 'direction = "ccw"': 'direction = "CCW"', "[clearance]": "[clearence]",
+        "disc = { youngs_modulus": "disc = { yongs_modulus", "crank.eccentricity_error =": "crank.excentricity_error =",
+        'distribution = "normal"': 'distribution = "normel"',
+    }[text]  # fmt: skip
+    assert text in BASE
+    with pytest.raises(DriveError) as caught:
+        parse_drive(BASE.replace(text, wrong, 1))
+    assert len(caught.value.problems) == 1
+    assert told in str(caught.value)
+
+
+def test_a_mistake_of_several_cases_is_told_once_with_their_names():
+    cases = "".join(f'[[case]]\nname = "{name}"\nclearance = {{ pin_hole = 3.0 }}\n' for name in "AB")
+    sound = '[[case]]\nname = "C"\n'
+    with pytest.raises(DriveError) as caught:
+        parse_drive(BASE + cases + sound)
+    assert caught.value.problems == (
+        "cases A, B: clearance.pin_hole = 3 mm: must be at most 2 mm, half the eccentricity",
+    )
+    with pytest.raises(DriveError) as caught:
+        parse_drive(BASE + (cases + sound).replace("pin_hole = 3.0", "pin_hole = -1"))
+    assert caught.value.problems == ("cases A, B: clearance.pin_hole = -1: must be at least 0 mm",)
+
+
+def test_a_case_overrides_parts_and_keeps_the_rest():
+    """Parts that a case leaves alone are taken over from the base, whole."""
+    text = (
+        BASE + '[[case]]\nname = "A"\ndisc = { number_of_discs = 2 }\nmaterials = { disc = { poisson_ratio = 0.25 } }\n'
+    )
+    base, changed = parse_drive(BASE).cases["nominal"], parse_drive(text).cases["A"]
+    assert changed.disc.torque_share == 0.5
+    assert changed.disc.thickness == base.disc.thickness
+    assert changed.materials.disc.poisson_ratio == 0.25
+    assert changed.materials.disc.youngs_modulus == base.materials.disc.youngs_modulus
+    assert (changed.crank, changed.pin_wheel, changed.load) == (base.crank, base.pin_wheel, base.load)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("x = " + "[" * 5000 + "]" * 5000, "more than 20 deep"),
+        ("a." * 5000 + "a = 1", "more than 20 deep"),
+        ("x = " + "{a=" * 1001 + "1" + "}" * 1001, "more than 20 deep"),
+        ("x = " + "7" * 5000, "a whole number has thousands of digits"),
+        ("x = ", "is not valid TOML"),
+    ],
+)
+def test_texts_that_broke_the_parser(content, told):
+    with pytest.raises(DriveError, match=told):
+        parse_drive(f"{content}\n{BASE}")
+
+
+def test_names_that_can_and_cannot_be():
+    for name in ("a$x_{b$", "<!--<script>", "it's", "中文", "a" * 120):
+        assert list(parse_drive(f"{BASE}\n[[case]]\nname = '''{name}'''").cases) == [name]
+    for name in (
+        r"a\u0000b",
+        r"a\nb",
+        r"a\u001b[31m",
+        r"a\u007f",
+        r"a\u202eb",
+        r"a\u2028b",
+        "a/b",
+        "..",
+        " ",
+        "a" * 121,
+    ):
+        with pytest.raises(DriveError, match="can name a file"):
+            parse_drive(f'{BASE}\n[[case]]\nname = "{name}"')
+        with pytest.raises(DriveError, match="can name a file"):
+            parse_drive(BASE.replace('name = "paper"', f'name = "{name}"', 1))
+
+
+@pytest.mark.parametrize("value", ["true", '"14 mm"', "14.5", "nan", "[]"])
+def test_no_count_is_no_count(value):
+    """True was one disc."""
+    with pytest.raises(DriveError, match=r"disc.number_of_discs = .*: must be a whole number"):
+        parse_drive(BASE.replace("number_of_discs = 1", f"number_of_discs = {value}"))
+    assert (
+        parse_drive(BASE.replace("number_of_discs = 1", "number_of_discs = 2.0")).cases["nominal"].disc.torque_share
+        == 0.5
+    )
