@@ -88,6 +88,7 @@ def test_cylinder_on_cylinder(ratio, second):
     assert contact.force.real == pytest.approx(1500.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_finer_meshes_come_nearer_to_hertz():
     errors = []
     for elements in (4.0, 16.0):
@@ -98,6 +99,7 @@ def test_finer_meshes_come_nearer_to_hertz():
     assert errors[1] < 2e-3
 
 
+@pytest.mark.slow
 def test_roller_between_flats(block_of, flat):
     """Approach of points 2 mm deep in two large flats that squeeze a roller (Johnson, Eqs. 5.56, 5.57)."""
     radius, thickness, line_load, depth = 5.0, 11.8, 150.0, 2.0

@@ -67,6 +67,7 @@ def test_crank_torque_is_the_slope_of_the_potential(paper_cases, case):
         assert np.ptp(slope) / mean > 3e-3  # the swing that is to be met
 
 
+@pytest.mark.slow
 def test_mean_tangential_bearing_force(paper_cases):
     """T_out/(u e) = 377.3 N·m/(14 · 4 mm) = 6737.5 N in the mean."""
     angles = 2.0 * np.pi * np.arange(180) / 180

@@ -132,6 +132,7 @@ def test_recovered_stress_converges(pressed_rings):
 
 
 @pytest.mark.parametrize("radius", [pytest.param(1.0, marks=pytest.mark.slow), 3.0])
+@pytest.mark.slow
 def test_kirsch_hole(radius):
     """The exact tractions of the infinite plate act on a ring about the hole."""
     outer, far = 5.0 * radius, 80.0

@@ -89,6 +89,7 @@ def test_every_writer_on_a_full_disc(suffix, tmp_path):
     assert path.stat().st_size > LIMIT
 
 
+@pytest.mark.slow
 def test_a_full_disc_is_no_segmentation_fault(tmp_path):
     words = ["run", "paper", "--case", "CS-1", "--angles", "0.5", "--no-figures", "--out", str(tmp_path / "out")]
     done = subprocess.run([sys.executable, "-c", PROGRAM, "40000", *words], capture_output=True, text=True, check=False)

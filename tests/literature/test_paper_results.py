@@ -50,6 +50,7 @@ def change(summary, key, case, reference):
     return 100.0 * (summary[case][key] / summary[reference][key] - 1.0)
 
 
+@pytest.mark.slow
 def test_six_cases(summary):
     assert list(summary) == CASES
 

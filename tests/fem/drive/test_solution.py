@@ -14,6 +14,8 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
+pytestmark = pytest.mark.slow
+
 # Crank torque over eccentricity, T_out/(u e).
 TANGENTIAL = 377_300.0 / (14.0 * 4.0)
 CONTACT_KINDS = (

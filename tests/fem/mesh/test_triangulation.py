@@ -193,6 +193,7 @@ def test_a_turned_mesh_keeps_its_connectivity_and_shape() -> None:
     assert area_of(turned) == pytest.approx(area_of(body), rel=1e-13)
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_mesh_in_another_process(
     drive: Drive, shapes: DriveShapes, tmp_path: Path
 ) -> None:

@@ -107,6 +107,7 @@ def extremes_of(analysis):
 
 
 @pytest.mark.parametrize(("case", "many"), [("CS-1", 3600), (CASE, 1200)])
+@pytest.mark.slow
 def test_thirteen_positions_reach_what_thousands_say(paper_cases, case, many):
     """They see one phase of the mesh: CS-4 reads 1.73″ peak to peak in place of 4.98″."""
     drive = paper_cases[case]

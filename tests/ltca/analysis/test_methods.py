@@ -84,6 +84,7 @@ def test_paper_agrees_on_the_same_law(case):
     assert np.all(theirs.full.iterations > 0)
 
 
+@pytest.mark.slow
 def test_paper_on_grids_agrees_with_direct():
     drive, angle = CASES["CS-1"], np.array([0.9])
     direct = analyse(drive, angle, engine=HalfSpace(method="direct"))

@@ -89,6 +89,7 @@ def test_figures_are_those_of_single_torques(paper_cases):
     np.testing.assert_allclose(found.stiffness, np.stack([clockwise, ccw], axis=1), rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_stiffness_is_that_of_the_whole_drive(paper_cases):
     """Each of two discs carries half: dT/dφ of the output is that of one disc twice, by two separate balances.
 
@@ -110,6 +111,7 @@ def test_stiffness_is_that_of_the_whole_drive(paper_cases):
     np.testing.assert_allclose(heavy.torque, 2.0 * alone.torque, rtol=1e-14)
 
 
+@pytest.mark.slow
 def test_compliance_is_passed_on(paper_cases):
     """Hybrid without coupling is the half-space; bodies that yield make the drive softer."""
     drive = paper_cases["CS-3"]

@@ -213,6 +213,7 @@ def test_figures_of_several_cases_have_their_names(monkeypatch, tmp_path):
     ]
 
 
+@pytest.mark.slow
 def test_compliance_is_passed_on(monkeypatch, tmp_path):
     """It was half-space without a word. Without coupling and hole walls `hybrid` is the half-space, in everything."""
     plain = coarse_curves(monkeypatch, tmp_path / "plain", "--case", CASE)
@@ -246,7 +247,7 @@ def test_compliance_is_passed_on(monkeypatch, tmp_path):
     [
         (["--coefficients", "c.nc"], "coefficients: has no effect with compliance half-space"),
         (["--no-hole-near-field"], "hole_near_field: has no effect with compliance half-space"),
-        (["--compliance", "fe", "--coefficients", "missing.nc"], "missing.nc: cannot be read as a coefficient file"),
+        (["--compliance", "fe", "--coefficients", "missing.nc"], "missing.nc: no such file"),
         (["--case", "CS-1", "--case", "CS-9"], "case 'CS-9' is not defined"),
     ],
 )

@@ -137,6 +137,7 @@ def test_output_that_cannot_be_written(tmp_path, capsys):
     assert "is a file, not a folder" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_init_writes_a_runnable_commented_copy(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["init", "my.toml"]) == 0

@@ -46,6 +46,7 @@ def write(drive, path, **attributes):
     return path
 
 
+@pytest.mark.slow
 def test_every_case_has_the_coefficients_of_its_own_bodies(paper_cases, derived):
     """All cases used the first one's: an aluminium disc as third case read 242 N together and 1496 N alone."""
     steel = paper_cases["CS-1"]
@@ -181,6 +182,7 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
     assert found["large"].fingerprint == cases["large"].shape_fingerprint()
 
 
+@pytest.mark.slow
 def test_run_of_cases_of_different_bodies(derived, tmp_path, capsys):
     """Together as alone, and nothing said of pressures at ends that plane strain does not have."""
     aluminium = '\n[[case]]\nname = "AL"\nmaterials.disc = { youngs_modulus = 70e3, poisson_ratio = 0.33 }\n'
@@ -206,6 +208,7 @@ def test_run_of_cases_of_different_bodies(derived, tmp_path, capsys):
     assert all(line.split()[-1] == "–" for line in anywhere)
 
 
+@pytest.mark.slow
 def test_results_say_when_coefficients_are_shared(paper_cases, tmp_path):
     path = write(paper_cases["CS-1"], tmp_path / "shared.nc", clearances_left_out=1)
     words = ["run", "paper", "--case", "CS-1", "--case", "CS-6", "--angles", "0.5", "--compliance", "hybrid"]

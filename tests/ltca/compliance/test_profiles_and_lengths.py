@@ -56,6 +56,7 @@ def answers(result):
     ],
     ids=["short", "crowned", "short and logarithmic", "relieved pins"],
 )
+@pytest.mark.slow
 def test_without_a_body_part_it_is_the_half_space_with_its_profiles(fields, paper_cases, coarse_tables):
     drive = with_fields(paper_cases["CS-1"], fields)
     plain = analyse(drive, ANGLES)
@@ -85,6 +86,7 @@ def test_crown_is_felt_on_a_body_part(paper_cases, closed_form, coarse_tables):
     assert found.pressures.inner.largest.max() < 0.8 * even.pressures.inner.largest.max()
 
 
+@pytest.mark.slow
 def test_vanishing_crown_is_none(paper_cases, closed_form, coarse_tables):
     drive = paper_cases["CS-1"]
     engine = Hybrid(coefficients=closed_form(drive))

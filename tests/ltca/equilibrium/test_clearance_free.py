@@ -52,6 +52,7 @@ def test_other_angles_of_the_paper_agree(angle):
     assert np.all(differences < 3e-4)
 
 
+@pytest.mark.slow
 def test_reverse_direction_is_the_mirror_image():
     reverse = parse_drive(shipped_drive().replace('direction = "ccw"', 'direction = "cw"')).cases["CS-1"]
     forward = analyse_without_clearance(PAPER["CS-1"], 0.4, cells=8)

@@ -47,6 +47,7 @@ def test_poses_of_the_paper_are_the_farthest(paper_cases, case):
     assert_farthest(paper_cases[case], np.linspace(0.0, 6.2, 9))
 
 
+@pytest.mark.slow
 def test_rigid_poses_of_cs3_and_cs5_do_not_interfere(paper_cases):
     """The linear programme kept its bounds to 1e-7 mm only: "parts interfere by 9.67e-08 mm in every rigid pose"."""
     angles = 2.0 * np.pi * np.arange(90) / 90
@@ -99,6 +100,7 @@ def test_drives_of_other_kinds_have_an_answer(vary, paper_cases):
     assert_farthest(deviated, angles)
 
 
+@pytest.mark.slow
 def test_random_drives_without_preload_have_an_answer(random_drives):
     """Clearances of their own, errors taken out: what is left can be put together without force."""
     for drive in random_drives:

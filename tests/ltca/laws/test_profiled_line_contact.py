@@ -103,6 +103,7 @@ def test_law_against_a_refined_grid(profile, approach):
     assert float(law.half_width(approach, 2.0)) == pytest.approx(fine.half_width, rel=3e-3)
 
 
+@pytest.mark.slow
 def test_no_relief_is_the_uncrowned_law():
     flat = CircularCrown(length=11.8, crown_radius=1e12)
     approach = np.geomspace(1e-5, 1e-1, 9)

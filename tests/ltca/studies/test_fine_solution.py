@@ -60,6 +60,7 @@ def test_limits_broken_when_solved_finely(drive):
     assert broken_limits(problem, {"max_pin_load": 99.0, "min_backlash_wheel": 7.9}) == limits[1:]
 
 
+@pytest.mark.slow
 def test_optimum_is_told_finely(tmp_path, capsys):
     """It announced what its few positions saw: 2.71″ where a fine run reads 3.35″."""
     parser = argparse.ArgumentParser()

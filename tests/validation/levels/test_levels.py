@@ -9,6 +9,7 @@ import validation.levels.printed_results as printed_results
 from validation.rows import failed_rows
 
 
+@pytest.mark.slow
 def test_closed_forms(paper_cases):
     rows = closed_forms.check_closed_forms(paper_cases["CS-1"])
     assert len(rows) >= 12
@@ -29,6 +30,7 @@ def printed_rows():
     return printed_results.compare_printed_results()
 
 
+@pytest.mark.slow
 def test_printed_results(printed_rows):
     rows = printed_rows
     assert not failed_rows(rows)
