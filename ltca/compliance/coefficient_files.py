@@ -33,7 +33,7 @@ from ltca.reading.coefficient_file import write_coefficients
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
 INSTEAD = "CYCLO_TEMPORARY_CACHE"
-"""Variable that names the folder of a run whose cache cannot be written."""
+"""Variable that names a cache that cannot be written and, on a line of its own, the folder of this run instead of it."""
 ROOM = 1 << 20
 """Bytes that a cache must have room for; a file of the paper's disc takes 8 MB."""
 PROCESSES = 2
@@ -56,8 +56,9 @@ def _name(drive: Drive, plane: str) -> str:
 
 def cache_folder() -> Path:
     """Return where new coefficients are kept."""
-    instead = os.environ.get(INSTEAD)
-    return Path(instead) if instead else _kept_folder()
+    kept = _kept_folder()
+    of, _, instead = os.environ.get(INSTEAD, "").partition("\n")
+    return Path(instead) if instead and of == str(kept) else kept
 
 
 def _kept_folder() -> Path:
@@ -67,9 +68,9 @@ def _kept_folder() -> Path:
 
 def require_cache() -> None:
     """Make sure, before anything is derived, that it can be kept; in a temporary folder of this run if need be, with a word."""
-    if INSTEAD in os.environ:
-        return
     folder = _kept_folder()
+    if cache_folder() != folder:
+        return
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as probe:
@@ -83,7 +84,7 @@ def require_cache() -> None:
         )
         instead = tempfile.mkdtemp(prefix="cyclo-cache-")
         # The workers of this run inherit it and find there what has been derived.
-        os.environ[INSTEAD] = instead
+        os.environ[INSTEAD] = f"{folder}\n{instead}"
         atexit.register(_forget, instead, os.getpid())
 
 
