@@ -149,6 +149,8 @@ def spoiled(dataset, name):
         wrong["roller_approach"] *= 1.01
     elif name == "stress left by even pressure on all walls":
         wrong["disc_stress"].values[:] = np.abs(wrong["disc_stress"].values)  # signs lost: nothing cancels
+    elif name == "stress along closed walls against their displacement":
+        wrong["disc_stress"].values[:] *= 1.2
     elif name == "convergence of the stresses: change from a mesh of twice the size":
         wrong.attrs["convergence_stress"] = 0.5
     else:
@@ -168,6 +170,7 @@ NAMES = [
     "roller against the compressed cylinder",
     "convergence: change from a mesh of twice the size",
     "stress left by even pressure on all walls",
+    "stress along closed walls against their displacement",
     "convergence of the stresses: change from a mesh of twice the size",
 ]
 
@@ -221,9 +224,9 @@ def test_failure_leaves_the_old_file(dataset, tmp_path, monkeypatch):
         (("nowhere.toml",), "nowhere.toml"),
         (("paper", "--case", "CS-9"), "CS-9"),
         (("paper", "--stations", "0.1"), "stations 0.1"),
-        (("paper", "--stations", "nan"), "stations nan"),
-        (("paper", "--size", "0"), "size 0"),
-        (("paper", "--size", "-1"), "size -1"),
+        (("paper", "--stations", "nan"), "stations = 'nan'"),
+        (("paper", "--size", "0"), "size = 0"),
+        (("paper", "--size", "-1"), "size = -1"),
         (("paper", "--size", "3"), "size 3: .* at most 2"),
         (("paper", "--size", "1e-6"), "memory"),
         (("paper", "--out", "/proc/none/c.nc"), "/proc/none"),
@@ -295,7 +298,7 @@ def test_check_of_another_codes_file(made, dataset, tmp_path, capsys):
     assert run("--check", path) == 0
     assert run("--check", path, "paper", "--case", "CS-6") == 0
     out = capsys.readouterr().out
-    assert out.count("not checked: the file has no") == 2 * 8
+    assert out.count("not checked: the file has no") == 2 * 9
     assert "not checked: the file has no symmetry" in out
     # What passes can be used, and says the same as the whole file.
     drive = load_drive("paper").cases["CS-6"]
@@ -395,3 +398,11 @@ def test_help_is_light():
         "sys.exit(any(m in sys.modules for m in ('gmsh', 'skfem', 'xarray', 'numpy')))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("factor", [2.0, -1.0, 0.0])
+def test_stresses_of_another_size_or_sign_are_found_out(dataset, factor):
+    """Twice the stresses passed every check and doubled all root stresses of a run."""
+    wrong = dataset.copy(deep=True)
+    wrong["disc_stress"].values[:] *= factor
+    assert [check.name for check in check_coefficients(wrong) if not check.passed][-1:] == [NAMES[-2]]
