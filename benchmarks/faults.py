@@ -1,105 +1,30 @@
 """Faults as they happen, by the hundred: what was tried, what went right, what went wrong.
 
-    python benchmarks/faults.py malformed --count 1000 [--seed 1]
-
-``malformed`` gives drives to ``cyclo run`` and studies to ``cyclo sweep --sample 0``: a file that is surely wrong ends in
-exit status 2 and a few printable lines, any other in those or in a result; none in a traceback or a warning, and none
-takes more than two seconds to be refused (the imports of a process, some half a second of an idle processor, left out).
+python benchmarks/faults.py malformed [--count 1000] [--seed 1]
+python benchmarks/faults.py kills [--kills 20] [--commands run fem …] [--signal KILL | TERM]
+python benchmarks/faults.py discs
+python benchmarks/faults.py folders
+python benchmarks/faults.py clusters
 """
 
 from __future__ import annotations
 
 import argparse
-import contextlib
-import io
 import sys
-import tempfile
-import time
-import warnings
-from collections import Counter
-from collections.abc import Callable
-from pathlib import Path
 
-from ltca.commands.program import main as cyclo
-from ltca.errors import MOST_TOLD
-from ltca.testing.malformed import Malformed, malformed_drives, malformed_studies
+from fault_kinds import clusters, discs, folders, kills, malformed
 
-LIMIT = 2.0
-"""Seconds a refusal may take."""
-
-
-def configure_malformed(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of ``malformed``."""
-    parser.add_argument("--count", type=int, default=1000, help="drives, and as many studies; default 1000")
-    parser.add_argument("--seed", type=int, default=1, help="of the files; default 1")
-
-
-def run_malformed(arguments: argparse.Namespace) -> int:
-    """Try the files and print the counts and every fault; return 1 when there is one."""
-    tried: Counter[str] = Counter()
-    slowest = 0.0
-    with tempfile.TemporaryDirectory() as folder:
-        path, out = Path(folder) / "file.toml", str(Path(folder) / "out")
-        kinds = {
-            "drives": (malformed_drives, ["run", str(path), "--positions", "2", "--no-figures", "--out", out]),
-            "studies": (malformed_studies, ["sweep", str(path), "--sample", "0", "--out", out]),
-        }
-        for kind, (generate, words) in kinds.items():
-            _run([words[0], str(path), *words[2:]])  # not there yet: the first call of a process pays for the imports
-            for sample in generate(arguments.seed, arguments.count):
-                path.write_bytes(sample.content)
-                status, message, seconds = _run(words)
-                fault = _fault(sample, status, message, seconds)
-                tried[f"{kind} {'wrong' if fault else 'refused' if status == 2 else 'solved or without balance'}"] += 1
-                slowest = max(slowest, seconds if status == 2 else 0.0)
-                if fault:
-                    print(f"{kind}: {sample.about}: {fault}: {message[:300]!r}")
-    for name, number in sorted(tried.items()):
-        print(f"{number:>6} {name}")
-    wrong = sum(number for name, number in tried.items() if name.endswith("wrong"))
-    print(f"tried {tried.total()}, right {tried.total() - wrong}, wrong {wrong}; slowest refusal {slowest:.2f} s")
-    return 1 if wrong else 0
-
-
-def _run(words: list[str]) -> tuple[int, str, float]:
-    """Exit status, what was told on stderr (warnings included) and seconds."""
-    told, start = io.StringIO(), time.perf_counter()
-    with contextlib.redirect_stderr(told), contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
-        warnings.simplefilter("always")
-        try:
-            status = cyclo(words)
-        except SystemExit as stopped:
-            status = int(stopped.code or 0)
-    return status, told.getvalue(), time.perf_counter() - start
-
-
-def _fault(sample: Malformed, status: int, message: str, seconds: float) -> str:
-    """What is wrong with an answer, empty when nothing is."""
-    lines = message.rstrip("\n").split("\n")
-    if sample.wrong and status != 2:
-        return f"exit status {status}"
-    if status == 0:
-        return "told something" if any("Warning" in line for line in lines) else ""
-    if "unforeseen" in message or "Traceback" in message or not lines[0].startswith("cyclo: error: "):
-        return "not a message for a user"
-    if len(lines) > 1 + MOST_TOLD or not all(line.isprintable() and len(line) < 1500 for line in lines):
-        return "not a few clear lines"
-    return f"took {seconds:.1f} s" if status == 2 and sample.wrong and seconds > LIMIT else ""
-
-
-COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], Callable[[argparse.Namespace], int]]] = {
-    "malformed": (configure_malformed, run_malformed),
-}
+KINDS = {"malformed": malformed, "kills": kills, "discs": discs, "folders": folders, "clusters": clusters}
 
 
 def main() -> int:
     """Run one kind of faults."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(metavar="KIND", required=True)
-    for name, (configure, execute) in COMMANDS.items():
-        command = kinds.add_parser(name)
-        configure(command)
-        command.set_defaults(execute=execute)
+    for name, module in KINDS.items():
+        command = kinds.add_parser(name, help=module.__doc__)
+        module.configure(command)
+        command.set_defaults(execute=module.execute)
     arguments = parser.parse_args()
     return int(arguments.execute(arguments))
 

@@ -1,4 +1,4 @@
-"""Faults of `benchmarks/file_faults.py`, a module for each kind with ``configure(parser)`` and ``execute(arguments)``.
+"""Faults of `benchmarks/faults.py`, a module for each kind with ``configure(parser)`` and ``execute(arguments)``.
 
 ========  ============================================================
 programs  Commands as programs: started, watched, their folders compared

@@ -75,7 +75,7 @@ def test_a_supervised_program_ends_with_its_parent(number):
 
 @pytest.mark.parametrize(("number", "kind"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])
 def test_a_signal_while_an_object_is_removed_is_heard(number, kind):
-    """One of the kills of `benchmarks/file_faults.py` came inside a weak reference's callback, and nothing ended."""
+    """One of the kills of `benchmarks/faults.py` came inside a weak reference's callback, and nothing ended."""
 
     class Dying:
         def __del__(self):

@@ -202,7 +202,7 @@ def test_a_folder_that_nobody_may_write_to_is_told_before_the_work(tmp_path, cap
 
 
 def test_a_killed_derivation_leaves_no_part(tmp_path):
-    """One of the kills of `benchmarks/file_faults.py` left the half-written file for a day."""
+    """One of the kills of `benchmarks/faults.py` left the half-written file for a day."""
     for name in (".c.0123456789abcdef.part.nc", ".other.0123456789abcdef.part.nc"):
         (tmp_path / name).write_text("half")
     with claimed_file(tmp_path / "c.nc", "derive"):
