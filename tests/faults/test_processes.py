@@ -58,6 +58,14 @@ def gone(pids, folder=None, seconds=10.0):
     return False
 
 
+@pytest.fixture(autouse=True)
+def heard():
+    """What a shell starts in the background ignores Ctrl-C, and so does all that it starts itself."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_a_supervised_program_ends_with_its_parent(number):
     """SIGKILL of the parent left ccx running and its folder in /tmp."""
