@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import compileall
+import importlib.util
 import json
 import multiprocessing
 import os
@@ -222,6 +223,9 @@ def main() -> int:
     parser.add_argument("--map-only", action="store_true", help="make the map and stop")
     parser.add_argument("--out", type=Path, default=Path("out/mutants"), help="map and log; default out/mutants")
     arguments = parser.parse_args()
+    if importlib.util.find_spec("coverage") is None:
+        sys.exit("the map of lines and tests needs coverage: pip install 'cyclo-ltca[mutants]'")
+    arguments.out.mkdir(parents=True, exist_ok=True)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped; the log goes on from here"))
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         tree = Path(folder) / "tree"
