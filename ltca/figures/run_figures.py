@@ -55,10 +55,15 @@ def draw_curves(
     axes.margins(x=0.0)
     if np.nanmin(curves) >= 0.0:
         axes.set_ylim(bottom=0.0)
-    if x.size > 1 and np.isclose(x[order][0], 0.0) and x[order][-1] > 300.0:
+    _mark_a_turn(axes, x[order])
+    _label_ends(axes, x[order], curves[:, order], names)
+
+
+def _mark_a_turn(axes: Any, x: FloatArray) -> None:
+    """A whole turn has its ticks at sixths."""
+    if x.size > 1 and np.isclose(x[0], 0.0) and x[-1] > 300.0:
         axes.set_xlim(0.0, 360.0)
         axes.set_xticks(np.arange(0.0, 361.0, 60.0))
-    _label_ends(axes, x[order], curves[:, order], names)
 
 
 def _label_ends(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str]) -> None:
@@ -145,6 +150,7 @@ def _number_loaded(name: str, title: str) -> Callable[[Figure, xr.Dataset], None
                 color=COLOURS[number % len(COLOURS)], fontsize=8.5,
             )  # fmt: skip
             axis.margins(x=0.0)
+        _mark_a_turn(axes[-1], x)
         axes[-1].set_xlabel(CRANK)
         figure.supylabel("number", fontsize=9.0)
         figure.suptitle(title)
