@@ -31,6 +31,7 @@ from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
 from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Drive
+from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_laws import project_rigid_motions
 
 if TYPE_CHECKING:
@@ -148,6 +149,7 @@ def derive_coefficients(
         bearing_clearance=nominal.clearance.bearing,
         pin_hole_clearance=nominal.clearance.pin_hole,
         version=version("cyclo-ltca"),
+        code_hash=code_hash("ltca", "fem"),
         gmsh=str(load_gmsh().__version__),
     )
     for body, material in (

@@ -284,12 +284,16 @@ def _has_rigid_shaft_pins(analysis: LoadedAnalysis) -> bool:
     return isinstance(model, CoupledCompliance) and analysis.engine.options.get("hole_near_field") == "yes"
 
 
-def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int]]:
-    """Whether the coefficients of each case are its own or, on somebody's word, those of bodies that differ a little."""
+def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:
+    """Whether coefficients of each case are its own or, on somebody's word, of bodies that differ a little; who derived them."""
     models = [analysis.model for analysis in analyses.values()]
     if not all(isinstance(model, CoupledCompliance) for model in models):
         return {}
-    return {"shared_coefficients": [int(m.coefficients.shared) for m in models if isinstance(m, CoupledCompliance)]}
+    used = [model.coefficients for model in models if isinstance(model, CoupledCompliance)]
+    return {
+        "shared_coefficients": [int(coefficients.shared) for coefficients in used],
+        "coefficients_code_hash": [coefficients.code_hash for coefficients in used],
+    }
 
 
 def provenance(drive_name: str, drive: Drive, drive_file: str | None = None) -> dict[str, str]:

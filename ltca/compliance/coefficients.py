@@ -65,6 +65,8 @@ class InfluenceCoefficients:
         Factor κ of −ln(distance) in each body, mm/N.
     stress : StressCoefficients
         Stress along the walls of the disc, where the file has it.
+    code_hash : str
+        Of the code that derived them, where the file says so.
     """
 
     fingerprint: str
@@ -83,6 +85,7 @@ class InfluenceCoefficients:
     roller_logarithm: float
     race_logarithm: float
     stress: StressCoefficients = NO_STRESSES
+    code_hash: str = ""
 
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
         """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
@@ -225,7 +228,8 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
         )
     _require_places(path, data, drive if not shared else replace(drive, clearance=Clearance()))
     found = _coefficients_of_dataset(data, drive, shared=shared)
-    return replace(found, stress=read_stress_coefficients(data, path, (found.flank, found.bore, *found.holes)))
+    stress = read_stress_coefficients(data, path, (found.flank, found.bore, *found.holes))
+    return replace(found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")))
 
 
 def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive) -> bool:

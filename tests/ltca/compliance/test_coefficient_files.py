@@ -12,6 +12,7 @@ import xarray as xr
 
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import build_dataset
 from ltca.commands.program import main
 from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
@@ -222,3 +223,13 @@ def test_half_spaces_take_no_coefficients(tmp_path, capsys):
     words = ["run", "paper", "--angles", "0.5", "--coefficients", "c.nc", "--out", str(tmp_path / "out")]
     assert main(words) == 2
     assert "coefficients: has no effect with compliance half-space" in capsys.readouterr().err
+
+
+def test_results_carry_the_code_that_derived_their_coefficients(paper_cases, tmp_path):
+    """A run's own hash cannot vouch for the finite elements behind its coefficients."""
+    drive = paper_cases["CS-1"]
+    path = write(drive, tmp_path / "c.nc", code_hash="0123abcd")
+    engine = Hybrid(coefficients=load_coefficients(path, drive))
+    found = build_dataset("paper", {"CS-1": analyse(drive, np.array([0.5]), engine=engine)})
+    assert found.attrs["coefficients_code_hash"] == ["0123abcd"]
+    assert found.attrs["code_hash"] != "0123abcd"
