@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -36,6 +37,15 @@ def load_gmsh() -> ModuleType:
     return module
 
 
+def _hear_signals() -> None:
+    """Give the signals back that gmsh takes when it starts: SIGTERM would end the process without any cleaning up."""
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGTERM, signal.SIGINT):
+            handler = signal.getsignal(number)
+            if handler is not None:
+                signal.signal(number, handler)
+
+
 @contextmanager
 def gmsh_model(name: str) -> Iterator[ModuleType]:
     """Open a silent, single-threaded gmsh with an empty model of a given name.
@@ -49,6 +59,7 @@ def gmsh_model(name: str) -> Iterator[ModuleType]:
     with _lock:
         # readConfigFiles=False: options in the user's ~/.gmsh-options would change the mesh.
         gmsh.initialize(["gmsh"], readConfigFiles=False, run=False, interruptible=False)
+        _hear_signals()
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             # One thread and a fixed seed: the same input gives the same mesh, bit by bit.

@@ -170,8 +170,11 @@ def _cluster_losses(scheduler: str) -> tuple[type[Exception], ...]:
     """What futures raise when a scheduler has gone, or has lost a batch with too many workers."""
     if not scheduler:
         return ()
-    from distributed.comm.core import CommClosedError
-    from distributed.scheduler import KilledWorker
+    try:
+        from distributed.comm.core import CommClosedError
+        from distributed.scheduler import KilledWorker
+    except ImportError:
+        return ()  # the executor says what is missing
 
     return (CancelledError, CommClosedError, KilledWorker)
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +20,7 @@ from fem.drive.meshes import disc_refinements, mesh_drive
 from fem.errors import MemoryLimitError, MeshError
 from fem.mesh.body_mesh import BodyMesh, triangle_mesh
 from fem.mesh.element_size import Refinement, SizeField
+from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.quality import measure_quality
 from fem.mesh.triangulation import estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
@@ -318,3 +321,16 @@ def test_wrong_scales_are_refused(drive: Drive, shapes: DriveShapes, scale: floa
 def test_a_missing_boundary_is_named(disc: BodyMesh) -> None:
     with pytest.raises(MeshError, match="mesh of disc has no boundary 'hole_8'; its boundaries are: flank, bore"):
         disc.boundary_nodes("hole_8")
+
+
+def test_sigterm_is_still_heard_beside_gmsh():
+    """gmsh took SIGTERM away when it started: `cyclo fem` and `derive` ended without cleaning up."""
+    heard = []
+    before = signal.signal(signal.SIGTERM, lambda *_: heard.append(True))
+    try:
+        with gmsh_model("any"):
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.01)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert heard

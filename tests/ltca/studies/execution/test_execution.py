@@ -430,3 +430,27 @@ def test_memory_is_flat_against_the_number_of_samples(tmp_path):
 
     small, large = peak(2048), peak(8192)
     assert large - small < 3.0
+
+
+def test_a_scheduler_without_dask_names_what_is_missing(monkeypatch, tmp_path, capsys):
+    """It was an unforeseen ModuleNotFoundError."""
+    from ltca.commands.program import main
+
+    for name in [name for name in sys.modules if name.split(".")[0] == "distributed"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(sys, "meta_path", [_Without("distributed"), *sys.meta_path])
+    words = ["tolerance", "paper", "--samples", "2", "--positions", "2", "--scheduler", "tcp://127.0.0.1:1"]
+    assert main([*words, "--out", str(tmp_path / "out")]) == 2
+    assert "--scheduler needs dask.distributed, which is not installed" in capsys.readouterr().err
+
+
+class _Without:
+    """Finder that has not got a package."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] == self.name:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+        return None
