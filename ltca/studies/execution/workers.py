@@ -80,6 +80,7 @@ class Workers:
                 yield pool, self.processes
             except BaseException:
                 end_workers()
+                _stop_feeding(pool)
                 raise
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
@@ -88,6 +89,18 @@ class Workers:
 
             with threadpool_limits(1):
                 yield ThisProcess(), 1
+
+
+def _stop_feeding(pool: ProcessPoolExecutor) -> None:
+    """Let the thread that writes to a pool's workers notice that they are gone.
+
+    It may be in the middle of a batch larger than the pipe holds; CPython before 3.12 then waits for it for ever when the
+    pool shuts down (gh-94777). With our own end of the pipe closed, too, the write fails.
+    """
+    queue = getattr(pool, "_call_queue", None)
+    reader = getattr(queue, "_reader", None)
+    if reader is not None:
+        reader.close()
 
 
 def _calm_threads() -> None:
