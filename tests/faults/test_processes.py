@@ -141,7 +141,7 @@ def test_an_interrupted_study_names_resume_and_prints_no_traceback(number, statu
     with start(
         "tolerance", "paper", "--samples", "100000", "--workers", "2", "--positions", "8", "--out", str(out)
     ) as run:
-        wait_for(out, "batches/*.npz", run)
+        wait_for(out, "batches/[0-9]*.npz", run)
         group = [int(path.name) for path in Path("/proc").glob("[0-9]*") if group_of(path) == run.pid]
         os.killpg(run.pid, number)
         said = run.stderr.read()
