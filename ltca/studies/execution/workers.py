@@ -27,6 +27,9 @@ LOSSES = 3
 QUEUE = 4
 """Batches handed out for each worker: enough that none waits, few enough that memory stays flat."""
 
+NOTICING = 5.0
+"""Time, s, in which a pool has to notice that its workers were ended; it takes milliseconds."""
+
 
 class ThisProcess(Executor):
     """Executor that runs a task when it is handed in."""
@@ -80,7 +83,7 @@ class Workers:
                 yield pool, self.processes
             except BaseException:
                 end_workers()
-                _stop_feeding(pool)
+                _let_go(pool)
                 raise
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
@@ -91,16 +94,22 @@ class Workers:
                 yield ThisProcess(), 1
 
 
-def _stop_feeding(pool: ProcessPoolExecutor) -> None:
-    """Let the thread that writes to a pool's workers notice that they are gone.
+def _let_go(pool: ProcessPoolExecutor) -> None:
+    """Let the thread that looks after a pool notice that its workers are gone, so that shutting the pool down returns.
 
-    It may be in the middle of a batch larger than the pipe holds; CPython before 3.12 then waits for it for ever when the
-    pool shuts down (gh-94777). With our own end of the pipe closed, too, the write fails.
+    Two things can keep it for ever, for this process holds the other ends of both pipes: a batch half written, larger than
+    the pipe holds (CPython before 3.11.5, gh-94777), and a result half read. By itself it notices in milliseconds and
+    closes those ends; closing them before is a race for who does.
     """
-    queue = getattr(pool, "_call_queue", None)
-    reader = getattr(queue, "_reader", None)
-    if reader is not None:
-        reader.close()
+    manager = getattr(pool, "_executor_manager_thread", None)
+    if manager is None:  # nothing was handed in
+        return
+    manager.join(NOTICING)
+    if manager.is_alive():
+        for queue, end in (("_call_queue", "_reader"), ("_result_queue", "_writer")):
+            connection = getattr(getattr(pool, queue, None), end, None)
+            if connection is not None:
+                connection.close()
 
 
 def _calm_threads() -> None:

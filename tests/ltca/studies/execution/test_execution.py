@@ -1,15 +1,11 @@
-"""The same dataset bit for bit: any worker, a lost one, a killed study resumed; failures told; memory flat."""
+"""The same dataset bit for bit with any number of workers and after a resume; failures told; memory flat."""
 
 from __future__ import annotations
 
 import json
-import os
-import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +22,7 @@ from ltca.output.provenance import code_hash
 from ltca.reading.drive_file import load_drive
 from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.execution.storage import StudyFolder
-from ltca.studies.execution.workers import Workers, solve_batches
+from ltca.studies.execution.workers import Workers
 from ltca.studies.quantities import QUANTITIES
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study, run_batch
@@ -261,147 +257,6 @@ def test_sample_drive_file_is_the_sample(paper, tmp_path):
     assert load_drive(path).cases["nominal"] == study.sample_drive(7)
 
 
-@pytest.mark.slow
-def test_local_pool_survives_a_killed_worker(paper, tmp_path):
-    """SIGKILL for a worker after the first of many batches: the pool is built anew, the results are the same."""
-    study, folder = small_study(paper, samples=200), StudyFolder(path=tmp_path / "disturbed")
-    before = children()
-    killed = False
-    for result in solve_batches(study, folder.prepare(study, resume=False), Workers(processes=2)):
-        folder.store(study, result)
-        if not killed:
-            victims = [pid for pid in children() if pid not in before and "multiprocessing" in command(pid)]
-            os.kill(victims[-1], signal.SIGKILL)
-            killed = True
-    assert killed
-    run_study(study, folder, Workers(), resume=True)
-    straight = StudyFolder(path=tmp_path / "straight")
-    run_study(study, straight, Workers())
-    same_files(folder, straight)
-
-
-def command(pid):
-    try:
-        return Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ")
-    except OSError:
-        return ""
-
-
-def children():
-    """All descendants of this process."""
-    found, front = [], [os.getpid()]
-    while front:
-        parent = front.pop()
-        for task in Path(f"/proc/{parent}/task").glob("*"):
-            try:
-                below = [int(pid) for pid in (task / "children").read_text().split()]
-            except OSError:
-                continue
-            found += below
-            front += below
-    return found
-
-
-@pytest.mark.slow
-def test_killed_study_resumes_to_the_same_dataset(paper, tmp_path):
-    """kill −9 for the main process of the command in the middle, then --resume: byte for byte the undisturbed files."""
-    arguments = ["paper", "--case", "CS-6", "--samples", "28", "--positions", "512", "--seed", "4", "--no-figures"]
-    arguments += ["--quantities", "ptp_transmission_error", "max_pin_load"]
-    program = "import sys; from ltca.commands.program import _Parser; from ltca.commands import tolerance as t; p = _Parser();"
-    program += "t.configure(p); sys.exit(t.execute(p.parse_args(sys.argv[1:])))"
-    one, other = tmp_path / "disturbed", tmp_path / "straight"
-
-    def start(out, *more):
-        return subprocess.Popen(
-            [sys.executable, "-c", program, *arguments, "--out", str(out), *more], stdout=subprocess.PIPE, text=True
-        )
-
-    process = start(one)
-    deadline = time.monotonic() + 60.0
-    while len(list(one.glob("batches/*.npz"))) < 3 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    process.kill()
-    process.communicate()
-    kept = len(list(one.glob("batches/[0-9]*.npz")))
-    assert 3 <= kept < 7
-    resumed = start(one, "--resume", "--workers", "2")
-    text, _ = resumed.communicate()
-    assert resumed.returncode == 0
-    assert "28 samples × 512 positions" in text
-    straight = start(other)
-    straight.communicate()
-    assert straight.returncode == 0
-    same_files(StudyFolder(path=one), StudyFolder(path=other))
-
-
-@pytest.mark.slow
-def test_dask_cluster_of_processes_survives_a_killed_worker(paper, tmp_path):
-    """A scheduler and two workers as separate processes; one of them is killed in the middle."""
-    pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
-    study = small_study(paper, samples=200)
-    quiet = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    address_file = tmp_path / "scheduler.json"
-    base = [sys.executable, "-m"]
-    processes = [
-        subprocess.Popen(
-            [
-                *base,
-                "distributed.cli.dask_scheduler",
-                "--port",
-                "0",
-                "--no-dashboard",
-                "--scheduler-file",
-                str(address_file),
-            ],
-            stderr=subprocess.DEVNULL,
-            env=quiet,
-        )
-    ]
-    try:
-        deadline = time.monotonic() + 60.0
-        while not address_file.exists() and time.monotonic() < deadline:
-            time.sleep(0.1)
-        worker = [*base, "distributed.cli.dask_worker", "--scheduler-file", str(address_file), "--nthreads", "1"]
-        worker += ["--no-nanny", "--no-dashboard", "--local-directory", str(tmp_path)]
-        workers = [subprocess.Popen(worker, stderr=subprocess.DEVNULL, env=quiet, cwd=os.getcwd()) for _ in range(2)]
-        processes += workers
-        import json
-
-        address = json.loads(address_file.read_text())["address"]
-        from distributed import Client
-
-        with Client(address, set_as_default=False) as client:
-            client.wait_for_workers(2, timeout=60)
-        folder = StudyFolder(path=tmp_path / "cluster")
-        done = []
-
-        def advance(samples, rate):
-            done.append(samples)
-            if len(done) == 3:  # the first call tells what a resumed study had
-                workers[0].kill()
-
-        found = run_study(study, folder, Workers(scheduler=address), advance=advance)
-        assert workers[0].wait(timeout=10) == -signal.SIGKILL
-        assert sum(done) == 200
-        assert not found.failures
-    finally:
-        # Workers first: one whose scheduler is gone waits for it to come back.
-        for process in reversed(processes):
-            process.kill()
-            process.wait(timeout=20)
-    straight = StudyFolder(path=tmp_path / "straight")
-    run_study(study, straight, Workers())
-    same_files(folder, straight)
-
-
-@pytest.mark.slow
-def test_scheduler_that_does_not_answer_is_told(paper, tmp_path):
-    pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
-    study = small_study(paper, samples=4)
-    with pytest.raises(CycloError, match="no scheduler answers there"):
-        run_study(study, StudyFolder(path=tmp_path), Workers(scheduler="tcp://127.0.0.1:9"))
-
-
 MEMORY = """
 import resource, sys
 from pathlib import Path
@@ -430,27 +285,3 @@ def test_memory_is_flat_against_the_number_of_samples(tmp_path):
 
     small, large = peak(2048), peak(8192)
     assert large - small < 3.0
-
-
-def test_a_scheduler_without_dask_names_what_is_missing(monkeypatch, tmp_path, capsys):
-    """It was an unforeseen ModuleNotFoundError."""
-    from ltca.commands.program import main
-
-    for name in [name for name in sys.modules if name.split(".")[0] == "distributed"]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setattr(sys, "meta_path", [_Without("distributed"), *sys.meta_path])
-    words = ["tolerance", "paper", "--samples", "2", "--positions", "2", "--scheduler", "tcp://127.0.0.1:1"]
-    assert main([*words, "--out", str(tmp_path / "out")]) == 2
-    assert "--scheduler needs dask.distributed, which is not installed" in capsys.readouterr().err
-
-
-class _Without:
-    """Finder that has not got a package."""
-
-    def __init__(self, name):
-        self.name = name
-
-    def find_spec(self, name, path=None, target=None):
-        if name.split(".")[0] == self.name:
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-        return None
