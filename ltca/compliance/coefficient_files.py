@@ -13,10 +13,9 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from contextlib import suppress
 from importlib.metadata import entry_points
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,8 @@ from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import CycloError, DamagedFileError
-from ltca.output.processes import become_worker, end_workers, interrupts_held
+from ltca.output.process_pools import process_pool
+from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.coefficient_file import write_coefficients
@@ -243,9 +243,7 @@ def _derive(drives: Mapping[Path, Drive], plane: str) -> Iterator[Path]:
     processes = min(PROCESSES, len(drives), os.cpu_count() or 1)
     alone = dict(drives)
     if processes > 1:
-        # Never a fork of this process, which may have threads.
-        pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"), initializer=become_worker)
-        try:
+        with process_pool(processes) as pool:
             with interrupts_held():
                 flying = {
                     pool.submit(_derive_file, drive, plane, path, processes): path for path, drive in drives.items()
@@ -255,11 +253,6 @@ def _derive(drives: Mapping[Path, Drive], plane: str) -> Iterator[Path]:
                 if future.exception() is None:
                     del alone[flying[future]]
                     yield flying[future]
-        except BaseException:
-            end_workers()
-            raise
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
     for path, drive in alone.items():
         _derive_file(drive, plane, path, 1)
         yield path

@@ -1,4 +1,4 @@
-"""Processes that end with the one that started them, and signals that end a command cleanly."""
+"""Programs that end with the process that started them, and signals that end a command cleanly."""
 
 from __future__ import annotations
 
@@ -73,32 +73,6 @@ def interrupts_held() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def become_worker() -> None:
-    """Make this worker of a pool of processes deaf to Ctrl-C and end with its parent; for ``initializer``."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it reaches the whole group; the parent decides what ends
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    from multiprocessing import parent_process
-    from multiprocessing.connection import wait
-
-    parent = parent_process()
-    if parent is None:
-        return
-
-    def watch() -> None:
-        wait([parent.sentinel])
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True, name="ends with its parent").start()
-
-
-def end_workers() -> None:
-    """End the workers of all pools of this process at once, for a way out that does not wait for them."""
-    from multiprocessing import active_children
-
-    for child in active_children():
-        child.terminate()
 
 
 class Supervised:

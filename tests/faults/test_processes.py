@@ -30,7 +30,7 @@ POOL = """
 import os, sys, time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from ltca.output.processes import become_worker
+from ltca.output.process_pools import become_worker
 def who(_):
     time.sleep(0.3)
     return os.getpid()

@@ -9,16 +9,14 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_all_start_methods, get_context
-from multiprocessing.forkserver import ensure_running
 from typing import Any, cast
 
 from ltca.errors import CycloError, FaultError
-from ltca.output.processes import become_worker, end_workers, interrupts_held
+from ltca.output.process_pools import become_worker, process_pool
 from ltca.studies.study import BatchResult, Study, run_batch
 
 LOSSES = 3
@@ -26,9 +24,6 @@ LOSSES = 3
 
 QUEUE = 4
 """Batches handed out for each worker: enough that none waits, few enough that memory stays flat."""
-
-NOTICING = 5.0
-"""Time, s, in which a pool has to notice that its workers were ended; it takes milliseconds."""
 
 
 class ThisProcess(Executor):
@@ -69,47 +64,15 @@ class Workers:
             with _cluster(self.scheduler) as found:
                 yield found
         elif self.processes > 1:
-            # Never a fork of this process, which may have threads; where there is a fork server it imports the suite and
-            # builds the tables once, and every worker starts as its copy.
-            server = "forkserver" in get_all_start_methods()
-            context = get_context("forkserver" if server else "spawn")
-            if server:
-                context.set_forkserver_preload(["ltca.studies.execution.warm_worker"])
-                with interrupts_held():
-                    # While it loads, Ctrl-C would end it with a traceback of its own.
-                    ensure_running()
-            pool = ProcessPoolExecutor(self.processes, mp_context=context, initializer=_calm_threads)
-            try:
+            # The fork server imports the suite and builds the tables once.
+            preload = "ltca.studies.execution.warm_worker"
+            with process_pool(self.processes, preload=preload, initializer=_calm_threads) as pool:
                 yield pool, self.processes
-            except BaseException:
-                end_workers()
-                _let_go(pool)
-                raise
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
         else:
             from threadpoolctl import threadpool_limits
 
             with threadpool_limits(1):
                 yield ThisProcess(), 1
-
-
-def _let_go(pool: ProcessPoolExecutor) -> None:
-    """Let the thread that looks after a pool notice that its workers are gone, so that shutting the pool down returns.
-
-    Two things can keep it for ever, for this process holds the other ends of both pipes: a batch half written, larger than
-    the pipe holds (CPython before 3.11.5, gh-94777), and a result half read. By itself it notices in milliseconds and
-    closes those ends; closing them before is a race for who does.
-    """
-    manager = getattr(pool, "_executor_manager_thread", None)
-    if manager is None:  # nothing was handed in
-        return
-    manager.join(NOTICING)
-    if manager.is_alive():
-        for queue, end in (("_call_queue", "_reader"), ("_result_queue", "_writer")):
-            connection = getattr(getattr(pool, queue, None), end, None)
-            if connection is not None:
-                connection.close()
 
 
 def _calm_threads() -> None:

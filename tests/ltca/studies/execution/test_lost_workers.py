@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from ltca.errors import CycloError
+from ltca.output import process_pools
 from ltca.reading.drive_file import load_drive
-from ltca.studies.execution import workers as workers_module
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.run_study import run_study
@@ -81,7 +81,7 @@ def interrupted_pool(half):
 @pytest.mark.parametrize("half", ["nothing", "batch", "result"])
 def test_a_pool_is_left_with_half_of_something_in_its_pipes(half, monkeypatch):
     """It waited for ever for the other half; closing the pipes beforehand was a race for who closes them."""
-    monkeypatch.setattr(workers_module, "NOTICING", 1.0)
+    monkeypatch.setattr(process_pools, "NOTICING", 1.0)
     steps = interrupted_pool(half)
     manager = next(steps)
     with pytest.raises(KeyboardInterrupt):

@@ -1,0 +1,105 @@
+"""Pools of worker processes that end with the process that started them, whatever ends it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from multiprocessing import active_children, forkserver, get_all_start_methods, get_context, resource_tracker
+
+from ltca.output.processes import interrupts_held
+
+NOTICING = 5.0
+"""Time, s, in which a pool has to notice that its workers were ended; it takes milliseconds."""
+
+
+@contextmanager
+def process_pool(
+    processes: int, *, preload: str = "", initializer: Callable[[], None] | None = None
+) -> Iterator[ProcessPoolExecutor]:
+    """Give a pool of processes; whoever leaves the block by an exception leaves no worker behind.
+
+    Never a fork of this process, which may have threads.
+
+    Parameters
+    ----------
+    processes : int
+        Workers.
+    preload : str
+        Module that a fork server imports once, where there is one: every worker starts as its copy.
+    initializer : callable, optional
+        Called first in every worker; it has to call `become_worker`, which is the default.
+
+    Yields
+    ------
+    ProcessPoolExecutor
+        The pool.
+    """
+    method = "forkserver" if preload and "forkserver" in get_all_start_methods() else "spawn"
+    context = get_context(method)
+    if method == "forkserver":
+        context.set_forkserver_preload([preload])
+        resource_tracker.ensure_running()  # first: when it starts, held signals come through again
+        with interrupts_held():
+            # While the server loads, Ctrl-C would end it with a traceback of its own.
+            forkserver.ensure_running()
+    pool = ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
+    try:
+        yield pool
+    except BaseException as error:
+        if not isinstance(error, BrokenProcessPool):  # which is built anew, from the same server
+            _end_fork_server()
+        for child in active_children():
+            child.terminate()
+        _let_go(pool)
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end_fork_server() -> None:
+    """End the fork server at once: still loading, it would start a worker for a process that is gone, which complains."""
+    number = getattr(getattr(forkserver, "_forkserver", None), "_forkserver_pid", None)
+    if number is not None:
+        with suppress(ProcessLookupError):
+            os.kill(number, signal.SIGKILL)
+
+
+def _let_go(pool: ProcessPoolExecutor) -> None:
+    """Let the thread that looks after a pool notice that its workers are gone, so that shutting the pool down returns.
+
+    Two things can keep it for ever, for this process holds the other ends of both pipes: a batch half written, larger than
+    the pipe holds (CPython before 3.11.5, gh-94777), and a result half read. By itself it notices in milliseconds and
+    closes those ends; closing them before is a race for who does.
+    """
+    manager = getattr(pool, "_executor_manager_thread", None)
+    if manager is None:  # nothing was handed in
+        return
+    manager.join(NOTICING)
+    if manager.is_alive():
+        for queue, end in (("_call_queue", "_reader"), ("_result_queue", "_writer")):
+            connection = getattr(getattr(pool, queue, None), end, None)
+            if connection is not None:
+                connection.close()
+
+
+def become_worker() -> None:
+    """Make this worker of a pool of processes deaf to Ctrl-C and end with its parent; for ``initializer``."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it reaches the whole group; the parent decides what ends
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    from multiprocessing import parent_process
+    from multiprocessing.connection import wait
+
+    parent = parent_process()
+    if parent is None:
+        return
+
+    def watch() -> None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True, name="ends with its parent").start()
