@@ -3,9 +3,13 @@
 Modules in the order data passes:
 
 =========================  ============================================================
+engines                    Engines: how the bodies of a drive yield and how its equilibrium is found
+half_width_guard           Where half-spaces end: contacts wider than the bodies are curved are refused, by name
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
 results                    The labelled dataset of a run and the scalars of its summary
+extremes                   Extremes between positions, which do not hang on sampling
+summary                    The scalars of one case: what ``summary.json`` holds
 pressure_fields            Pressure over every loaded contact at chosen crank angles: solved on grids at the pose
                            found, as one dataset
 torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost

@@ -51,10 +51,10 @@ def process_pool(
     try:
         yield pool
     except BaseException as error:
-        if not isinstance(error, BrokenProcessPool):  # which is built anew, from the same server
-            _end_fork_server()
         for child in active_children():
             child.terminate()
+        if not isinstance(error, BrokenProcessPool):  # which is built anew, from the same server
+            _end_fork_server()  # now: children of a server that is gone pass for dead
         _let_go(pool)
         raise
     finally:
@@ -63,10 +63,12 @@ def process_pool(
 
 def _end_fork_server() -> None:
     """End the fork server at once: still loading, it would start a worker for a process that is gone, which complains."""
-    number = getattr(getattr(forkserver, "_forkserver", None), "_forkserver_pid", None)
-    if number is not None:
+    server = getattr(forkserver, "_forkserver", None)
+    number, forget = getattr(server, "_forkserver_pid", None), getattr(server, "_stop", None)
+    if number is not None and forget is not None:
         with suppress(ProcessLookupError):
             os.kill(number, signal.SIGKILL)
+        forget()
 
 
 def _let_go(pool: ProcessPoolExecutor) -> None:
