@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ltca.errors import DamagedFileError
+from ltca.errors import DamagedFileError, one_line
 from ltca.output.files import whole_file
 from ltca.studies.study import BatchResult, Study
 
@@ -81,7 +81,7 @@ def read_batch(path: Path, study: Study) -> BatchResult:
             messages=tuple(str(text) for text in found["messages"].tolist()),
         )
     except DAMAGE as error:
-        raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {_line(error)}") from error
+        raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {one_line(error)}") from error
     if str(found["fingerprint"]) != study.fingerprint():
         raise DamagedFileError(f"{path}: belongs to another study")
     if str(found["checksum"]) != _checksum(result, study.fingerprint()):
@@ -92,10 +92,6 @@ def read_batch(path: Path, study: Study) -> BatchResult:
     if not len(result.factors) == len(result.values) == len(result.messages) == last - first:
         raise DamagedFileError(f"{path}: has not the {last - first} samples of its number")
     return result
-
-
-def _line(error: BaseException) -> str:
-    return " ".join(str(error).split())[:160] or type(error).__name__
 
 
 def _checksum(result: BatchResult, fingerprint: str) -> str:
