@@ -149,7 +149,7 @@ def claimed_folder(
         with held(path / LOCK, f"--out {path}", command):
             _remove_parts(path, beside)
             folder = RunFolder(path, command, beside, adding)
-            with told_of_files(folder.place):
+            with told_of_files(path, folder.place):
                 yield folder
                 folder.finish()
     finally:
