@@ -34,6 +34,7 @@ def batch_files(folder: Path) -> Iterator[Path]:
 
 def write_batch(path: Path, study: Study, result: BatchResult) -> None:
     """Write one batch, whole or not at all."""
+    fingerprint = study.fingerprint()  # once: it reads the coefficient files of the engine
     messages = np.array(result.messages, dtype=str)
     with whole_file(path) as part, part.open("wb") as stream:
         np.savez(
@@ -42,8 +43,8 @@ def write_batch(path: Path, study: Study, result: BatchResult) -> None:
             factors=result.factors,
             values=result.values,
             messages=messages,
-            fingerprint=np.array(study.fingerprint()),
-            checksum=np.array(_checksum(result, study.fingerprint())),
+            fingerprint=np.array(fingerprint),
+            checksum=np.array(_checksum(result, fingerprint)),
         )
 
 
@@ -82,9 +83,10 @@ def read_batch(path: Path, study: Study) -> BatchResult:
         )
     except DAMAGE as error:
         raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {one_line(error)}") from error
-    if str(found["fingerprint"]) != study.fingerprint():
+    fingerprint = study.fingerprint()
+    if str(found["fingerprint"]) != fingerprint:
         raise DamagedFileError(f"{path}: belongs to another study")
-    if str(found["checksum"]) != _checksum(result, study.fingerprint()):
+    if str(found["checksum"]) != _checksum(result, fingerprint):
         raise DamagedFileError(f"{path}: is damaged (checksum)")
     if f"{result.number:08d}" != path.stem or not 0 <= result.number < study.batches:
         raise DamagedFileError(f"{path}: is batch {result.number} of the study")
