@@ -10,7 +10,7 @@ body          One meshed body: elasticity, its boundary zones, its compliance, i
 contact       Contact between condensed bodies: mortar integrals of a pair and pressures that never pull
 drive         The whole drive at one crank angle: expected contacts, graded meshes, condensed model, loaded pose,
               results
-coefficients  Influence coefficients of the bodies: places, loads, derivation, file and its checks
+coefficients  Influence coefficients of the bodies: places, loads, derivation
 referee       The same problem given to another code
 pictures      Pictures of meshes and solutions
 testing       Regenerates what the regression tests compare with

@@ -100,6 +100,11 @@ def printable(text: str) -> str:
     return "".join(sign if sign.isprintable() else " " if sign.isspace() else "\ufffd" for sign in text)
 
 
+def one_line(error: BaseException) -> str:
+    """Return what an exception of a library says on one line, cut when it is long; its kind where it says nothing."""
+    return printable(" ".join(str(error).split()))[:200] or type(error).__name__
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return a question after the name that was meant, with a space before it, or nothing when none is near.
 

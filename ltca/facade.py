@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from ltca.analysis.engines import Engine, engine_named
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse as analyse_positions
 from ltca.analysis.results import build_dataset
-from ltca.analysis.summary import summarise
+from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
@@ -98,7 +98,7 @@ class AnalysisResult:
         )
         rows = [head]
         for title, key, unit, form in _SHOWN:
-            value = self._summary.get(f"refined_{key}") or self._summary[key]
+            value = refined_value(self._summary, key)
             if value is not None and not (positions == 1 and key.startswith("ptp")):
                 rows.append(f"  {title:<34}{form.format(value)} {unit}")
         return "\n".join(rows)

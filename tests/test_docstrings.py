@@ -81,6 +81,26 @@ def test_documented_parameters_equal_the_signature(path):
     assert problems_of(tree) == []
 
 
+def rows_of(text):
+    """Names in the first column of the table of a docstring."""
+    _, _, body = text.partition("====  ====")
+    return set(re.findall(r"^(\w+) {2,}\S", body, re.MULTILINE))
+
+
+@pytest.mark.parametrize(
+    "path",
+    [path for path in MODULES if path.name == "__init__.py" and path.parent.name != "commands"],
+    ids=lambda path: str(path.parent.relative_to(ROOT)),
+)
+def test_the_map_of_a_package_has_all_its_modules(path):
+    """A merge left one line of equals signs where nine modules of `ltca.output` had stood."""
+    rows = rows_of(ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))))
+    modules = {other.stem for other in path.parent.glob("*.py")} - {"__init__"}
+    folders = {other.parent.name for other in path.parent.glob("*/__init__.py")}
+    assert modules | folders <= rows
+    assert all((path.parent / row).is_dir() for row in rows - modules)
+
+
 def docstrings(tree):
     """Every docstring of a module, private ones too."""
     kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import json
 import subprocess
 import sys
 import tempfile
@@ -68,8 +69,6 @@ def _tried(kind: str, out: Path, folder: Path, wanted: dict[str, bytes]) -> str:
             "--no-dashboard",
         ]
         workers = [subprocess.Popen(words, cwd=folder, **quiet) for _ in range(2)]
-        import json
-
         address = json.loads(place.read_text())["address"]
         with start(f"{STUDY} --scheduler {address}", out, folder / "scratch") as process:
             end = time.monotonic() + 60.0

@@ -26,7 +26,7 @@ COMMANDS = {
 BESIDE = ("kept", "batches")
 
 
-def start(words: str, out: Path, scratch: Path, **options: object) -> subprocess.Popen[str]:
+def start(words: str, out: Path, scratch: Path) -> subprocess.Popen[str]:
     """Start a command in a session of its own, its temporary files in a folder of its own."""
     scratch.mkdir(parents=True, exist_ok=True)
     environment = {**os.environ, "TMPDIR": str(scratch), "MPLBACKEND": "Agg"}
@@ -39,7 +39,6 @@ def start(words: str, out: Path, scratch: Path, **options: object) -> subprocess
         text=True,
         env=environment,
         start_new_session=True,
-        **options,  # type: ignore[call-overload]
     )
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from importlib.metadata import version
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,9 +30,10 @@ from fem.coefficients.stations import DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
 from ltca.drive.nominal_shape import nominal_shape
-from ltca.drive.parts import Drive
-from ltca.output.provenance import code_hash
+from ltca.drive.parts import Drive, Materials
+from ltca.output.provenance import code_hash, code_version
 from ltca.reading.coefficient_laws import project_rigid_motions
+from ltca.reading.coefficient_schema import elastic_constants
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,32 +100,22 @@ def derive_coefficients(
         When mesh and solution would not fit into memory.
     """
     require_element_size(size, LARGEST_SIZE / COARSER)
-    tell = progress or (lambda step: None)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
     places = DiscStations.of_disc(shapes.disc, stations)
     require_disc_memory(shapes.disc, places, size, processes)
-    materials, thickness = nominal.materials, nominal.disc.thickness
-
-    def derive(size: float, note: str) -> tuple[DerivedDisc, DerivedRound, DerivedRound, DerivedRound]:
-        tell(f"disc{note}")
-        disc = derive_disc(shapes.disc, places, materials.disc, thickness=thickness, state=state, size=size)
-        tell(f"pin, roller and race{note}")
-        pin = derive_pin(shapes.wheel_pins[0], materials.wheel_pin, thickness=thickness, state=state, size=size)
-        roller = derive_roller(shapes.rollers[0], materials.roller, thickness=thickness, state=state, size=size)
-        race = derive_race(shapes.inner_race, materials.inner_race, thickness=thickness, state=state, size=size)
-        return disc, pin, roller, race
-
-    coarse = derive(COARSER * size, ", twice the size")
-    fine = derive(size, "")
-    disc, pin, roller, race = fine
-    convergence = {
-        "disc": _difference(*(project_rigid_motions(d[0].approach, d[0].resultants) for d in (fine, coarse)))
-    }
-    for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
-        convergence[name] = _difference(own.approach, other.approach)
-    stress_convergence = _difference(disc.stress, coarse[0].stress)
-    dataset = _label(places, places.refined(shapes.disc), disc, pin, roller, race)
+    bodies = _Bodies(
+        shapes=shapes,
+        places=places,
+        materials=nominal.materials,
+        thickness=nominal.disc.thickness,
+        state=state,
+        tell=progress or (lambda step: None),
+    )
+    coarse = bodies.derive(COARSER * size, ", twice the size")
+    fine = bodies.derive(size, "")
+    disc, _, roller, race = fine
+    dataset = _label(places, places.refined(shapes.disc), *fine)
     dataset.attrs.update(
         drive=drive.name,
         case=case,
@@ -132,35 +123,70 @@ def derive_coefficients(
         shape=json.dumps(nominal.body_shape()),
         clearances_left_out=int(not keep_clearance),
         plane=state,
-        thickness=thickness,
+        thickness=bodies.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,
         race_bore_radius=shapes.inner_race.inner_radius,
         datum=DATUM,
         unknowns_disc=disc.unknowns,
         mesh_size=f"{size:g}: edge {EDGE_SHARE * size:g} of the patch half-width, growth {GROWTH * size:g}; pins, "
         f"rollers and race {ROUND_SIZE:g} times that",
-        convergence_estimate=max(convergence.values()),
-        **{f"convergence_{name}": value for name, value in convergence.items()},
-        convergence_stress=stress_convergence,
+        **_convergence(fine, coarse),
         symmetry=max(body.reciprocity for body in fine),
         mirror=max(roller.mirror, race.mirror),
         rigid_residual=disc.rigid_residual,
         roller_radius=shapes.rollers[0].radius,
         bearing_clearance=nominal.clearance.bearing,
         pin_hole_clearance=nominal.clearance.pin_hole,
-        version=version("cyclo-ltca"),
+        version=code_version(),
         code_hash=code_hash("ltca", "fem"),
         gmsh=str(load_gmsh().__version__),
+        **elastic_constants(nominal.materials),
     )
-    for body, material in (
-        ("disc", materials.disc),
-        ("pin", materials.wheel_pin),
-        ("roller", materials.roller),
-        ("race", materials.inner_race),
-    ):
-        dataset.attrs[f"{body}_youngs_modulus"] = material.youngs_modulus
-        dataset.attrs[f"{body}_poisson_ratio"] = material.poisson_ratio
     return dataset
+
+
+class _Derived(NamedTuple):
+    """All bodies on meshes of one size."""
+
+    disc: DerivedDisc
+    pin: DerivedRound
+    roller: DerivedRound
+    race: DerivedRound
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Bodies:
+    """What stays the same on all meshes."""
+
+    shapes: DriveShapes
+    places: DiscStations
+    materials: Materials
+    thickness: float
+    state: PlaneState
+    tell: Callable[[str], None]
+
+    def derive(self, size: float, note: str) -> _Derived:
+        shapes, materials = self.shapes, self.materials
+        same: dict[str, Any] = {"thickness": self.thickness, "state": self.state, "size": size}
+        self.tell(f"disc{note}")
+        disc = derive_disc(shapes.disc, self.places, materials.disc, **same)
+        self.tell(f"pin, roller and race{note}")
+        return _Derived(
+            disc=disc,
+            pin=derive_pin(shapes.wheel_pins[0], materials.wheel_pin, **same),
+            roller=derive_roller(shapes.rollers[0], materials.roller, **same),
+            race=derive_race(shapes.inner_race, materials.inner_race, **same),
+        )
+
+
+def _convergence(fine: _Derived, coarse: _Derived) -> dict[str, float]:
+    """Changes from the coarser meshes as attributes: the worst, of each body, of the stresses."""
+    disc = (project_rigid_motions(own.disc.approach, own.disc.resultants) for own in (fine, coarse))
+    each = {"convergence_disc": _difference(*disc)}
+    for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
+        each[f"convergence_{name}"] = _difference(own.approach, other.approach)
+    worst, stress = max(each.values()), _difference(fine.disc.stress, coarse.disc.stress)
+    return {"convergence_estimate": worst, **each, "convergence_stress": stress}
 
 
 def _difference(values: FloatArray, other: FloatArray) -> float:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem.commands.position_arguments import chosen_drive
 from ltca.errors import CycloError
 from ltca.reading.arguments import (
     add_case_argument,
@@ -82,15 +83,11 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.drive is None:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
     from ltca.output.run_folder import claimed_file
-    from ltca.reading.drive_file import load_drive
 
-    file = load_drive(arguments.drive)
-    out = Path(arguments.out or default_folder(file.name, "derive") / COEFFICIENTS)
-    if out.is_dir():
-        raise CycloError(f"--out {out}: is a folder, not a file")
-    case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    name, case, drive = chosen_drive(arguments)
+    out = arguments.out or default_folder(name, "derive") / COEFFICIENTS
     with claimed_file(out, "derive"):
-        return _derive(file.name, case, drive, arguments, out)
+        return _derive(name, case, drive, arguments, out)
 
 
 def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> int:
@@ -138,13 +135,11 @@ def _check_file(arguments: argparse.Namespace) -> int:
     from fem.coefficients.fit import check_against_drive
     from ltca.reading.coefficient_file import read_coefficients
     from ltca.reading.coefficient_laws import check_coefficients
-    from ltca.reading.drive_file import load_drive
 
     dataset = read_coefficients(Path(arguments.check), lawful=False)
     checks = check_coefficients(dataset)
     if arguments.drive is not None:
-        file = load_drive(arguments.drive)
-        _, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+        _, _, drive = chosen_drive(arguments)
         checks += check_against_drive(dataset, drive, arguments.check)
     print(f"{arguments.check}: {dataset.sizes['station']} stations, plane {dataset.attrs['plane']}")
     _print_checks(dataset, checks)

@@ -6,12 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import (
-    add_position_arguments,
-    chosen_drive,
-    output_folder,
-)
-from ltca.reading.arguments import add_out_argument, torque_argument
+from fem.commands.position_arguments import add_position_arguments, chosen_drive
+from ltca.reading.arguments import add_out_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,7 +65,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     referee = _referee(arguments.referee)
     name, case, drive = chosen_drive(arguments)
-    out = output_folder(arguments, name, "fem")
+    out = arguments.out or default_folder(name, "fem")
     with claimed_folder(out, "fem"):
         _solve_and_write(name, case, drive, arguments, out, referee)
     return 0

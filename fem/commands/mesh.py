@@ -6,12 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import (
-    add_position_arguments,
-    chosen_drive,
-    output_folder,
-)
-from ltca.reading.arguments import add_out_argument, count_argument
+from fem.commands.position_arguments import add_position_arguments, chosen_drive
+from ltca.reading.arguments import add_out_argument, count_argument, default_folder
 
 if TYPE_CHECKING:
     from fem.drive.expected_contacts import ExpectedContacts
@@ -52,7 +48,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     name, case, drive = chosen_drive(arguments)
-    out = output_folder(arguments, name, "mesh")
+    out = arguments.out or default_folder(name, "mesh")
     with claimed_folder(out, "mesh"):
         _mesh_and_write(name, case, drive, arguments, out)
     return 0

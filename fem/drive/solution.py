@@ -101,11 +101,46 @@ class _Task:
     """What stays the same through all stages of one solution."""
 
     drive: Drive
+    crank_angle: float
     shapes: DriveShapes
     moment: float
+    scale: float
     state: PlaneState
     elastic_shaft_pins: bool
     approach: float
+    say: Callable[[str], None]
+
+    def solve_guess(
+        self, guess: ExpectedContacts, start: tuple[float, float, float, float] | None, watch: _Stopwatch
+    ) -> tuple[DriveModel, PoseSolution]:
+        """Solve on coarse meshes wherever the guess has a load."""
+        place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
+        loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
+        contacts = self.grade(place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
+        watch.lap("guess")
+        self.say("coarse meshes")
+        model = self.condense(contacts, max(COARSE_SCALE, self.scale), _Stopwatch())
+        first = None if start is None else model.start_pose(start)
+        solution = solve_pose(model, self.moment, start=first, progress=self.say)
+        watch.lap("coarse")
+        return model, solution
+
+    def solve_graded(
+        self, model: DriveModel, solution: PoseSolution, grading: int, watch: _Stopwatch, *, fine_walls: bool
+    ) -> tuple[DriveModel, PoseSolution]:
+        """Solve on meshes graded for the contacts of another solution."""
+        results, pose = summarise_contacts(model, solution), solution.pose
+        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+        loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
+        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
+        margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
+        contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
+        self.say("meshes")
+        graded = self.condense(contacts, self.scale * RESERVE, watch, fine_walls=fine_walls)
+        watch.lap("assembly and factorisation")
+        found = solve_pose(graded, self.moment, start=solution.pose, progress=self.say)
+        watch.lap("contact and pose")
+        return graded, found
 
     def condense(
         self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch, *, fine_walls: bool = False
@@ -117,7 +152,6 @@ class _Task:
 
     def grade(
         self,
-        crank_angle: float,
         pose: tuple[complex, float, float],
         loads: tuple[FloatArray, FloatArray, FloatArray],
         *,
@@ -127,7 +161,7 @@ class _Task:
     ) -> ExpectedContacts:
         return grade_contacts(
             self.drive,
-            crank_angle,
+            self.crank_angle,
             *pose,
             loads,
             margin=margin * self.approach,
@@ -199,41 +233,25 @@ def solve_drive(
         When the meshes would not fit into memory.
     """
     require_plane_strain(drive, "full finite elements")
-    say = progress or _silent
-    watch = _Stopwatch()
+    say, watch = progress or _silent, _Stopwatch()
     shapes = DriveShapes.of_drive(drive)
     guess = expect_contacts(drive, crank_angle, torque=torque)
     task = _Task(
         drive=drive,
+        crank_angle=crank_angle,
         shapes=shapes,
         moment=drive.wheel_moment(torque),
+        scale=scale,
         state=state,
         elastic_shaft_pins=elastic_shaft_pins,
         approach=_largest_approach(drive, guess),
+        say=say,
     )
     _refuse_too_large(shapes, guess, scale)
-    place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
-    loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
-    contacts = task.grade(crank_angle, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
-    watch.lap("guess")
-    say("coarse meshes")
-    model = task.condense(contacts, max(COARSE_SCALE, scale), _Stopwatch())
-    first = None if start is None else model.start_pose(start)
-    solution = solve_pose(model, task.moment, start=first, progress=say)
-    watch.lap("coarse")
+    model, solution = task.solve_guess(guess, start, watch)
     complaint = ""
     for grading in range(1, LARGEST_GRADINGS + 1):
-        results, pose = summarise_contacts(model, solution), solution.pose
-        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-        loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
-        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
-        margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
-        contacts = task.grade(crank_angle, place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
-        say("meshes")
-        model = task.condense(contacts, scale * RESERVE, watch, fine_walls=fine_walls)
-        watch.lap("assembly and factorisation")
-        solution = solve_pose(model, task.moment, start=solution.pose, progress=say)
-        watch.lap("contact and pose")
+        model, solution = task.solve_graded(model, solution, grading, watch, fine_walls=fine_walls)
         complaint = find_shortcoming(model, solution, scale)
         results = summarise_contacts(model, solution)
         watch.lap("check")

@@ -3,12 +3,14 @@
 Modules in the order data passes:
 
 =========================  ============================================================
-engines                    Engines: how the bodies of a drive yield and how its equilibrium is found
-half_width_guard           Where half-spaces end: contacts wider than the bodies are curved are refused, by name
+engines                    Engines: how the bodies of a drive yield and how its equilibrium is found, as frozen values with
+                           their options
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
-results                    The labelled dataset of a run and the scalars of its summary
-extremes                   Extremes between positions, which do not hang on sampling
+half_width_guard           Where half-spaces end: contacts wider than the bodies are curved are refused, by name
+extremes                   Extremes of an analysis between its positions: peak-to-peak values and largest loads that do not
+                           hang on sampling
+results                    The labelled dataset of a run: what ``results.nc`` holds
 summary                    The scalars of one case: what ``summary.json`` holds
 pressure_fields            Pressure over every loaded contact at chosen crank angles: solved on grids at the pose
                            found, as one dataset

@@ -273,15 +273,10 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         ("pin_shaft_pressure_max", first.pressures.holes),
     ):
         dataset[name].attrs["end_cell_mm"] = pressures.end_cell
-    if _has_rigid_shaft_pins(first):
+    if first.pressures.rigid_shaft_pins:
         for name in ("pin_shaft_pressure_mid", "pin_shaft_pressure_max"):
             dataset[name].attrs["comment"] = RIGID_SHAFT_PINS
     return dataset
-
-
-def _has_rigid_shaft_pins(analysis: LoadedAnalysis) -> bool:
-    model = analysis.model
-    return isinstance(model, CoupledCompliance) and analysis.engine.options.get("hole_near_field") == "yes"
 
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -106,6 +108,20 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def refined_value(summary: Mapping[str, float | None], key: str) -> float | None:
+    """Return a scalar over the whole turn where there is one, over the positions otherwise.
+
+    Parameters
+    ----------
+    summary : mapping of str to (float or None)
+        From `summarise`.
+    key : str
+        Without ``refined_``.
+    """
+    refined = summary.get(f"refined_{key}")
+    return summary[key] if refined is None else refined
 
 
 def _largest(values: FloatArray) -> float:

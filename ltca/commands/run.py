@@ -134,7 +134,7 @@ def _solve_and_write(
         files.append("pressure.nc")
     print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
-    if engine.options.get("hole_near_field") == "yes":
+    if any(analysis.pressures.rigid_shaft_pins for analysis in analyses.values()):
         print(RIGID_SHAFT_PINS)
     print(_sampling(cases, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
@@ -241,6 +241,8 @@ WALL_ROWS = (
 
 
 def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str]) -> str:
+    from ltca.analysis.summary import refined_value
+
     width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
     lines = [
         f"{'case':<40}" + "".join(f"{name:>{width}}" for name in summaries),
@@ -249,15 +251,9 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str])
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
     for title, key, unit, form in (*ROWS, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
-        values = [_refined(case, key) for case in summaries.values()]
+        values = [refined_value(case, key) for case in summaries.values()]
         lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
     return "\n".join(lines)
-
-
-def _refined(summary: dict[str, float | None], key: str) -> float | None:
-    """The value over the whole turn where there is one, over the positions otherwise."""
-    refined = summary.get(f"refined_{key}")
-    return summary[key] if refined is None else refined
 
 
 def _many(angles: FloatArray) -> str:

@@ -8,11 +8,9 @@ actual places is added again.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +19,11 @@ from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients,
 from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Clearance, Drive, Material
 from ltca.errors import CycloError, DamagedFileError, DriveError
-from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary
+from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary, boundaries_of
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
+from ltca.reading.coefficient_schema import shape_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -219,23 +218,22 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
         When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
     """
     data = read_coefficients(path)
-    shared = _require_same_bodies(path, data.attrs, drive)
+    shared = _require_same_bodies(path, data, drive)
     boundaries = len(np.unique(data["station_boundary"].values))
     if boundaries != 2 + drive.pin_shaft.number_of_pins:
         raise DamagedFileError(
             f"{path}: has stations on {boundaries} boundaries; flank, bore and holes of {drive.name} are "
             f"{2 + drive.pin_shaft.number_of_pins}"
         )
-    _require_places(path, data, drive if not shared else replace(drive, clearance=Clearance()))
+    _require_places(path, data, nominal_shape(drive, keep_clearance=not shared))
     found = _coefficients_of_dataset(data, drive, shared=shared)
-    stress = read_stress_coefficients(data, path, (found.flank, found.bore, *found.holes))
+    stress = read_stress_coefficients(data, (found.flank, found.bore, *found.holes))
     return replace(found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")))
 
 
-def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive) -> bool:
+def _require_same_bodies(path: Path, data: xr.Dataset, drive: Drive) -> bool:
     """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
-    own = drive.body_shape()
-    theirs = {str(name): float(value) for name, value in json.loads(str(attributes["shape"])).items()}
+    own, theirs, attributes = drive.body_shape(), shape_of(data), data.attrs
     if theirs == own:
         return False
     nominal = replace(drive, clearance=Clearance()).body_shape()
@@ -258,7 +256,6 @@ def _require_same_bodies(path: Path, attributes: Mapping[str, Any], drive: Drive
 
 def _require_places(path: Path, data: xr.Dataset, drive: Drive) -> None:
     """Refuse stations that do not lie on the walls of the disc: coefficients between them are of their places."""
-    drive = nominal_shape(drive)
     flank = FlankProfile.of_drive(drive)
     holes = Placement.of_drive(drive)
     centres = [0j, *holes.hole_centres.tolist()]
@@ -289,10 +286,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
     same = boundary[:, None] == boundary[None, :]
     disc = data["disc_approach"].values + np.where(same, disc_logarithm * logarithm, 0.0)
 
-    def stations(number: int) -> Boundary:
-        rows = np.flatnonzero(boundary == number)
-        return Boundary(first=int(rows[0]), count=rows.size)
-
+    flank, bore, *holes = boundaries_of(boundary)
     pin_logarithm = logarithm_factor(parts.wheel_pin, thickness, plane)
     roller_logarithm = logarithm_factor(parts.roller, thickness, plane)
     race_logarithm = logarithm_factor(parts.inner_race, thickness, plane)
@@ -309,9 +303,9 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
         shared=shared,
         plane=plane,
         thickness=thickness,
-        flank=stations(0),
-        bore=stations(1),
-        holes=tuple(stations(2 + k) for k in range(drive.pin_shaft.number_of_pins)),
+        flank=flank,
+        bore=bore,
+        holes=tuple(holes),
         disc=0.5 * (disc + disc.T),
         pin=float(data["pin_approach"].values + pin_logarithm * own),
         roller=roller,

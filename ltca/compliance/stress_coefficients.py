@@ -9,22 +9,17 @@ is not in the coefficients, so what they give varies smoothly along the wall and
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.errors import CycloError
-from ltca.geometry.boundary_stations import Boundary
+from ltca.geometry.boundary_stations import Boundary, boundaries_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FloatArray = NDArray[np.float64]
-
-VARIABLES = ("disc_stress", "stress_station_boundary", "stress_station_parameter")
-FEWEST_STATIONS = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,57 +66,23 @@ class WallContacts:
     load: FloatArray
 
 
-def read_stress_coefficients(data: xr.Dataset, path: Path, loaded: tuple[Boundary, ...]) -> StressCoefficients:
+def read_stress_coefficients(data: xr.Dataset, loaded: tuple[Boundary, ...]) -> StressCoefficients:
     """Return the stress coefficients of a file, `NO_STRESSES` where it has none.
 
     Parameters
     ----------
     data : Dataset
-        Content of the file.
-    path : Path
-        Its name, for messages.
+        Content of the file, of the right schema (`ltca.reading.coefficient_schema`).
     loaded : tuple of Boundary
         Its stations: flank, bore, holes.
-
-    Raises
-    ------
-    CycloError
-        When the stresses are there in part, are no numbers, or do not fit the stations.
     """
-    there = [name for name in VARIABLES if name in data]
-    if not there:
+    if "disc_stress" not in data:
         return NO_STRESSES
-    missing = [name for name in VARIABLES if name not in data]
-    if missing:
-        raise CycloError(f"{path}: has {', '.join(there)} but lacks {', '.join(missing)}")
-    stress = np.asarray(data["disc_stress"].values, dtype=float)
-    boundary = data["stress_station_boundary"].values.astype(int)
-    parameter = np.asarray(data["stress_station_parameter"].values, dtype=float)
-    stations = sum(own.count for own in loaded)
-    if stress.shape != (boundary.size, stations):
-        raise CycloError(
-            f"{path}: disc_stress has the shape {stress.shape}: must be {boundary.size} stress stations by {stations} stations"
-        )
-    if not np.all(np.isfinite(stress)):
-        raise CycloError(
-            f"{path}: disc_stress holds {np.count_nonzero(~np.isfinite(stress))} values that are no numbers"
-        )
-    walls = []
-    for number in range(len(loaded)):
-        rows = np.flatnonzero(boundary == number)
-        first, count = (int(rows[0]), rows.size) if rows.size else (0, 0)
-        expected = 2.0 * np.pi * np.arange(count) / max(count, 1)
-        if (
-            count < FEWEST_STATIONS
-            or not np.array_equal(rows, first + np.arange(count))
-            or not np.allclose(parameter[rows], expected, atol=1e-6)
-        ):
-            raise CycloError(
-                f"{path}: stress stations of boundary {number}: must be at least {FEWEST_STATIONS}, one after the other, "
-                "uniform in their parameter from 0"
-            )
-        walls.append(Boundary(first=first, count=count))
-    return StressCoefficients(walls=tuple(walls), loaded=loaded, stress=stress)
+    return StressCoefficients(
+        walls=boundaries_of(data["stress_station_boundary"].values.astype(int)),
+        loaded=loaded,
+        stress=np.asarray(data["disc_stress"].values, dtype=float),
+    )
 
 
 def evaluate_wall_stress(coefficients: StressCoefficients, contacts: tuple[WallContacts, ...]) -> FloatArray:

@@ -9,8 +9,8 @@ names          Names of drives and cases: files and folders are called after the
                pages
 deviations     Deviations of real parts from their drawing: part of the drive's definition, all zero unless given
 parts          The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
-nominal_shape  The shape that influence coefficients know: a drive without the errors of its single parts
 plane_strain   What two dimensions cannot say about a drive: whatever varies along the length of its rollers and pins
+nominal_shape  The shape that influence coefficients know: a drive without the errors of its single parts
 unit_mistakes  Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never
                before
 fields         Fields of a drive by dotted path: read, count, unit

@@ -10,10 +10,11 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable
+from dataclasses import fields
 from math import pi, sqrt
 from typing import ParamSpec, TypeVar
 
-from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.parts import Drive, Materials, contact_modulus
 from ltca.errors import ConvergenceError, CycloError, DriveError
 
 P = ParamSpec("P")
@@ -23,7 +24,7 @@ SOFT = 1000.0
 """Young's modulus below that of the softest rigid plastics (polyethylene, some 1000 MPa), MPa."""
 DIAMOND, STIFF = 1.2e6, 2e6
 """Young's modulus of diamond, and one that nothing has, MPa."""
-PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+PARTS = tuple(item.name for item in fields(Materials))
 BORNE = 10_000.0
 """Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
 

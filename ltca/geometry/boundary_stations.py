@@ -63,3 +63,23 @@ class Boundary:
     def parameters(self, times: int = 1) -> FloatArray:
         """Return the parameters of the places of `refined`, rad."""
         return 2.0 * np.pi * np.arange(times * self.count) / (times * self.count)
+
+
+def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:
+    """Return the boundaries of stations.
+
+    Parameters
+    ----------
+    numbers : array of int, shape (stations,)
+        Number of the boundary of each station, from 0 and ascending.
+
+    Examples
+    --------
+    >>> [(own.first, own.count) for own in boundaries_of(np.array([0, 0, 0, 1, 1]))]
+    [(0, 3), (3, 2)]
+    """
+    counts = np.bincount(numbers)
+    firsts = np.cumsum(counts) - counts
+    return tuple(
+        Boundary(first=first, count=count) for first, count in zip(firsts.tolist(), counts.tolist(), strict=True)
+    )

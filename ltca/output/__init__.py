@@ -2,16 +2,16 @@
 
 Modules in the order data passes:
 
-=============  =====================================================
-resources      memory and disc a run will need, before it starts
-run_folder     one process at a time, files of one run
-files          files that are whole or not there
-netcdf         netCDF files that survive a full disc
-provenance     which code made a result
-terminal       streams that take every message
-progress       a bar on a terminal, a line now and then without one
-processes      programs that end with ours, signals
-process_pools  pools of workers that end with ours
-supervisor     what ends a program when nobody is left to do it
-=============  =====================================================
+=============  ============================================================
+terminal       Streams that take every message: any encoding, no stream at all
+resources      Memory and disc a run will need, against what the machine has, before it starts
+run_folder     The folder of a run: one process at a time writes to it, and what it holds comes from one run
+processes      Programs that end with the process that started them, and signals that end a command cleanly
+process_pools  Pools of worker processes that end with the process that started them, whatever ends it
+supervisor     Run a program that ends with whoever asked for it, together with its folder of temporary files
+progress       Progress: a bar on a terminal, a line every few seconds without one
+provenance     Which code made a result: version and a hash of its sources, the same on every machine that has the same code
+files          Files that are either whole or not there: written beside their place, then moved into it
+netcdf         netCDF files that survive a full disc: the HDF5 library never sees a failed write
+=============  ============================================================
 """

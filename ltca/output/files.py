@@ -22,23 +22,25 @@ STALE = 86400.0
 """Age, s, beyond which nobody writes a part any more."""
 
 Placed = Callable[[Path, Path], None]
-_PLACED: ContextVar[Placed | None] = ContextVar("placed", default=None)
+_HELD: ContextVar[tuple[Path, Placed] | None] = ContextVar("held", default=None)
 
 
 @contextmanager
-def told_of_files(placed: Placed) -> Iterator[None]:
+def told_of_files(folder: Path, placed: Placed) -> Iterator[None]:
     """Tell a function of every file that is about to take its place while the block runs.
 
     Parameters
     ----------
+    folder : Path
+        Held by this process and cleared of parts: nobody looks for any there.
     placed : callable
         Given the place and the finished part.
     """
-    token = _PLACED.set(placed)
+    token = _HELD.set((folder.resolve(), placed))
     try:
         yield
     finally:
-        _PLACED.reset(token)
+        _HELD.reset(token)
 
 
 @contextmanager
@@ -65,12 +67,13 @@ def whole_file(path: Path) -> Iterator[Path]:
     part = path.with_name(f".{path.stem}.{secrets.token_hex(8)}.part{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        remove_parts_of(path, STALE)
+        held = _HELD.get()
+        if held is None or not path.parent.resolve().is_relative_to(held[0]):
+            remove_parts_of(path, STALE)
         os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_NOFOLLOW", 0), 0o666))
         yield part
-        placed = _PLACED.get()
-        if placed is not None:
-            placed(path, part)
+        if held is not None:
+            held[1](path, part)
         part.replace(path)
     except OSError as error:
         raise FaultError(f"{path}: cannot be written: {error.strerror or error}") from error

@@ -115,7 +115,7 @@ class RunFolder:
 
 @contextmanager
 def claimed_folder(
-    path: Path, command: str, *, beside: tuple[str, ...] = (), adding: bool = False, option: str = "--out"
+    path: Path, command: str, *, beside: tuple[str, ...] = (), adding: bool = False
 ) -> Iterator[RunFolder]:
     """Hold a folder while a run writes to it.
 
@@ -129,8 +129,6 @@ def claimed_folder(
         Folders in it whose files outlive a run.
     adding : bool
         Whether the run adds to what is there instead of replacing it.
-    option : str
-        What the user gave the folder by.
 
     Yields
     ------
@@ -145,13 +143,13 @@ def claimed_folder(
         When the disc is full or fails.
     """
     if path.exists() and not path.is_dir():
-        raise PlaceError(f"{option} {path}: is a file, not a folder")
+        raise PlaceError(f"--out {path}: is a file, not a folder")
     made = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
-        with held(path / LOCK, f"{option} {path}", command):
+        with held(path / LOCK, f"--out {path}", command):
             _remove_parts(path, beside)
             folder = RunFolder(path, command, beside, adding)
-            with told_of_files(folder.place):
+            with told_of_files(path, folder.place):
                 yield folder
                 folder.finish()
     finally:
@@ -161,7 +159,7 @@ def claimed_folder(
 
 
 @contextmanager
-def claimed_file(path: Path, command: str, *, option: str = "--out") -> Iterator[None]:
+def claimed_file(path: Path, command: str) -> Iterator[None]:
     """Hold one file while a run makes it.
 
     Parameters
@@ -170,8 +168,6 @@ def claimed_file(path: Path, command: str, *, option: str = "--out") -> Iterator
         The file; its folder is made.
     command : str
         Name of the command, for the message.
-    option : str
-        What the user gave the file by.
 
     Raises
     ------
@@ -181,8 +177,8 @@ def claimed_file(path: Path, command: str, *, option: str = "--out") -> Iterator
         When the disc is full or fails.
     """
     if path.is_dir():
-        raise PlaceError(f"{option} {path}: is a folder, not a file")
-    with held(path.with_name(f".{path.name}.lock"), f"{option} {path}", command):
+        raise PlaceError(f"--out {path}: is a folder, not a file")
+    with held(path.with_name(f".{path.name}.lock"), f"--out {path}", command):
         remove_parts_of(path, 0.0)
         yield
 

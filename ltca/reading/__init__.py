@@ -9,7 +9,7 @@ toml_text           TOML files as plain tables: whatever the file holds, it is r
 drive_file          Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
                     once
 physical_checks     Physical checks of a drive: what its numbers, each fine on its own, cannot be together
-deviation_checks    Physical checks of the deviations of a drive: counts, size, and a flank that neither folds nor
+deviation_checks    Physical checks of deviations, counts and sizes, and of the flank they leave: it neither folds nor
                     traps its pins
 contradictions      Which field is behind a contradiction: the one that alone can mend all of it, not the one whose bound
                     it breaks

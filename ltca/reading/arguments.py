@@ -17,18 +17,12 @@ LONGEST_COUNT = 19
 
 def add_drive_argument(parser: argparse.ArgumentParser, what: str = DRIVE, *, optional: bool = False) -> None:
     """Add the drive file."""
-    if optional:
-        parser.add_argument("drive", metavar="DRIVE", nargs="?", help=what)
-    else:
-        parser.add_argument("drive", metavar="DRIVE", help=what)
+    parser.add_argument("drive", metavar="DRIVE", nargs="?" if optional else None, help=what)
 
 
 def add_case_argument(parser: argparse.ArgumentParser, what: str, *, several: bool = True) -> None:
     """Add the case, or cases."""
-    if several:
-        parser.add_argument("--case", metavar="NAME", action="append", help=what)
-    else:
-        parser.add_argument("--case", metavar="NAME", help=what)
+    parser.add_argument("--case", metavar="NAME", action="append" if several else "store", help=what)
 
 
 def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = "folder for the results") -> None:

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from ltca.drive.fields import field_kinds, is_element, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.drive.units import check_count
+from ltca.drive.units import even_share
 from ltca.errors import DriveError, did_you_mean
 from ltca.reading.physical_checks import find_contradictions
 
@@ -44,8 +44,8 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     tree: dict[str, Any] = {}
     even = abs(drive.disc.torque_share * drive.disc.number_of_discs - 1.0) < 1e-12  # not a share of its own
     if "disc.number_of_discs" in values and "disc.torque_share" not in values and even:  # as in a drive file
-        with suppress(ValueError):  # of what is no count: the validation says so
-            values = {**values, "disc.torque_share": 1.0 / max(1, check_count(values["disc.number_of_discs"]))}
+        with suppress(ValueError):
+            values = {**values, "disc.torque_share": even_share(values["disc.number_of_discs"])}
     arrays: dict[str, list[Any]] = {}
     whole = {}
     for path, value in values.items():

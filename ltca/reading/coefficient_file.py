@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ltca.errors import DamagedFileError
+from ltca.errors import DamagedFileError, one_line
 from ltca.output.files import whole_file
 from ltca.output.netcdf import write_netcdf
 from ltca.output.resources import available_memory
@@ -151,8 +151,7 @@ def _read(path: Path) -> xr.Dataset:
         if not problems:
             return xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False)
     except DAMAGE as error:
-        said = " ".join(str(error).split())[:200] or type(error).__name__
-        raise DamagedFileError(f"{path}: cannot be read as a coefficient file (netCDF-4): {said}") from error
+        raise DamagedFileError(f"{path}: cannot be read as a coefficient file (netCDF-4): {one_line(error)}") from error
     raise DamagedFileError(f"{path}: cannot be read as a coefficient file: {'; '.join(problems[:3])}")
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ltca.drive.parts import Materials
 from ltca.errors import DamagedFileError
 
 if TYPE_CHECKING:
@@ -48,17 +49,17 @@ OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
         "stress_station_parameter": ("stress_station",),
     },
 )
-BODIES = ("disc", "pin", "roller", "race")
+# Bodies of a file, and what the materials of a drive call them.
+PARTS = {"disc": "disc", "pin": "wheel_pin", "roller": "roller", "race": "inner_race"}
+CONSTANTS = ("youngs_modulus", "poisson_ratio")
 # Attributes that repeat numbers of `shape`, which says whose bodies they are (`ltca.drive.parts.Drive.body_shape`).
 REPEATED = {"thickness": "disc.thickness", "roller_radius": "crank_bearing.roller_radius"} | {
-    f"{body}_{constant}": f"materials.{part}.{constant}"
-    for body, part in zip(BODIES, ("disc", "wheel_pin", "roller", "inner_race"), strict=True)
-    for constant in ("youngs_modulus", "poisson_ratio")
+    f"{body}_{constant}": f"materials.{part}.{constant}" for body, part in PARTS.items() for constant in CONSTANTS
 }
 CLEARANCES = ("bearing_clearance", "pin_hole_clearance")
-POSITIVE_ATTRIBUTES = ("thickness", "roller_radius", *(f"{body}_youngs_modulus" for body in BODIES))
+POSITIVE_ATTRIBUTES = ("thickness", "roller_radius", *(f"{body}_youngs_modulus" for body in PARTS))
 STATEMENTS = ("symmetry", "rigid_residual", "convergence_estimate", "convergence_stress")
-POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in BODIES)
+POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in PARTS)
 # Interpolation takes six stations; less on a boundary would count some twice.
 FEWEST_STATIONS = 6
 # Numbers that stand in a file twice differ by their rounding.
@@ -142,6 +143,15 @@ def _implausible(dataset: xr.Dataset) -> Iterator[str]:
         if not np.all(dataset[name].values > 0.0):
             yield f"{name} must be greater than 0"
     yield from _misplaced(dataset)
+
+
+def elastic_constants(materials: Materials) -> dict[str, float]:
+    """Return the attributes with Young's modulus, MPa, and Poisson's ratio of each body."""
+    return {
+        f"{body}_{constant}": getattr(getattr(materials, part), constant)
+        for body, part in PARTS.items()
+        for constant in CONSTANTS
+    }
 
 
 def shape_of(dataset: xr.Dataset) -> dict[str, float]:

@@ -15,7 +15,7 @@ from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, parse_tolerances
-from ltca.drive.units import check_count
+from ltca.drive.units import even_share
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.contradictions import explain_contradictions
 from ltca.reading.physical_checks import find_contradictions
@@ -240,11 +240,8 @@ def build_drive(table: dict[str, Any]) -> Drive:
 def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
     disc = table.get("disc")
     if isinstance(disc, dict) and "torque_share" not in disc:
-        with suppress(ValueError):  # of what is no count: the validation says so
-            table = {
-                **table,
-                "disc": {**disc, "torque_share": 1.0 / max(1, check_count(disc.get("number_of_discs", 1)))},
-            }
+        with suppress(ValueError):
+            table = {**table, "disc": {**disc, "torque_share": even_share(disc.get("number_of_discs", 1))}}
     try:
         return _ADAPTER.validate_python(table)
     except ValidationError as error:

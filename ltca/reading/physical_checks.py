@@ -29,31 +29,27 @@ def find_contradictions(drive: Drive) -> list[str]:
     list of str
         One sentence each, with field, value, bound and unit; empty for a sound drive.
     """
-    problems = list(find_deviation_problems(drive))
-    if drive.disc.number_of_discs == 1 and drive.disc.torque_share != 1.0:
-        problems.append(
-            f"disc.torque_share = {drive.disc.torque_share:g}: must be 1, a single disc (disc.number_of_discs = 1) carries "
-            "the whole torque"
-        )
-    problems += _tooth_numbers(drive)
+    problems = [problem for check in FIRST for problem in check(drive)]
     if problems:
         return problems  # the geometry below needs them
     problems += _flank(drive)
     if not problems:
         problems += find_flank_problems(drive)
-    problems += _pins(drive)
-    problems += _bearing(drive)
-    problems += _holes(drive)
-    problems += _length_profiles(drive)
-    return problems
+    return problems + [problem for check in BESIDE for problem in check(drive)]
 
 
 def is_sound(drive: Drive) -> bool:
     """Tell whether a drive is without contradictions; quicker than naming them, for what is cheap comes first."""
-    if any(any(True for _ in check(drive)) for check in (find_deviation_problems, _tooth_numbers)):
-        return False
-    checks = (_pins, _bearing, _length_profiles, _flank, _holes, find_flank_problems)
-    return not any(any(True for _ in check(drive)) for check in checks)
+    checks = (*FIRST, *BESIDE, _flank, find_flank_problems)
+    return all(next(iter(check(drive)), None) is None for check in checks)
+
+
+def _torque_share(drive: Drive) -> Iterator[str]:
+    if drive.disc.number_of_discs == 1 and drive.disc.torque_share != 1.0:
+        yield (
+            f"disc.torque_share = {drive.disc.torque_share:g}: must be 1, a single disc (disc.number_of_discs = 1) carries "
+            "the whole torque"
+        )
 
 
 def _tooth_numbers(drive: Drive) -> Iterator[str]:
@@ -249,3 +245,9 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
                 yield f"{path}.{name} = {drop:g} mm: must be at most {0.1 * radius:g} mm, a tenth of the radius"
         if profile.logarithmic_factor > 100.0:
             yield f"{path}.logarithmic_factor = {profile.logarithmic_factor:g}: must be at most 100"
+
+
+FIRST = (find_deviation_problems, _torque_share, _tooth_numbers)
+"""What the geometry needs."""
+BESIDE = (_pins, _bearing, _holes, _length_profiles)
+"""What is looked at whatever the flank is."""

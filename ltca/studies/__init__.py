@@ -1,18 +1,23 @@
 """Studies at scale: one drive is a sample, thousands of samples times positions are solved in batches.
 
-==================  ============================================================================
-quantities          what a study keeps of each sample, by name and unit
-batch_analysis      the quantities of many drives at once; a sample that fails says why
-designs             which samples there are: random, Sobol, Latin hypercube, grid, list, Saltelli
-study               drive, design, positions and quantities: everything a worker needs
-shapes              influence coefficients of the shapes that a study has
-execution           who solves the batches and where their results are kept
-sensitivity         standardised regression, Sobol indices
-fine_solution       the quantities of one drive solved finely
-study_results       the final dataset read in flat memory
-run_study           a study from start to files
-tolerance_study     samples drawn from the tolerances of a drive
-sweep_file          ``study.toml`` to a study
-optimiser           best fields of a drive under bounds, Pareto front of two aims
-==================  ============================================================================
+Modules in the order data passes:
+
+===============  ============================================================
+quantities       What a study keeps of each sample: scalars over its positions, by the names of the summary without their
+                 units
+batch_analysis   The quantities of many drives at once; a sample that cannot be solved says why and stops nobody else
+designs          Which samples a study has: every design gives the numbers of any range of samples without the ones before
+study            A study: drive, design, positions and quantities, everything a worker needs to solve any batch of it
+shapes           Influence coefficients of the shapes that a study has: found before its samples are solved, kept while they
+                 are
+tolerance_study  Samples drawn from the tolerances of a drive
+sweep_file       ``study.toml``: which fields of a drive a sweep varies, how, and what it keeps
+execution        Who solves the batches and where their results are kept
+run_study        A study from start to files: solve what is left, finish the dataset, sum it up, draw it
+study_results    Reading the final dataset of a study: scalars of each quantity, worst samples, sensitivity, in flat memory
+sensitivity      Which tolerances matter: standardised regression over random samples, Sobol indices over Saltelli blocks
+optimiser        Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two
+                 aims
+fine_solution    The quantities of one drive solved finely: many positions for means, extremes searched between them
+===============  ============================================================
 """

@@ -60,7 +60,8 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         return engine
     key = (*engine.options.values(), repr(given), drive.shape_fingerprint())
     if key not in _ENGINES:
-        with _one_process(drive.shape_fingerprint()) if given is None else nullcontext():
+        there = given is not None or cached_file(drive).exists()
+        with nullcontext() if there else _one_process(drive.shape_fingerprint()):
             _ENGINES[key] = engine.with_coefficients(drive)
         if len(_ENGINES) > KEPT:
             _ENGINES.popitem(last=False)

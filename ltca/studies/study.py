@@ -30,11 +30,6 @@ SINGLE_POSITIONS = 256
 """Positions of a batch whose drives are solved one by one, some ten times as dear each."""
 
 
-def positions_together(engine: Engine) -> int:
-    """Return how many positions make a batch on an engine."""
-    return BATCH_POSITIONS if engine.batches else SINGLE_POSITIONS
-
-
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A study, the same whoever computes it.
@@ -60,7 +55,7 @@ class Study:
     drive_file : str
         Text of the drive file; empty for the first case written as one.
     batch_positions : int
-        Positions solved together, see `positions_together`.
+        Positions solved together; 0 for what suits the engine.
     """
 
     name: str
@@ -72,7 +67,7 @@ class Study:
     engine: Engine = field(default_factory=HalfSpace)
     definition: str = ""
     drive_file: str = ""
-    batch_positions: int = BATCH_POSITIONS
+    batch_positions: int = 0
 
     @property
     def settings(self) -> BatchSettings:
@@ -84,7 +79,8 @@ class Study:
     @property
     def batch_samples(self) -> int:
         """Samples of a batch; batches are cut the same way whoever solves them."""
-        return max(1, self.batch_positions // self.positions)
+        suited = BATCH_POSITIONS if self.engine.batches else SINGLE_POSITIONS
+        return max(1, (self.batch_positions or suited) // self.positions)
 
     @property
     def batches(self) -> int:

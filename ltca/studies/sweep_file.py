@@ -41,7 +41,7 @@ from ltca.reading.drive_file import listed, load_drive
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.designs import SweepDesign, SweepFactor
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
-from ltca.studies.study import Study, positions_together
+from ltca.studies.study import Study
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
 SCALES = ("linear", "logarithmic")
@@ -134,7 +134,6 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     reader.check()
     assert design is not None
     varied = "case" in design.names
-    used: Engine = HalfSpace() if engine is None else engine
     cases = tuple((file.cases if varied else {next(iter(selected)): base}).items())
     return Study(
         name=file.name if varied else f"{file.name} {cases[0][0]}",
@@ -143,8 +142,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         positions=positions,
         quantities=names,
         near_nominal=False,
-        engine=used,
-        batch_positions=positions_together(used),
+        engine=HalfSpace() if engine is None else engine,
         definition=json.dumps(table, ensure_ascii=False, default=str),
         drive_file=file.text,
     )

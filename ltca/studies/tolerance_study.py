@@ -9,7 +9,7 @@ from ltca.drive.tolerances import Factors
 from ltca.reading.drive_file import DriveFile
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
-from ltca.studies.study import Study, positions_together
+from ltca.studies.study import Study
 
 
 def tolerance_study(
@@ -51,7 +51,6 @@ def tolerance_study(
     """
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
-    used: Engine = HalfSpace() if engine is None else engine
     kept = DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities)
     asked = {"case": name, "samples": samples, "positions": positions, "seed": seed, "design": sequence}
     return Study(
@@ -63,8 +62,7 @@ def tolerance_study(
         positions=positions,
         quantities=kept,
         near_nominal=True,
-        engine=used,
-        batch_positions=positions_together(used),
+        engine=HalfSpace() if engine is None else engine,
         definition=json.dumps({"study": "tolerances", **asked, "quantities": kept}, ensure_ascii=False),
         drive_file=file.text,
     )

@@ -18,6 +18,7 @@ from ltca.drive.nominal_shape import nominal_shape
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
+from ltca.reading.coefficient_schema import elastic_constants
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -100,16 +101,7 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
             "pin_hole_clearance": drive.clearance.pin_hole,
             "clearances_left_out": 0,
             "roller_radius": drive.crank_bearing.roller_radius,
-            **{
-                f"{body}_{constant}": getattr(material, constant)
-                for body, material in (
-                    ("disc", parts.disc),
-                    ("pin", parts.wheel_pin),
-                    ("roller", parts.roller),
-                    ("race", parts.inner_race),
-                )
-                for constant in ("youngs_modulus", "poisson_ratio")
-            },
+            **elastic_constants(parts),
         },
     )
 

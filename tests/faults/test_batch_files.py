@@ -12,7 +12,7 @@ import pytest
 
 from ltca.errors import CycloError, DamagedFileError
 from ltca.reading.drive_file import load_drive
-from ltca.studies.execution.batch_files import read_batch
+from ltca.studies.execution.batch_files import PARTS, read_batch
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import run_study
@@ -76,22 +76,21 @@ def member(**arrays):
     return stream.getvalue()
 
 
-def pickled(_):
+def forged(header, content=b""):
+    """An archive of all parts of a batch whose arrays have a header of somebody else's."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
-        for name in ("number", "factors", "values", "messages", "fingerprint", "checksum"):
-            archive.writestr(f"{name}.npy", b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '|O', 'fortran_order': False, "
-                             b"'shape': (), }".ljust(117) + b"\n" + pickle.dumps(Trap()))  # fmt: skip
+        for name in PARTS:
+            archive.writestr(f"{name}.npy", b"\x93NUMPY\x01\x00v\x00" + header.ljust(117) + b"\n" + content)
     return stream.getvalue()
+
+
+def pickled(_):
+    return forged(b"{'descr': '|O', 'fortran_order': False, 'shape': (), }", pickle.dumps(Trap()))
 
 
 def huge(_):
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w") as archive:
-        for name in ("number", "factors", "values", "messages", "fingerprint", "checksum"):
-            archive.writestr(f"{name}.npy", b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '<f8', 'fortran_order': False, "
-                             b"'shape': (9000000000000,), }".ljust(117) + b"\n")  # fmt: skip
-    return stream.getvalue()
+    return forged(b"{'descr': '<f8', 'fortran_order': False, 'shape': (9000000000000,), }")
 
 
 def one_bit(content):

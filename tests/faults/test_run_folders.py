@@ -11,6 +11,7 @@ import pytest
 
 from ltca.commands.program import main
 from ltca.errors import FaultError, PlaceError
+from ltca.output import files
 from ltca.output.files import STALE, whole_file
 from ltca.output.run_folder import LOCK, MANIFEST, claimed_file, claimed_folder
 
@@ -165,6 +166,18 @@ def test_old_parts_go_without_a_lock_too(tmp_path):
     with whole_file(tmp_path / "a.txt") as part:
         part.write_text("a")
     assert names(tmp_path) == [new.name, "a.txt"]
+
+
+def test_a_held_folder_is_not_searched_for_parts_again(tmp_path, monkeypatch):
+    """It is cleared when it is taken; a study of 20,000 batches looked through all of them for each, 19 ms a batch."""
+    searched = []
+    monkeypatch.setattr(files, "remove_parts_of", lambda path, age: searched.append(path.name))
+    with claimed_folder(tmp_path / "out", "run"):
+        for name in ("out/a.txt", "out/batches/b.txt", "elsewhere/c.txt"):
+            with whole_file(tmp_path / name) as part:
+                part.write_text("a")
+    assert searched == ["c.txt"]
+    assert names(tmp_path / "out") == ["a.txt", "batches/b.txt", MANIFEST]
 
 
 def test_names_of_parts_cannot_be_foreseen_and_follow_no_link(tmp_path, monkeypatch):

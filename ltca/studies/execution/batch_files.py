@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ltca.errors import DamagedFileError
+from ltca.errors import DamagedFileError, one_line
 from ltca.output.files import whole_file
 from ltca.studies.study import BatchResult, Study
 
@@ -34,6 +34,7 @@ def batch_files(folder: Path) -> Iterator[Path]:
 
 def write_batch(path: Path, study: Study, result: BatchResult) -> None:
     """Write one batch, whole or not at all."""
+    fingerprint = study.fingerprint()  # once: it reads the coefficient files of the engine
     messages = np.array(result.messages, dtype=str)
     with whole_file(path) as part, part.open("wb") as stream:
         np.savez(
@@ -42,8 +43,8 @@ def write_batch(path: Path, study: Study, result: BatchResult) -> None:
             factors=result.factors,
             values=result.values,
             messages=messages,
-            fingerprint=np.array(study.fingerprint()),
-            checksum=np.array(_checksum(result, study.fingerprint())),
+            fingerprint=np.array(fingerprint),
+            checksum=np.array(_checksum(result, fingerprint)),
         )
 
 
@@ -81,10 +82,11 @@ def read_batch(path: Path, study: Study) -> BatchResult:
             messages=tuple(str(text) for text in found["messages"].tolist()),
         )
     except DAMAGE as error:
-        raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {_line(error)}") from error
-    if str(found["fingerprint"]) != study.fingerprint():
+        raise DamagedFileError(f"{path}: cannot be read as a batch of a study: {one_line(error)}") from error
+    fingerprint = study.fingerprint()
+    if str(found["fingerprint"]) != fingerprint:
         raise DamagedFileError(f"{path}: belongs to another study")
-    if str(found["checksum"]) != _checksum(result, study.fingerprint()):
+    if str(found["checksum"]) != _checksum(result, fingerprint):
         raise DamagedFileError(f"{path}: is damaged (checksum)")
     if f"{result.number:08d}" != path.stem or not 0 <= result.number < study.batches:
         raise DamagedFileError(f"{path}: is batch {result.number} of the study")
@@ -92,10 +94,6 @@ def read_batch(path: Path, study: Study) -> BatchResult:
     if not len(result.factors) == len(result.values) == len(result.messages) == last - first:
         raise DamagedFileError(f"{path}: has not the {last - first} samples of its number")
     return result
-
-
-def _line(error: BaseException) -> str:
-    return " ".join(str(error).split())[:160] or type(error).__name__
 
 
 def _checksum(result: BatchResult, fingerprint: str) -> str:

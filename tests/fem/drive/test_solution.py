@@ -112,7 +112,6 @@ def test_arrays_have_full_length(coarse):
     assert bore != area
 
 
-@pytest.mark.slow
 def test_start_pose_does_not_matter(coarse):
     """From 0.1 mm and 1 mrad away, past the backlash on the wrong side, the same loads."""
     again = solve_drive(drive(), 0.5, scale=3.0, start=(0.05, -0.08, 1.0e-3, 1.0e-3))
@@ -129,7 +128,6 @@ def test_further_load_uses_the_same_factors(coarse):
     assert tangential == pytest.approx(1.1 * TANGENTIAL, rel=1.5e-3)
 
 
-@pytest.mark.slow
 def test_further_load_is_that_of_fresh_meshes(coarse):
     more = solve_load(coarse, 1.1 * 377_300.0)
     fresh = solve_drive(drive(), 0.5, torque=1.1 * 377_300.0, scale=3.0)
@@ -243,7 +241,6 @@ def test_stress_in_the_disc(coarse):
         assert np.all(shear[~looked] == 0.0)
 
 
-@pytest.mark.slow
 def test_reverse_drive_mirrors_forward():
     """result(φ, cw) is the mirror image of result(−φ, ccw)."""
     forward = drive()
@@ -290,7 +287,6 @@ def test_nothing_that_can_carry_is_one_error():
         solve_drive(loose, 0.5, scale=3.0)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("case", "angle"), [("CS-1", 0.0), ("CS-1", 1.0), ("CS-3", 0.5)])
 def test_default_drive_balances(case, angle):
     solution = solve_drive(drive(case), angle)
@@ -303,7 +299,6 @@ def test_default_drive_balances(case, angle):
             assert detail.half_width / detail.largest_edge >= 8.0, pair.kind
 
 
-@pytest.mark.slow
 def test_halved_mesh_changes_little(default):
     fine = solve_drive(drive(), 0.5, scale=0.5)
     for load, pressure in CONTACT_KINDS:
@@ -314,7 +309,6 @@ def test_halved_mesh_changes_little(default):
         np.testing.assert_allclose(ratio, 1.0, atol=1e-2)
 
 
-@pytest.mark.slow
 def test_default_start_pose_does_not_matter(default):
     again = solve_drive(drive(), 0.5, start=(-0.03, 0.02, -5.0e-4, 5.0e-4))
     for name, _ in CONTACT_KINDS:
@@ -322,7 +316,6 @@ def test_default_start_pose_does_not_matter(default):
         assert np.max(np.abs(first - second)) < 1e-3 * first.max()
 
 
-@pytest.mark.slow
 def test_rigid_body_limit_comes_near_the_half_space_drive():
     """Disc and race 1000 times as stiff, pins and rollers half: every E* unchanged, only local yielding left.
 
@@ -350,7 +343,6 @@ def test_rigid_body_limit_comes_near_the_half_space_drive():
         assert away < 0.5 * flexible, name
 
 
-@pytest.mark.slow
 def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
     """Disc and pin alike: E* is half that of a rigid pin, so at one load b grows and p0 falls by √2 (Hertz)."""
     yielding = solve_drive(drive(), 0.5, scale=3.0, elastic_shaft_pins=True)

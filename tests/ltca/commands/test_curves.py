@@ -165,13 +165,18 @@ def test_life_is_printed_as_it_is_kept(told):
     assert f"{kept['hours']:.0f} h at 1500 turns a minute" in text
 
 
-def coarse_curves(monkeypatch, out, *words):
-    """A run with one angle, 44 positions and the first orders only, without figures; return curves.json."""
+def make_coarse(monkeypatch):
+    """One angle, 44 positions and the first orders only."""
     monkeypatch.setattr(curves, "ANGLES", 1)
     monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
     monkeypatch.setattr(
         orders, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
     )
+
+
+def coarse_curves(monkeypatch, out, *words):
+    """A coarse run without figures; return curves.json."""
+    make_coarse(monkeypatch)
     assert main(["curves", "paper", "--turns", "1", "--no-figures", "--out", str(out), *words]) == 0
     return json.loads((out / "curves.json").read_text(encoding="utf-8"))
 
@@ -199,11 +204,7 @@ def test_all_cases_are_there(monkeypatch, tmp_path, capsys, paper_cases):
 def test_figures_of_several_cases_have_their_names(monkeypatch, tmp_path):
     stems = []
     monkeypatch.setattr(curve_figures, "_save", lambda figure, stem: stems.append(stem.name) or stem)
-    monkeypatch.setattr(curves, "ANGLES", 1)
-    monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
-    monkeypatch.setattr(
-        orders, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
-    )
+    make_coarse(monkeypatch)
     words = ["curves", "paper", "--turns", "1", "--out", str(tmp_path), "--case", "CS-1"]
     assert main([*words, "--case", "CS-2"]) == 0
     assert stems == [

@@ -176,7 +176,7 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
     monkeypatch.setattr(coefficient_files, "_derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "PROCESSES", 2)
     monkeypatch.setattr(coefficient_files.os, "cpu_count", lambda: 4)
-    monkeypatch.setattr(coefficient_files, "ProcessPoolExecutor", lambda count, **_: ThreadPoolExecutor(1))
+    monkeypatch.setattr(coefficient_files, "process_pool", lambda count: ThreadPoolExecutor(1))
     cases = {"small": replace(paper_cases["CS-1"], name="small"), "large": replace(paper_cases["CS-6"], name="large")}
     found = find_case_coefficients(cases)
     assert sorted(tried) == [("large", 1), ("large", 2), ("small", 2)]

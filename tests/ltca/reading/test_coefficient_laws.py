@@ -16,10 +16,8 @@ from ltca.reading.coefficient_laws import (
 )
 
 RADIUS, COUNT, THICKNESS = 20.0, 24, 11.8
-UNIT = {body: 2.0 * (1.0 - nu**2) / (np.pi * modulus * THICKNESS) for body, modulus, nu in (
-    ("disc", 206e3, 0.3), ("pin", 110e3, 0.25), ("roller", 310e3, 0.27), ("race", 72e3, 0.34),
-)}  # fmt: skip
 MATERIALS = {"disc": (206e3, 0.3), "pin": (110e3, 0.25), "roller": (310e3, 0.27), "race": (72e3, 0.34)}
+UNIT = {body: 2.0 * (1.0 - nu**2) / (np.pi * modulus * THICKNESS) for body, (modulus, nu) in MATERIALS.items()}
 
 
 def made(plane="strain"):

@@ -195,6 +195,22 @@ def test_kept_coefficients_are_those_of_the_shape_and_few(paper, derived):
     assert shapes.with_kept_coefficients(HalfSpace(), drive) == HalfSpace()
 
 
+def test_what_is_in_the_cache_is_read_without_a_lock(paper, derived, monkeypatch):
+    """A cache that cannot be written but has everything was warned about, and workers waited for each other to read."""
+
+    def refuse():
+        raise AssertionError("the cache is tried")
+
+    monkeypatch.setattr(shapes, "require_cache", refuse)
+    drive = paper.cases["CS-1"]
+    with pytest.raises(AssertionError, match="tried"):
+        shapes.with_kept_coefficients(ALONE, drive)
+    kept = shapes.cached_file(drive)
+    kept.parent.mkdir(parents=True)
+    kept.touch()
+    assert shapes.with_kept_coefficients(ALONE, drive).coefficients.thickness == drive.disc.thickness
+
+
 def derive_slowly(directory, shape, queue):
     """One of two processes that want the same shape: the second one finds it there."""
     import time
