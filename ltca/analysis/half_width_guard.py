@@ -36,9 +36,9 @@ def check_half_widths(
         One sentence for each kind of contact that is too wide, naming the widest.
     """
     pin_radius, roller = drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius
-    # 1/ρ = 1/r_pin + κ: the flank's own radius is a bound as well as the pin's.
+    # 1/ρ = 1/r_pin + κ: the radius of a convex flank is a bound as well as the pin's; a concave one is wider than its pin.
     curvature = 1.0 / contacts.flank.effective_radius - 1.0 / pin_radius
-    flank_radius = 1.0 / np.maximum(np.abs(curvature), 1e-9)
+    flank_radius = 1.0 / np.maximum(curvature, 1e-9)
     found: list[tuple[str, FloatArray, FloatArray | float]] = [
         ("wheel pin", pressures.pins.half_width, np.minimum(flank_radius, pin_radius)),
         ("roller on the bore", pressures.outer.half_width, roller),

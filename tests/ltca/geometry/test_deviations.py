@@ -248,3 +248,21 @@ def test_batch_of_far_off_drives_against_one_by_one(paper_cases, deviated):
         for name in ("pin_load", "hole_load"):
             np.testing.assert_allclose(getattr(together.response, name)[rows], getattr(alone.response, name), atol=1e-4)
         np.testing.assert_allclose(pressure, own_pressure, atol=1e-4)
+
+
+def test_flanks_of_a_batch_are_the_flanks_of_its_drives(paper_cases):
+    """Each with waves of its own: amplitudes belong to positions, not to pins."""
+    waves = ((0.01, -0.004), (-0.02, 0.007), (0.0, 0.003))
+    named = ("disc.profile_errors.cosine", "disc.profile_errors.sine")
+    drives = [
+        with_fields(paper_cases["CS-1"], {"disc.profile_errors.orders": (2, 13), named[0]: wave, named[1]: wave[::-1]})
+        for wave in waves
+    ]
+    angles, pose = np.array([0.2, 4.0]), np.zeros((6, 4))
+    batch = ContactGeometry.of_drives(drives, angles.size).flank(np.tile(angles, len(drives)), pose)
+    for number, drive in enumerate(drives):
+        own = slice(number * angles.size, (number + 1) * angles.size)
+        alone = ContactGeometry.of_drive(drive).flank(angles, pose[own])
+        # the same sums in another order of arrays
+        np.testing.assert_allclose(batch.approach[own], alone.approach, rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(batch.effective_radius[own], alone.effective_radius, rtol=1e-11)

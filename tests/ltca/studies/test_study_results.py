@@ -34,6 +34,9 @@ def test_scalars_of_a_quantity():
     # deviations −1, −4, 4, 1: 34 over three
     assert found.standard_deviation == pytest.approx(np.sqrt(34.0 / 3.0))
     assert found.percentiles[PERCENTILES.index(50.0)] == 5.0
+    # of 0, 1, …, 1000 each percentile is ten times itself
+    thousand = summarise_quantity(np.arange(1001.0)).percentiles
+    np.testing.assert_allclose(thousand, [1.0, 10.0, 50.0, 500.0, 950.0, 990.0, 999.0], rtol=1e-12)
     assert summarise_quantity(np.array([np.nan])) is None
     assert summarise_quantity(np.array([2.0])).standard_deviation == 0.0
 
