@@ -56,12 +56,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Search, solve what was found and where it started finely, write, draw and print all of it."""
     from ltca.commands.compliance_arguments import compliance_of
-    from ltca.output.run_folder import claimed_folder
+    from ltca.output.run_folder import claimed_folder, figure_files
 
     engine = compliance_of(arguments)
     name, case, problem = _problem(arguments)
     out = arguments.out or default_folder(name, "optimise")
-    with claimed_folder(out, "optimise"):
+    figures = [] if arguments.no_figures else figure_files("pareto" if len(problem.aims) == 2 else "search")
+    with claimed_folder(out, "optimise", writes=["optimum.toml", "optimum.json", "candidates.parquet", *figures]):
         return _search_and_write(problem, name, case, engine, arguments, out)
 
 

@@ -18,6 +18,8 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from xarray import Dataset
 
     from ltca.analysis.engines import Engine
@@ -91,10 +93,28 @@ def execute(arguments: argparse.Namespace) -> int:
     check_common_shape(cases)
     out = arguments.out or default_folder(file.name, "run")
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
-    with claimed_folder(out, "run"):
+    with claimed_folder(out, "run", writes=_files(arguments, cases)):
         find_coefficients_of(cases, arguments)
         chosen = _Chosen(file=file, cases=cases, engine=engine, torque=torque)
         return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
+
+
+def _files(arguments: argparse.Namespace, cases: Iterable[str]) -> Iterator[str]:
+    """Names of all files that the run may write."""
+    from glob import escape
+
+    yield from ("results.nc", "summary.json")
+    if arguments.pressure is not None:
+        yield "pressure.nc"
+    if not arguments.no_figures:
+        from ltca.figures.pressure_figures import PRESSURE_FIGURES
+        from ltca.figures.run_figures import FIGURES
+        from ltca.output.run_folder import figure_files
+
+        yield from figure_files(*FIGURES)
+        if arguments.pressure is not None:
+            yield from figure_files(*PRESSURE_FIGURES)
+            yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
 
 
 class _Chosen(NamedTuple):

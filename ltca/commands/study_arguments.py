@@ -91,20 +91,24 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     from ltca.errors import DriveError
     from ltca.output.processes import Terminated
     from ltca.output.resources import require_room
-    from ltca.output.run_folder import claimed_folder
-    from ltca.studies.run_study import write_sample
+    from ltca.output.run_folder import claimed_folder, figure_files
+    from ltca.studies.run_study import sample_file, write_sample
 
     workers = workers_of(arguments)
     if arguments.sample is not None:
         if not 0 <= arguments.sample < study.design.samples:
             raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])
-        with claimed_folder(folder.path, "study", adding=True, beside=BESIDE):
+        with claimed_folder(
+            folder.path, "study", writes=[sample_file(f"{arguments.sample:08d}")], adding=True, beside=BESIDE
+        ):
             print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
     columns = len(study.design.names) + len(study.quantities)
     size = COPIES * 8.0 * columns * study.design.samples
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
-    with claimed_folder(folder.path, "study", beside=BESIDE) as held:
+    figures = [] if arguments.no_figures else figure_files("responses", "distributions", "sensitivity")
+    writes = [*folder.files, "summary.json", sample_file("[0-9]" * 8), *figures]
+    with claimed_folder(folder.path, "study", writes=writes, beside=BESIDE) as held:
         if arguments.resume:
             held.keep(folder.results, folder.table)
         try:

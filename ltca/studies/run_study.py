@@ -139,12 +139,23 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
         write_sample(study, folder, sample)
 
 
+def sample_file(number: str) -> str:
+    """Return where the drive of a sample lies in the folder of a study.
+
+    Parameters
+    ----------
+    number : str
+        Of the sample, eight digits.
+    """
+    return f"samples/sample_{number}.toml"
+
+
 def write_sample(study: Study, folder: StudyFolder, sample: int) -> str:
     """Write the drive of one sample as a drive file, ready for ``cyclo run``; return where it is.
 
     A sample that is no sound drive is written as a list of its fields with the reason.
     """
-    path = folder.path / "samples" / f"sample_{sample:08d}.toml"
+    path = folder.path / sample_file(f"{sample:08d}")
     try:
         text = drive_text(study.sample_drive(sample))
     except CycloError as error:

@@ -72,7 +72,7 @@ def execute(arguments: argparse.Namespace) -> int:
     except MemoryLimitError as error:
         raise CycloError(f"--size {arguments.size:g}: {error}") from error
     out: Path = arguments.out or default_folder(file.name, "validate")
-    with claimed_folder(out, "validate", beside=("kept",)):
+    with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=("kept",)):
         return _run_and_write(plan, out)
 
 

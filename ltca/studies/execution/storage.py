@@ -55,6 +55,11 @@ class StudyFolder:
         return self.path / "results.parquet"
 
     @property
+    def files(self) -> tuple[str, ...]:
+        """Names of plan, dataset and table."""
+        return tuple(path.name for path in (self._plan, self.results, self.table))
+
+    @property
     def _batches(self) -> Path:
         return self.path / "batches"
 
