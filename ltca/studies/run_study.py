@@ -53,6 +53,7 @@ def run_study(
     workers: Workers,
     *,
     resume: bool = False,
+    replace: bool = False,
     advance: Callable[[int, float], None] = lambda samples, rate: None,
     told: Callable[[str], None] = lambda message: None,
 ) -> StudySummary:
@@ -68,6 +69,8 @@ def run_study(
         Who solves it.
     resume : bool
         Whether to continue what the folder holds.
+    replace : bool
+        Whether another study in the folder makes room.
     advance : callable
         Told the samples of every finished batch and the rate so far in positions per second.
     told : callable
@@ -82,7 +85,7 @@ def run_study(
     CycloError
         When the folder holds something else, no sample has influence coefficients, or workers die again and again.
     """
-    left = folder.prepare(study, resume, told)
+    left = folder.prepare(study, resume, told, replace=replace)
     if not study.engine.batches:
         find_beforehand(study.engine, study.shapes(left), told)
     waiting = sum(last - first for first, last in map(study.samples_of, left))
