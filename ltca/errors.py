@@ -105,6 +105,17 @@ def one_line(error: BaseException) -> str:
     return printable(" ".join(str(error).split()))[:200] or type(error).__name__
 
 
+def told_twice(names: Sequence[str]) -> str:
+    """Return the first of some names that is there twice, empty when none is.
+
+    Examples
+    --------
+    >>> told_twice(["CS-1", "CS-3", "CS-1"])
+    'CS-1'
+    """
+    return next((name for place, name in enumerate(names) if name in names[:place]), "")
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return a question after the name that was meant, with a space before it, or nothing when none is near.
 

@@ -28,6 +28,7 @@ FEM_MAY_IMPORT = (
 )  # fmt: skip
 LIGHT_COMMANDS = {
     "dataclasses",
+    "errno",
     "ltca.errors",
     "ltca.reading.arguments",
     "ltca.output.terminal",

@@ -13,6 +13,7 @@ from ltca.reading.arguments import (
     add_drive_argument,
     add_size_argument,
     default_folder,
+    path_argument,
     quantity_argument,
 )
 
@@ -52,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         metavar="FILE",
-        type=Path,
+        type=path_argument("--out"),
         help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}",
     )
     parser.add_argument(

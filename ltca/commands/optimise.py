@@ -103,26 +103,33 @@ def _search_and_write(
 
 def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
     """Name of the drive file, of the case, and what is asked of it."""
-    from ltca.errors import DriveError, did_you_mean, shortened
+    from ltca.errors import DriveError, did_you_mean, shortened, told_twice
     from ltca.reading.drive_file import load_drive
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
-    aims = tuple(dict.fromkeys(arguments.minimise))
+    aims = tuple(arguments.minimise)
     unknown = [aim for aim in aims if aim not in QUANTITIES]
-    if unknown or len(aims) > 2:
-        meant = did_you_mean(unknown[0], QUANTITIES) if unknown else ""
-        told = shortened(" ".join(aims))[1:-1]
-        raise DriveError([f"--minimise {told}: give one or two of {', '.join(QUANTITIES)}{meant}"])
+    if unknown:
+        meant = did_you_mean(unknown[0], QUANTITIES) or "; there are " + ", ".join(QUANTITIES)
+        told = f"is no quantity of a study{meant}"
+        raise DriveError([f"--minimise {shortened(unknown[0])[1:-1]}: {told}"])
+    if len(aims) > 2 or told_twice(aims):
+        raise DriveError(
+            [f"--minimise {shortened(' '.join(aims), 200)[1:-1]}: give one quantity, or two different ones"]
+        )
     file = load_drive(arguments.drive)
     case = arguments.case or next(iter(file.cases))
     drive = file.select([case])[case]
+    variables = tuple(parse_variable(text, drive) for text in arguments.vary)
+    if repeated := told_twice([variable.path for variable in variables]):
+        raise DriveError([f"--vary {repeated}: is given twice"])
     return (
         file.name,
         case,
         Problem(
             drive=drive,
-            variables=tuple(parse_variable(text, drive) for text in arguments.vary),
+            variables=variables,
             aims=aims,
             limits=tuple(parse_limit(text) for text in arguments.subject),
         ),

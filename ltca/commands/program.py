@@ -7,6 +7,7 @@ Commands register in the entry-point group ``cyclo.commands``; an entry names a 
 from __future__ import annotations
 
 import argparse
+import errno
 import os
 import re
 import sys
@@ -113,6 +114,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         if debug:
             traceback.print_exc()
         print(f"cyclo: error: {_told(error)}", file=sys.stderr)
+        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+            return USAGE_ERROR  # whichever argument it was
         return error.exit_status if isinstance(error, CycloError) else FAULT
 
 

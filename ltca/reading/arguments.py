@@ -7,10 +7,13 @@ import it at their head.
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable
 from pathlib import Path
 
 DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
+LONGEST_PART = 255
+"""Bytes of the name of a file or folder that file systems take."""
 LONGEST_COUNT = 19
 """Digits of a whole number; what is longer is out of every range."""
 
@@ -28,7 +31,7 @@ def add_case_argument(parser: argparse.ArgumentParser, what: str, *, several: bo
 def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = "folder for the results") -> None:
     """Add the folder for what a command writes."""
     shown = default_folder("<drive>" if command != "sweep" else "<study>", command)
-    parser.add_argument("--out", metavar="DIR", type=Path, help=f"{what}; default {shown}")
+    parser.add_argument("--out", metavar="DIR", type=path_argument("--out"), help=f"{what}; default {shown}")
 
 
 def default_folder(name: str, command: str) -> Path:
@@ -116,6 +119,41 @@ def torque_argument(text: str) -> float:
         (problem,) = error.problems
         hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""
         raise DriveError([f"{problem}{hint}"]) from error
+
+
+def path_argument(option: str) -> Callable[[str], Path]:
+    """Return what reads the text of an option as the name of a file or folder to be written.
+
+    Parameters
+    ----------
+    option : str
+        For messages.
+
+    Returns
+    -------
+    callable
+        For ``type=`` of an argument; it raises `DriveError`.
+
+    Examples
+    --------
+    >>> path_argument("--out")("out/paper").as_posix()
+    'out/paper'
+    """
+
+    def read(text: str) -> Path:
+        from ltca.drive.names import is_seen
+        from ltca.errors import DriveError, shortened
+
+        told = f"{option} = {shortened(text)}"
+        if not text.strip():
+            raise DriveError([f"{told}: is empty; '.' is the folder we are in"])
+        if not is_seen(text):
+            raise DriveError([f"{told}: must not have control or invisible characters"])
+        if max(len(os.fsencode(part)) for part in Path(text).parts or (".",)) > LONGEST_PART:
+            raise DriveError([f"{told}: no name in it can have more than {LONGEST_PART} bytes"])
+        return Path(text)
+
+    return read
 
 
 def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
