@@ -133,6 +133,8 @@ def _check_file(arguments: argparse.Namespace) -> int:
     for option, default in DERIVING.items():
         if getattr(arguments, option) != default:
             raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --check, which derives nothing")
+    if not Path(arguments.check).is_file():
+        raise CycloError(f"--check {arguments.check}: no such file")
     from fem.coefficients.fit import check_against_drive
     from ltca.reading.coefficient_file import read_coefficients
     from ltca.reading.coefficient_laws import check_coefficients

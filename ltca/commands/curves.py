@@ -121,16 +121,19 @@ def execute(arguments: argparse.Namespace) -> int:
     """Solve every case, write curves.json and the figures, print what they say."""
     from glob import escape
 
-    from ltca.analysis.memory_need import require_room_for
-    from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
-    from ltca.output.run_folder import claimed_folder, figure_files
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of, find_coefficients_of
+    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
     from ltca.reading.drive_file import load_drive
 
-    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
-    engine = compliance_of(arguments)
+    check_compliance(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     out = arguments.out or default_folder(file.name, "curves")
+    require_folder(out)
+    from ltca.analysis.memory_need import require_room_for
+
+    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
+    engine = compliance_of(arguments)
     for drive in cases.values():
         turns = arguments.turns or drive.pin_wheel.number_of_pins
         require_room_for([drive], turns * POSITIONS_PER_TURN, out, f"--turns {turns}")

@@ -18,6 +18,7 @@ from ltca.reading.arguments import (
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
+    from ltca.drive.parts import Drive
     from ltca.studies.fine_solution import FineSolution
     from ltca.studies.optimiser import Optimum, Problem
 
@@ -55,12 +56,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Search, solve what was found and where it started finely, write, draw and print all of it."""
-    from ltca.commands.compliance_arguments import compliance_of
-    from ltca.output.run_folder import claimed_folder, figure_files
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of
+    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
+    from ltca.reading.drive_file import load_drive
 
-    engine = compliance_of(arguments)
-    name, case, problem = _problem(arguments)
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    name, case = file.name, next(iter(file.select(None if arguments.case is None else [arguments.case])))
     out = arguments.out or default_folder(name, "optimise")
+    require_folder(out)
+    engine = compliance_of(arguments)
+    problem = _problem(file.cases[case], arguments)
     figures = [] if arguments.no_figures else figure_files("pareto" if len(problem.aims) == 2 else "search")
     with claimed_folder(out, "optimise", writes=["optimum.toml", "optimum.json", "candidates.parquet", *figures]):
         return _search_and_write(problem, name, case, engine, arguments, out)
@@ -101,10 +107,9 @@ def _search_and_write(
     return 0
 
 
-def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
-    """Name of the drive file, of the case, and what is asked of it."""
+def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
+    """What is asked of a drive."""
     from ltca.errors import DriveError, did_you_mean, shortened, told_twice
-    from ltca.reading.drive_file import load_drive
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
@@ -118,21 +123,11 @@ def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
         raise DriveError(
             [f"--minimise {shortened(' '.join(aims), 200)[1:-1]}: give one quantity, or two different ones"]
         )
-    file = load_drive(arguments.drive)
-    case = arguments.case or next(iter(file.cases))
-    drive = file.select([case])[case]
     variables = tuple(parse_variable(text, drive) for text in arguments.vary)
     if repeated := told_twice([variable.path for variable in variables]):
         raise DriveError([f"--vary {repeated}: is given twice"])
-    return (
-        file.name,
-        case,
-        Problem(
-            drive=drive,
-            variables=variables,
-            aims=aims,
-            limits=tuple(parse_limit(text) for text in arguments.subject),
-        ),
+    return Problem(
+        drive=drive, variables=variables, aims=aims, limits=tuple(parse_limit(text) for text in arguments.subject)
     )
 
 

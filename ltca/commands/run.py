@@ -79,19 +79,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
+    from ltca.commands.compliance_arguments import check_compliance
+    from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 
-    file = load_drive(arguments.drive)  # before the analysis is imported: what is wrong is told at once
+    # Before the analysis is imported: what is wrong is told at once.
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
+    out = arguments.out or default_folder(file.name, "run")
+    require_folder(out)
     from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
     from ltca.commands.compliance_arguments import find_coefficients_of
-    from ltca.output.run_folder import claimed_folder
 
     angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
     torque, engine = arguments.torque, _engine(arguments)
     check_common_shape(cases)
-    out = arguments.out or default_folder(file.name, "run")
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
         find_coefficients_of(cases, arguments)

@@ -71,19 +71,28 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     )
 
 
-def workers_of(arguments: argparse.Namespace) -> Workers:
-    """Return the workers asked for.
+def check_study_arguments(arguments: argparse.Namespace) -> None:
+    """Refuse options that contradict each other, before anything is imported.
 
     Raises
     ------
     DriveError
-        When both workers and a scheduler are given.
+        When two are given of which there can be one.
     """
     from ltca.errors import DriveError
-    from ltca.studies.execution.workers import Workers
 
     if arguments.scheduler and arguments.workers > 1:
         raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
+    if arguments.resume and arguments.force:
+        raise DriveError(
+            ["--resume and --force: give one of them; one goes on with the study in --out, one replaces it"]
+        )
+
+
+def workers_of(arguments: argparse.Namespace) -> Workers:
+    """Return the workers asked for."""
+    from ltca.studies.execution.workers import Workers
+
     return Workers(processes=arguments.workers, scheduler=arguments.scheduler)
 
 
@@ -96,10 +105,6 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     from ltca.studies.run_study import sample_file, write_sample
 
     workers = workers_of(arguments)
-    if arguments.resume and arguments.force:
-        raise DriveError(
-            ["--resume and --force: give one of them; one goes on with the study in --out, one replaces it"]
-        )
     if arguments.sample is not None:
         if not 0 <= arguments.sample < study.design.samples:
             raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])

@@ -170,6 +170,23 @@ def figure_files(*names: str) -> list[str]:
     return [f"figures/{name}{suffix}" for name in names for suffix in (".svg", ".png")]
 
 
+def require_folder(path: Path) -> None:
+    """Refuse a file in the place of a folder.
+
+    Parameters
+    ----------
+    path : Path
+        What ``--out`` gives; it need not be there yet.
+
+    Raises
+    ------
+    PlaceError
+        When it is one.
+    """
+    if path.exists() and not path.is_dir():
+        raise PlaceError(f"--out {path}: is a file, not a folder")
+
+
 @contextmanager
 def claimed_folder(
     path: Path, command: str, *, writes: Iterable[str] = (), beside: tuple[str, ...] = (), adding: bool = False
@@ -201,8 +218,7 @@ def claimed_folder(
     FaultError
         When the disc is full or fails.
     """
-    if path.exists() and not path.is_dir():
-        raise PlaceError(f"--out {path}: is a file, not a folder")
+    require_folder(path)
     made = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
         with held(path / LOCK, f"--out {path}", command):

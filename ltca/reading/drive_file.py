@@ -16,7 +16,7 @@ from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, parse_tolerances
 from ltca.drive.units import even_share
-from ltca.errors import DriveError, did_you_mean, shortened, told_twice
+from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.physical_checks import find_contradictions
 from ltca.reading.toml_text import parse_toml, read_text
@@ -60,12 +60,10 @@ class DriveFile:
         Raises
         ------
         DriveError
-            When a name is not a case of the drive, or is given twice.
+            When a name is not a case of the drive.
         """
         if not names:
             return dict(self.cases)
-        if repeated := told_twice(names):
-            raise DriveError([f"case {shortened(repeated)} is given twice"], self.source)
         unknown = [name for name in names if name not in self.cases]
         if unknown:
             known = listed(self.cases)
@@ -76,7 +74,7 @@ class DriveFile:
                 ],
                 self.source,
             )
-        return {name: self.cases[name] for name in names}
+        return {name: self.cases[name] for name in dict.fromkeys(names)}
 
 
 def shipped_drive(name: str = "paper") -> str:

@@ -129,7 +129,7 @@ def test_names_that_are_not_there_ask_for_the_nearest(words, told, capsys):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["run", "paper", "--case", "CS-1", "--case", "CS-1"], "paper: case 'CS-1' is given twice"),
+        (["run", "paper", "--case", "CS-1", "--case", "CS-1"], "--case CS-1: is given twice"),
         (["optimise", "paper", "--vary", "thickness", "disc.thickness=9:12", "--minimise", "max_pin_load"],
          "--vary disc.thickness: is given twice"),
         (["optimise", "paper", "--vary", "thickness", "--minimise", "max_pin_load", "max_pin_load"],
