@@ -86,7 +86,9 @@ def shortened(value: Any, most: int = 60) -> str:
     ("'a\\\\nb'", '4.5')
     """
     try:
-        text = repr(value[: most + 1]) if isinstance(value, str) else str(value)
+        if isinstance(value, str) and len(value) > most - 2:
+            value = f"{value[: most - 5]}..."
+        text = repr(value) if isinstance(value, str) else str(value)
     except (ValueError, RecursionError):  # whole numbers of thousands of digits, tables in tables
         text = f"a {type(value).__name__} too long to print"
     text = printable(text)

@@ -137,11 +137,28 @@ def execute(arguments: argparse.Namespace) -> int:
     for drive in cases.values():
         turns = arguments.turns or drive.pin_wheel.number_of_pins
         require_room_for([drive], turns * POSITIONS_PER_TURN, out, f"--turns {turns}")
+        if turns < drive.pin_wheel.number_of_pins:
+            _require_turns(drive, turns)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
     figures = figure_files(*(name + ending for name in FIGURES for ending in endings))
     with claimed_folder(out, "curves", writes=["curves.json", *([] if arguments.no_figures else figures)]):
         find_coefficients_of(cases, arguments)
         return _solve_and_write(file.name, cases, limits, engine, arguments, out)
+
+
+def _require_turns(drive: Drive, turns: int) -> None:
+    """Refuse turns over which the orders of the transmission error look alike."""
+    from ltca.analysis.transmission_error_orders import known_orders, least_turns
+    from ltca.errors import DriveError
+
+    orders = known_orders(drive, harmonics=HARMONICS)
+    least = least_turns(orders, POSITIONS_PER_TURN, drive.pin_wheel.number_of_pins)
+    if turns < least:
+        raise DriveError(
+            [
+                f"--turns = {turns}: must be at least {least}, or {len(orders)} orders of the transmission error look alike"
+            ]
+        )
 
 
 def _solve_and_write(

@@ -10,6 +10,7 @@ import pytest
 from ltca.commands.program import ORDER, build_parser, main
 from ltca.drive.names import names_a_file
 from ltca.errors import CycloError
+from ltca.reading.drive_file import shipped_drive
 
 PARSER = build_parser()
 (COMMANDS,) = (action.choices for action in PARSER._actions if isinstance(action, argparse._SubParsersAction))
@@ -196,6 +197,18 @@ def test_names_that_nobody_sees_are_refused(name):
 )
 def test_names_of_any_script_are_taken(name):
     assert names_a_file(name)
+
+
+@pytest.mark.parametrize("field", ["number_of_pins", "pin_radius"])
+def test_numbers_of_hundreds_of_digits_are_told_as_typed(field, tmp_path, capsys):
+    """A count of 400 digits was told as 1000000000000000."""
+    text = shipped_drive().replace(f"\n{field} = ", f"\n{field} = {'7' * 400} # ", 1)
+    path = tmp_path / "drive.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["show", str(path)]) == 2
+    assert f"pin_wheel.{field} = {'7' * 57}...: must be" in capsys.readouterr().err
+    assert main(["run", "paper", "--positions", "7" * 400]) == 2
+    assert f"--positions = {'7' * 55}...: must be" in capsys.readouterr().err
 
 
 def test_a_torque_turned_round_says_what_turns_it():

@@ -243,3 +243,17 @@ def test_arguments_and_drive_are_read_before_what_takes_seconds_to_import(tmp_pa
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("\n") == len(REFUSED)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("words", [["--help"], ["--version"], ["show", "paper"]])
+def test_an_output_that_takes_nothing_is_named(words, unbuffered, tmp_path):
+    """`cyclo --help` ended with exit status 0, `cyclo run` spoke of 'a file'."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": unbuffered}
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "ltca.commands.program", *words], stdout=full, stderr=subprocess.PIPE, text=True,
+            check=False, cwd=tmp_path, env=environment,
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (1, "cyclo: error: standard output: No space left on device\n")
