@@ -86,7 +86,9 @@ def shortened(value: Any, most: int = 60) -> str:
     ("'a\\\\nb'", '4.5')
     """
     try:
-        text = repr(value[: most + 1]) if isinstance(value, str) else str(value)
+        if isinstance(value, str) and len(value) > most - 2:
+            value = f"{value[: most - 5]}..."
+        text = repr(value) if isinstance(value, str) else str(value)
     except (ValueError, RecursionError):  # whole numbers of thousands of digits, tables in tables
         text = f"a {type(value).__name__} too long to print"
     text = printable(text)
@@ -103,6 +105,17 @@ def printable(text: str) -> str:
 def one_line(error: BaseException) -> str:
     """Return what an exception of a library says on one line, cut when it is long; its kind where it says nothing."""
     return printable(" ".join(str(error).split()))[:200] or type(error).__name__
+
+
+def told_twice(names: Sequence[str]) -> str:
+    """Return the first of some names that is there twice, empty when none is.
+
+    Examples
+    --------
+    >>> told_twice(["CS-1", "CS-3", "CS-1"])
+    'CS-1'
+    """
+    return next((name for place, name in enumerate(names) if name in names[:place]), "")
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

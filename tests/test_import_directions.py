@@ -27,7 +27,9 @@ FEM_MAY_IMPORT = (
     "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
 )  # fmt: skip
 LIGHT_COMMANDS = {
+    "contextlib",
     "dataclasses",
+    "errno",
     "ltca.errors",
     "ltca.reading.arguments",
     "ltca.output.terminal",

@@ -13,6 +13,7 @@ from ltca.reading.arguments import (
     add_drive_argument,
     add_size_argument,
     default_folder,
+    path_argument,
     quantity_argument,
 )
 
@@ -52,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         metavar="FILE",
-        type=Path,
+        type=path_argument("--out"),
         help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}",
     )
     parser.add_argument(
@@ -132,6 +133,8 @@ def _check_file(arguments: argparse.Namespace) -> int:
     for option, default in DERIVING.items():
         if getattr(arguments, option) != default:
             raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --check, which derives nothing")
+    if not Path(arguments.check).is_file():
+        raise CycloError(f"--check {arguments.check}: no such file")
     from fem.coefficients.fit import check_against_drive
     from ltca.reading.coefficient_file import read_coefficients
     from ltca.reading.coefficient_laws import check_coefficients

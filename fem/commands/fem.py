@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import add_position_arguments, chosen_drive
+from fem.commands.position_arguments import BODIES, add_position_arguments, chosen_drive
 from ltca.reading.arguments import add_out_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
@@ -66,7 +66,14 @@ def execute(arguments: argparse.Namespace) -> int:
     referee = _referee(arguments.referee)
     name, case, drive = chosen_drive(arguments)
     out = arguments.out or default_folder(name, "fem")
-    with claimed_folder(out, "fem"):
+    writes = ["fem.nc", "fem.vtm", "summary.json", *(f"{body}.vtu" for body in BODIES)]
+    if not arguments.no_pictures:
+        writes += ["von_mises.png", "contacts.png", "deformed.png"]
+    if arguments.export or referee:
+        writes.append("calculix.inp")
+    if referee:
+        writes.append("calculix.dat")
+    with claimed_folder(out, "fem", writes=writes):
         _solve_and_write(name, case, drive, arguments, out, referee)
     return 0
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import add_position_arguments, chosen_drive
+from fem.commands.position_arguments import BODIES, add_position_arguments, chosen_drive
 from ltca.reading.arguments import add_out_argument, count_argument, default_folder
 
 if TYPE_CHECKING:
@@ -49,7 +49,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
     name, case, drive = chosen_drive(arguments)
     out = arguments.out or default_folder(name, "mesh")
-    with claimed_folder(out, "mesh"):
+    writes = ("mesh.png", *(f"{body}.{ending}" for body in BODIES for ending in ("msh", "vtu")))
+    with claimed_folder(out, "mesh", writes=writes):
         _mesh_and_write(name, case, drive, arguments, out)
     return 0
 

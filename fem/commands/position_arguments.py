@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
 
+BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("pin", "roller", "shaft_pin")))
+"""Names of all bodies, those of pins and rollers as patterns."""
+
+
 def add_position_arguments(parser: argparse.ArgumentParser) -> None:
     """Add drive file, case, crank angle and element edge."""
     add_drive_argument(parser)

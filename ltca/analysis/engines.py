@@ -26,6 +26,7 @@ from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
 from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.reading.arguments import refuse_idle_options
 
 FloatArray = NDArray[np.float64]
 
@@ -312,21 +313,14 @@ def engine_named(
             raise DriveError([f"{name}: is an option of the engine given as compliance" for name in given])
         return compliance
     _check_name("compliance", compliance, get_args(Compliance))
+    refuse_idle_options(
+        compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
+    )
     if compliance == "half-space":
-        _refuse(given, ("coefficients", "hole_near_field"), compliance)
         return HalfSpace(method=given.get("method", "tables"), contacts=given.get("contacts"))
     if given.get("method") == "tables":
         del given["method"]
-    for name in ("method", "contacts"):
-        if name in given:
-            raise DriveError([f"{name} = {given[name]}: runs on half-space compliance only, not on {compliance}"])
     return PlaneStrain(**given) if compliance == "fe" else Hybrid(**given)
-
-
-def _refuse(given: dict[str, Any], names: tuple[str, ...], compliance: str) -> None:
-    problems = [f"{name}: has no effect with compliance {compliance}; leave it out" for name in names if name in given]
-    if problems:
-        raise DriveError(problems)
 
 
 def _listed(names: Any) -> str:

@@ -20,6 +20,9 @@ from ltca.geometry.placement import Placement
 
 FloatArray = NDArray[np.float64]
 
+APART = 1e-3
+"""Of the largest singular value the least that orders told apart leave."""
+
 
 class Order(NamedTuple):
     """An order by its origin."""
@@ -103,6 +106,41 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
     return tuple(sorted(found))
 
 
+def least_turns(orders: tuple[Order, ...], positions: int, most: int) -> int:
+    """Return the crank turns whose positions tell orders apart, as `fit_orders` asks for.
+
+    Parameters
+    ----------
+    orders : tuple of Order
+        What is to be fitted.
+    positions : int
+        In each turn.
+    most : int
+        Turns after which to end.
+
+    Returns
+    -------
+    int
+        Turns; `most` where fewer do not.
+    """
+    values = np.array([order.value for order in orders])
+    gram = np.zeros((2 * len(orders) + 1,) * 2)
+    for turn in range(1, most):
+        angle = 2.0 * np.pi * (turn - 1 + np.arange(positions) / positions)
+        columns = _columns(angle, values)
+        gram += columns.T @ columns
+        sizes = np.linalg.eigvalsh(gram)
+        if turn * positions >= len(gram) and sizes[0] >= APART**2 * sizes[-1]:
+            return turn
+    return most
+
+
+def _columns(crank_angle: FloatArray, values: FloatArray) -> FloatArray:
+    """One, cosines and sines of orders at crank angles."""
+    phase = np.asarray(crank_angle)[:, None] * values
+    return np.hstack([np.ones((phase.shape[0], 1)), np.cos(phase), np.sin(phase)])
+
+
 def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, ...]) -> Spectrum:
     """Fit amplitudes and phases of orders to a transmission error.
 
@@ -123,12 +161,11 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
         When the positions cannot tell the orders apart (too few, or over too few turns).
     """
     values = np.array([order.value for order in orders])
-    phase = np.asarray(crank_angle)[:, None] * values
-    columns = np.hstack([np.ones((phase.shape[0], 1)), np.cos(phase), np.sin(phase)])
+    columns = _columns(np.asarray(crank_angle), values)
     solution, _, rank, singular = np.linalg.lstsq(columns, error, rcond=None)
-    if rank < columns.shape[1] or singular[-1] < 1e-3 * singular[0]:
+    if rank < columns.shape[1] or singular[-1] < APART * singular[0]:
         raise ValueError(
-            f"{phase.shape[0]} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
+            f"{columns.shape[0]} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
         )
     cosine, sine = solution[1 : len(orders) + 1], solution[len(orders) + 1 :]
     return Spectrum(

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.reading.arguments import DifferentValues, refuse_idle_options
+
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
     from ltca.drive.parts import Drive
@@ -24,7 +26,7 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
         "--coefficients",
         metavar="FILE",
         type=Path,
-        action="append",
+        action=DifferentValues,
         help="influence coefficients of cyclo derive, repeatable: each drive takes the file of its shape; without any they "
         "are derived once for each shape and kept",
     )
@@ -33,6 +35,28 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave out the local yielding of the hole walls (fe and hybrid)",
     )
+
+
+def check_compliance(arguments: argparse.Namespace) -> None:
+    """Check the arguments as far as that goes before the engines are imported, which takes a second.
+
+    Raises
+    ------
+    CycloError
+        When an option does not belong to the compliance, or a file is not there.
+    """
+    from ltca.errors import DamagedFileError
+
+    refuse_idle_options(
+        arguments.compliance,
+        method=getattr(arguments, "method", None),
+        contacts=getattr(arguments, "contacts", None),
+        coefficients=arguments.coefficients,
+        hole_near_field=False if arguments.no_hole_near_field else None,
+    )
+    for path in arguments.coefficients or ():
+        if not path.is_file():
+            raise DamagedFileError(f"--coefficients {path}: no such file")
 
 
 def compliance_of(arguments: argparse.Namespace) -> Engine:

@@ -29,6 +29,7 @@ SUMMARY = "torque curve and lost motion, orders of the transmission error, beari
 POSITIONS_PER_TURN = 192
 ANGLES = 4
 HARMONICS = 7
+FIGURES = ("torque_curve", "transmission_error_orders", "flank_pressure")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -118,22 +119,46 @@ class CaseCurves(NamedTuple):
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve every case, write curves.json and the figures, print what they say."""
-    from ltca.analysis.memory_need import require_room_for
-    from ltca.commands.compliance_arguments import compliance_of, find_coefficients_of
-    from ltca.output.run_folder import claimed_folder
+    from glob import escape
+
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of, find_coefficients_of
+    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
     from ltca.reading.drive_file import load_drive
 
-    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
-    engine = compliance_of(arguments)
+    check_compliance(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     out = arguments.out or default_folder(file.name, "curves")
+    require_folder(out)
+    from ltca.analysis.memory_need import require_room_for
+
+    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
+    engine = compliance_of(arguments)
     for drive in cases.values():
         turns = arguments.turns or drive.pin_wheel.number_of_pins
         require_room_for([drive], turns * POSITIONS_PER_TURN, out, f"--turns {turns}")
-    with claimed_folder(out, "curves"):
+        if turns < drive.pin_wheel.number_of_pins:
+            _require_turns(drive, turns)
+    endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
+    figures = figure_files(*(name + ending for name in FIGURES for ending in endings))
+    with claimed_folder(out, "curves", writes=["curves.json", *([] if arguments.no_figures else figures)]):
         find_coefficients_of(cases, arguments)
         return _solve_and_write(file.name, cases, limits, engine, arguments, out)
+
+
+def _require_turns(drive: Drive, turns: int) -> None:
+    """Refuse turns over which the orders of the transmission error look alike."""
+    from ltca.analysis.transmission_error_orders import known_orders, least_turns
+    from ltca.errors import DriveError
+
+    orders = known_orders(drive, harmonics=HARMONICS)
+    least = least_turns(orders, POSITIONS_PER_TURN, drive.pin_wheel.number_of_pins)
+    if turns < least:
+        raise DriveError(
+            [
+                f"--turns = {turns}: must be at least {least}, or {len(orders)} orders of the transmission error look alike"
+            ]
+        )
 
 
 def _solve_and_write(

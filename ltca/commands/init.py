@@ -7,12 +7,14 @@ import json
 import shlex
 from pathlib import Path
 
+from ltca.reading.arguments import path_argument
+
 SUMMARY = "write a commented copy of the paper's drive to start from"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("file", metavar="FILE", help="TOML file to write, e.g. my.toml")
+    parser.add_argument("file", metavar="FILE", type=path_argument("FILE"), help="TOML file to write, e.g. my.toml")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
 
 
@@ -23,7 +25,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.files import whole_file
     from ltca.reading.drive_file import shipped_drive
 
-    path = Path(arguments.file)
+    path: Path = arguments.file
     if not names_a_file(path.stem):
         raise DriveError([f"{shortened(str(path))}: the drive is named after the file, and its name {NAMING}"])
     if path.exists() and not arguments.force:

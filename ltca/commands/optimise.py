@@ -18,6 +18,7 @@ from ltca.reading.arguments import (
 
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
+    from ltca.drive.parts import Drive
     from ltca.studies.fine_solution import FineSolution
     from ltca.studies.optimiser import Optimum, Problem
 
@@ -55,13 +56,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Search, solve what was found and where it started finely, write, draw and print all of it."""
-    from ltca.commands.compliance_arguments import compliance_of
-    from ltca.output.run_folder import claimed_folder
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of
+    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
+    from ltca.reading.drive_file import load_drive
 
-    engine = compliance_of(arguments)
-    name, case, problem = _problem(arguments)
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    name, case = file.name, next(iter(file.select(None if arguments.case is None else [arguments.case])))
     out = arguments.out or default_folder(name, "optimise")
-    with claimed_folder(out, "optimise"):
+    require_folder(out)
+    engine = compliance_of(arguments)
+    problem = _problem(file.cases[case], arguments)
+    figures = [] if arguments.no_figures else figure_files("pareto" if len(problem.aims) == 2 else "search")
+    with claimed_folder(out, "optimise", writes=["optimum.toml", "optimum.json", "candidates.parquet", *figures]):
         return _search_and_write(problem, name, case, engine, arguments, out)
 
 
@@ -100,31 +107,27 @@ def _search_and_write(
     return 0
 
 
-def _problem(arguments: argparse.Namespace) -> tuple[str, str, Problem]:
-    """Name of the drive file, of the case, and what is asked of it."""
-    from ltca.errors import DriveError, did_you_mean, shortened
-    from ltca.reading.drive_file import load_drive
+def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
+    """What is asked of a drive."""
+    from ltca.errors import DriveError, did_you_mean, shortened, told_twice
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
     from ltca.studies.quantities import QUANTITIES
 
-    aims = tuple(dict.fromkeys(arguments.minimise))
+    aims = tuple(arguments.minimise)
     unknown = [aim for aim in aims if aim not in QUANTITIES]
-    if unknown or len(aims) > 2:
-        meant = did_you_mean(unknown[0], QUANTITIES) if unknown else ""
-        told = shortened(" ".join(aims))[1:-1]
-        raise DriveError([f"--minimise {told}: give one or two of {', '.join(QUANTITIES)}{meant}"])
-    file = load_drive(arguments.drive)
-    case = arguments.case or next(iter(file.cases))
-    drive = file.select([case])[case]
-    return (
-        file.name,
-        case,
-        Problem(
-            drive=drive,
-            variables=tuple(parse_variable(text, drive) for text in arguments.vary),
-            aims=aims,
-            limits=tuple(parse_limit(text) for text in arguments.subject),
-        ),
+    if unknown:
+        meant = did_you_mean(unknown[0], QUANTITIES) or "; there are " + ", ".join(QUANTITIES)
+        told = f"is no quantity of a study{meant}"
+        raise DriveError([f"--minimise {shortened(unknown[0])[1:-1]}: {told}"])
+    if len(aims) > 2 or told_twice(aims):
+        raise DriveError(
+            [f"--minimise {shortened(' '.join(aims), 200)[1:-1]}: give one quantity, or two different ones"]
+        )
+    variables = tuple(parse_variable(text, drive) for text in arguments.vary)
+    if repeated := told_twice([variable.path for variable in variables]):
+        raise DriveError([f"--vary {repeated}: is given twice"])
+    return Problem(
+        drive=drive, variables=variables, aims=aims, limits=tuple(parse_limit(text) for text in arguments.subject)
     )
 
 

@@ -7,12 +7,14 @@ Commands register in the entry-point group ``cyclo.commands``; an entry names a 
 from __future__ import annotations
 
 import argparse
+import errno
 import os
 import re
 import sys
 import traceback
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import entry_points, version
 from typing import Any, NoReturn
 
@@ -22,6 +24,7 @@ from ltca.output.terminal import prepare_streams
 GROUP = "cyclo.commands"
 ORDER = ("run", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
 USAGE_ERROR, FAULT = 2, 1
+OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
 DEBUG = "--debug"
 
 
@@ -34,6 +37,11 @@ class _Parser(argparse.ArgumentParser):
         self.add_argument(
             DEBUG, action="store_true", default=argparse.SUPPRESS, help="show the traceback of an error, and warnings"
         )
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help and usage; the library would pass over what cannot be written."""
+        if message:
+            (file or sys.stderr).write(message)
 
     def error(self, message: str) -> NoReturn:
         """End with the message in one line and exit status 2."""
@@ -92,13 +100,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     # One thread each: the matrices of a batch are small, and threads that share two cores slow each other down.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
-    from ltca.output.processes import Terminated, ended_by_signals
+    from ltca.output.processes import Terminated
 
     try:
         wanted = next((word for word in words if word != DEBUG), "")
-        arguments = build_parser(wanted).parse_args(words)
-        with ended_by_signals():
-            return int(arguments.execute(arguments))
+        status = _run(words, wanted)
+        sys.stdout.flush()  # what cannot be written is told, not left to the interpreter's exit
+        return status
     except Terminated:
         print("cyclo: terminated", file=sys.stderr)
         return 143
@@ -107,13 +115,37 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         # The reader of our output (head, less) has gone: no message, and none from the interpreter's exit either.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         return 141
     except Exception as error:  # noqa: BLE001  # the one place where everything ends
+        if isinstance(error, OSError) and error.filename is None and error.errno in OUTPUT_FAULTS:
+            error.filename = "standard output"  # our files are named when they cannot be written
+            _forget_output()
         if debug:
             traceback.print_exc()
         print(f"cyclo: error: {_told(error)}", file=sys.stderr)
+        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+            return USAGE_ERROR  # whichever argument it was
         return error.exit_status if isinstance(error, CycloError) else FAULT
+
+
+def _run(words: list[str], wanted: str) -> int:
+    """Run a command, or print the help that was asked for, and return the exit status."""
+    from ltca.output.processes import ended_by_signals
+
+    try:
+        arguments = build_parser(wanted).parse_args(words)
+    except SystemExit:
+        sys.stdout.flush()
+        raise
+    with ended_by_signals():
+        return int(arguments.execute(arguments))
+
+
+def _forget_output() -> None:
+    """Let what standard output still holds go nowhere, so that the interpreter's exit is quiet."""
+    with suppress(OSError, ValueError):  # a stream of no file
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _decoded(word: str) -> str:

@@ -18,6 +18,8 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from xarray import Dataset
 
     from ltca.analysis.engines import Engine
@@ -77,24 +79,46 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
+    from ltca.commands.compliance_arguments import check_compliance
+    from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 
-    file = load_drive(arguments.drive)  # before the analysis is imported: what is wrong is told at once
+    # Before the analysis is imported: what is wrong is told at once.
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
+    out = arguments.out or default_folder(file.name, "run")
+    require_folder(out)
     from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
     from ltca.commands.compliance_arguments import find_coefficients_of
-    from ltca.output.run_folder import claimed_folder
 
     angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
     torque, engine = arguments.torque, _engine(arguments)
     check_common_shape(cases)
-    out = arguments.out or default_folder(file.name, "run")
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
-    with claimed_folder(out, "run"):
+    with claimed_folder(out, "run", writes=_files(arguments, cases)):
         find_coefficients_of(cases, arguments)
         chosen = _Chosen(file=file, cases=cases, engine=engine, torque=torque)
         return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
+
+
+def _files(arguments: argparse.Namespace, cases: Iterable[str]) -> Iterator[str]:
+    """Names of all files that the run may write."""
+    from glob import escape
+
+    yield from ("results.nc", "summary.json")
+    if arguments.pressure is not None:
+        yield "pressure.nc"
+    if not arguments.no_figures:
+        from ltca.figures.pressure_figures import PRESSURE_FIGURES
+        from ltca.figures.run_figures import FIGURES
+        from ltca.output.run_folder import figure_files
+
+        yield from figure_files(*FIGURES)
+        if arguments.pressure is not None:
+            yield from figure_files(*PRESSURE_FIGURES)
+            yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
 
 
 class _Chosen(NamedTuple):

@@ -32,6 +32,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print the drive and write its picture."""
+    from glob import escape
+
     import numpy as np
 
     from ltca.output.run_folder import claimed_folder
@@ -42,7 +44,7 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select(arguments.case or [next(iter(file.cases))])
     out = arguments.out or default_folder(file.name, "show")
     print(f"{file.name} ({file.source}): cases {', '.join(file.cases)}; all checks passed")
-    with claimed_folder(out, "show", adding=True):
+    with claimed_folder(out, "show", writes=[f"drive_{escape(name)}.png" for name in cases], adding=True):
         _show(cases, np.array([angle]), out)
     return 0
 

@@ -61,6 +61,7 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
     add_out_argument(parser, command)
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
+    parser.add_argument("--force", action="store_true", help="replace another study in --out")
     parser.add_argument("--no-figures", action="store_true", help="write results and summary only")
     parser.add_argument(
         "--sample",
@@ -70,19 +71,28 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     )
 
 
-def workers_of(arguments: argparse.Namespace) -> Workers:
-    """Return the workers asked for.
+def check_study_arguments(arguments: argparse.Namespace) -> None:
+    """Refuse options that contradict each other, before anything is imported.
 
     Raises
     ------
     DriveError
-        When both workers and a scheduler are given.
+        When two are given of which there can be one.
     """
     from ltca.errors import DriveError
-    from ltca.studies.execution.workers import Workers
 
     if arguments.scheduler and arguments.workers > 1:
         raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
+    if arguments.resume and arguments.force:
+        raise DriveError(
+            ["--resume and --force: give one of them; one goes on with the study in --out, one replaces it"]
+        )
+
+
+def workers_of(arguments: argparse.Namespace) -> Workers:
+    """Return the workers asked for."""
+    from ltca.studies.execution.workers import Workers
+
     return Workers(processes=arguments.workers, scheduler=arguments.scheduler)
 
 
@@ -91,22 +101,26 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     from ltca.errors import DriveError
     from ltca.output.processes import Terminated
     from ltca.output.resources import require_room
-    from ltca.output.run_folder import claimed_folder
-    from ltca.studies.run_study import write_sample
+    from ltca.output.run_folder import claimed_folder, figure_files
+    from ltca.studies.run_study import sample_file, write_sample
 
     workers = workers_of(arguments)
     if arguments.sample is not None:
         if not 0 <= arguments.sample < study.design.samples:
             raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])
-        with claimed_folder(folder.path, "study", adding=True, beside=BESIDE):
+        with claimed_folder(
+            folder.path, "study", writes=[sample_file(f"{arguments.sample:08d}")], adding=True, beside=BESIDE
+        ):
             print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
     columns = len(study.design.names) + len(study.quantities)
     size = COPIES * 8.0 * columns * study.design.samples
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
-    with claimed_folder(folder.path, "study", beside=BESIDE) as held:
+    figures = [] if arguments.no_figures else figure_files("responses", "distributions", "sensitivity")
+    writes = [*(path.name for path in folder.files), "summary.json", sample_file("[0-9]" * 8), *figures]
+    with claimed_folder(folder.path, "study", writes=writes, beside=BESIDE) as held:
         if arguments.resume:
-            held.keep(folder.results, folder.table)
+            held.keep(*folder.files)
         try:
             return _solve_and_write(study, folder, workers, arguments)
         except (KeyboardInterrupt, Terminated):
@@ -129,7 +143,9 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
         def advance(samples: int, rate: float) -> None:
             bar(f"{rate:.0f} positions/s" if rate else "", samples)
 
-        found = run_study(study, folder, workers, resume=arguments.resume, advance=advance, told=tell)
+        found = run_study(
+            study, folder, workers, resume=arguments.resume, replace=arguments.force, advance=advance, told=tell
+        )
     _print(study, folder, found, _compliance_words(study, arguments.coefficients))
     if found.quantities and not arguments.no_figures:
         from ltca.figures.study_figures import write_study_figures

@@ -8,6 +8,7 @@ from pathlib import Path
 from ltca.commands.study_arguments import add_study_arguments
 from ltca.reading.arguments import default_folder
 
+MISSING = "no such file; the README says what a study file holds"
 SUMMARY = "vary any fields of a drive: grid, list, Latin hypercube, Sobol"
 
 
@@ -19,11 +20,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Solve the samples, write and print the results."""
-    from ltca.commands.compliance_arguments import compliance_of
-    from ltca.commands.study_arguments import execute_study
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of
+    from ltca.commands.study_arguments import check_study_arguments, execute_study
+    from ltca.output.run_folder import require_folder
+    from ltca.reading.toml_text import parse_toml, read_text
+
+    check_study_arguments(arguments)
+    check_compliance(arguments)
+    parse_toml(read_text(arguments.study, MISSING), str(arguments.study))
+    out = arguments.out or default_folder(arguments.study.stem, "sweep")
+    require_folder(out)
     from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.sweep_file import load_sweep
 
     study = load_sweep(arguments.study, compliance_of(arguments))
-    out = arguments.out or default_folder(arguments.study.stem, "sweep")
     return execute_study(study, StudyFolder(path=out), arguments)

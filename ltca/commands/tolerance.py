@@ -41,13 +41,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draw the samples, solve them, write and print the results."""
-    from ltca.commands.compliance_arguments import compliance_of
-    from ltca.commands.study_arguments import execute_study
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of
+    from ltca.commands.study_arguments import check_study_arguments, execute_study
+    from ltca.output.run_folder import require_folder
     from ltca.reading.drive_file import load_drive
+
+    check_study_arguments(arguments)
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    file.select([arguments.case] if arguments.case is not None else None)
+    out = arguments.out or default_folder(file.name, "tolerance")
+    require_folder(out)
     from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.tolerance_study import tolerance_study
 
-    file = load_drive(arguments.drive)
     study = tolerance_study(
         file,
         case=arguments.case,
@@ -58,5 +65,4 @@ def execute(arguments: argparse.Namespace) -> int:
         quantities=None if arguments.quantities is None else tuple(arguments.quantities),
         engine=compliance_of(arguments),
     )
-    out = arguments.out or default_folder(file.name, "tolerance")
     return execute_study(study, StudyFolder(path=out), arguments)

@@ -10,10 +10,37 @@ from pydantic_core import PydanticCustomError
 
 LONGEST_NAME = 120
 """Bytes: file systems take 255 for a file, and names of figures go before it."""
-UNPRINTED = ("Cc", "Cs", "Zl", "Zp")
-BACKWARD = "\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
-"""Signs that turn what is printed behind them."""
-NAMING = f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\ and control characters"
+UNPRINTED = ("Cc", "Cf", "Zl", "Zp")
+"""Categories of signs that control, or that nobody sees: of zero width, joining, turning what is printed behind them."""
+BLANK = "\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0"
+"""Letters and marks without a picture."""
+PRINTED = "\u0600\u0601\u0602\u0603\u0604\u0605\u06dd\u070f\u08e2"
+"""Marks of numbers in Arabic and Syriac, which their category hides."""
+JOINERS = "\u200c\u200d"
+"""Within words of some scripts they are spelling."""
+NAMING = f"must be a text of at most {LONGEST_NAME} bytes that can name a file, without /, \\, control and invisible characters"
+
+
+def is_seen(text: str) -> bool:
+    """Tell whether no sign of a text controls, or stays invisible; joiners between letters of their scripts are spelling.
+
+    Examples
+    --------
+    >>> is_seen("می\u200cخواهم"), is_seen("CS\u200b-1"), is_seen("CS\u200c-1"), is_seen("a\tb")
+    (True, False, False, False)
+    """
+    for place, sign in enumerate(text):
+        if sign in JOINERS:
+            around = text[place - 1 : place] + text[place + 1 : place + 2]
+            if (
+                len(around) < 2
+                or around.isascii()
+                or any(unicodedata.category(other)[0] not in "LMS" for other in around)
+            ):
+                return False
+        elif sign in BLANK or (unicodedata.category(sign) in UNPRINTED and sign not in PRINTED):
+            return False
+    return True
 
 
 def names_a_file(name: str) -> bool:
@@ -26,7 +53,8 @@ def names_a_file(name: str) -> bool:
     """
     return (
         bool(name.strip(" ."))
-        and not any(sign in "/\\" or unicodedata.category(sign) in UNPRINTED or sign in BACKWARD for sign in name)
+        and not any(sign in "/\\" or unicodedata.category(sign) == "Cs" for sign in name)
+        and is_seen(name)
         and len(name.encode("utf-8", "replace")) <= LONGEST_NAME
     )
 

@@ -44,13 +44,16 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     if modulus:
         return modulus  # what follows from it is no mistake of its own
     share = used * drive.disc.torque_share
-    pressure = _pressure(drive, share)
-    if pressure > BORNE:
-        named = "load.torque" if used == drive.load.torque else "torque"
-        return [
-            f"{named} = {used:g} N·mm is {used / 1000.0:g} N·m and would press the wheel pins with some {pressure:.2g} MPa, "
-            f'which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
-        ]
+    for named, value in (
+        ("load.torque" if used == drive.load.torque else "torque", used),
+        ("load.light_torque", drive.load.light_torque),
+    ):
+        pressure = _pressure(drive, value * drive.disc.torque_share)
+        if pressure > BORNE:
+            return [
+                f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m and would press the wheel pins with some "
+                f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
+            ]
     shaft = drive.pin_shaft
     # Some third of the pins carry, on a lever of about two thirds of their circle.
     load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)

@@ -102,6 +102,24 @@ class QuantityCheck:
         return number
 
 
+MOST_COUNTED = 10**15
+"""Far beyond any count; what validates them takes 64 bits."""
+
+
+class _Beyond(int):
+    """A whole number beyond any count: compared as such, told as it was given."""
+
+    given: int
+
+    def __new__(cls, given: int) -> _Beyond:
+        self = super().__new__(cls, MOST_COUNTED if given > 0 else -MOST_COUNTED)
+        self.given = given
+        return self
+
+    def __str__(self) -> str:
+        return str(self.given)
+
+
 def check_count(value: Any) -> int:
     """Return a count, or refuse what is none: no truth value, no text but digits, no number that is not whole."""
     if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 10:
@@ -109,8 +127,9 @@ def check_count(value: Any) -> int:
     if isinstance(value, float) and abs(value) < 1e15 and value == int(value):
         return int(value)
     if isinstance(value, Integral) and not isinstance(value, bool):
-        # Of any length: the bounds say what is too many, without printing it.
-        return min(max(int(value), -(10**15)), 10**15)
+        # Of any length: the bounds say what is too many.
+        whole = int(value)
+        return whole if abs(whole) <= MOST_COUNTED else _Beyond(whole)
     raise PydanticCustomError("quantity", "must be a whole number")
 
 

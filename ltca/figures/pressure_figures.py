@@ -25,6 +25,8 @@ from ltca.output.files import whole_file
 FloatArray = NDArray[np.float64]
 
 SIDES = ("outer", "inner")
+PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")
+"""Drawn once for all cases."""
 
 _PROBE = (
     "import pyvista as pv; p = pv.Plotter(off_screen=True, window_size=(64, 64)); p.add_mesh(pv.Sphere()); "
@@ -294,12 +296,8 @@ def write_pressure_figures(results: xr.Dataset, fields: xr.Dataset, drive: Drive
     with mpl.rc_context(STYLE):
         zone = Figure(figsize=(10.4, 4.6))
         draw_contact_zone(zone, results, drive)
-        drawn = {
-            "fig27_contact_zone": zone,
-            "fig32_roller_pressure_along": draw_sections(fields, major=True),
-            "fig33_roller_pressure_across": draw_sections(fields, major=False),
-        }
-        for name, figure in drawn.items():
+        drawn = zone, draw_sections(fields, major=True), draw_sections(fields, major=False)
+        for name, figure in zip(PRESSURE_FIGURES, drawn, strict=True):
             for suffix in (".svg", ".png"):
                 with whole_file(folder / f"{name}{suffix}") as part:
                     figure.savefig(part, dpi=130, metadata={"Date": None} if suffix == ".svg" else None)

@@ -2,7 +2,7 @@
 
 A run keeps a manifest of what it wrote. Before its first file takes its place it removes what the last manifest lists,
 so that numbers of one run never lie beside pictures of another. What is not listed, or was changed since, is the user's
-and stays.
+and stays: a run that would write where such a file is ends before its work.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import errno
 import hashlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -26,6 +27,8 @@ FOLDERS = ("figures", "samples")
 """Folders of results in the folder of a run."""
 LOCKLESS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)
 """What a file system answers that knows no locks: two runs are not kept apart there."""
+ELSEWHERE = "move it, or choose another place"
+NOT_OURS = f"is there and was not written by the last run ({MANIFEST} does not list it): {ELSEWHERE}"
 FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 """What is no fault of whoever chose the folder."""
 
@@ -72,6 +75,8 @@ class RunFolder:
         name = self._name(path)
         if name is None:
             return
+        if name not in self._old and name not in self._files and os.path.lexists(path):
+            raise PlaceError(f"{path}: {NOT_OURS}")  # it came while we worked; those before are found at the start
         self._clear(name)
         self._files[name] = _checksum(part)
         self._write(complete=False)
@@ -81,6 +86,42 @@ class RunFolder:
         if self._files:
             self._clear("")
             self._write(complete=True)
+
+    def require_room_for(self, writes: Iterable[str], what: str) -> None:
+        """Refuse to start where files of the user are in the way.
+
+        Parameters
+        ----------
+        writes : iterable of str
+            Names, or patterns of names, of all files that the run may write; nothing is asked for in an empty folder.
+        what : str
+            The folder as the user gave it, for the message.
+
+        Raises
+        ------
+        PlaceError
+            Naming the first of them.
+        """
+        foreign = [
+            path.relative_to(self.path).as_posix()
+            for folder in (self.path, *(self.path / name for name in FOLDERS))
+            for path in sorted(folder.glob("*"))
+            if not self._may_be_replaced(path)
+        ]
+        patterns = tuple(writes) if foreign else ()
+        patterns += tuple({pattern.rpartition("/")[0] for pattern in patterns} - {""})
+        found = [name for name in foreign if any(fnmatchcase(name, pattern) for pattern in patterns)]
+        if found:
+            more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+            raise PlaceError(f"{what}: {found[0]}{more} {NOT_OURS}")
+
+    def _may_be_replaced(self, path: Path) -> bool:
+        """Tell whether what lies in the folder is of the last run; links never are, for a run writes none."""
+        if path.is_symlink():
+            return False
+        if path.parent == self.path and path.name in FOLDERS:
+            return path.is_dir()
+        return path.is_file() and self._name(path) in {None, *self._old}
 
     def _name(self, path: Path) -> str | None:
         """Return the name of a file in the manifest; None for one that is kept beside the results or lies elsewhere."""
@@ -113,9 +154,42 @@ class RunFolder:
             part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
+def figure_files(*names: str) -> list[str]:
+    """Return what figures are written as, for ``writes`` of `claimed_folder`.
+
+    Parameters
+    ----------
+    *names : str
+        Of the figures.
+
+    Examples
+    --------
+    >>> figure_files("search")
+    ['figures/search.svg', 'figures/search.png']
+    """
+    return [f"figures/{name}{suffix}" for name in names for suffix in (".svg", ".png")]
+
+
+def require_folder(path: Path) -> None:
+    """Refuse a file in the place of a folder.
+
+    Parameters
+    ----------
+    path : Path
+        What ``--out`` gives; it need not be there yet.
+
+    Raises
+    ------
+    PlaceError
+        When it is one.
+    """
+    if path.exists() and not path.is_dir():
+        raise PlaceError(f"--out {path}: is a file, not a folder")
+
+
 @contextmanager
 def claimed_folder(
-    path: Path, command: str, *, beside: tuple[str, ...] = (), adding: bool = False
+    path: Path, command: str, *, writes: Iterable[str] = (), beside: tuple[str, ...] = (), adding: bool = False
 ) -> Iterator[RunFolder]:
     """Hold a folder while a run writes to it.
 
@@ -125,6 +199,8 @@ def claimed_folder(
         The folder; it is made.
     command : str
         Name of the command, for manifest and message.
+    writes : iterable of str
+        Names, or patterns of names, of all files that the run may write: where the user has one of them it does not start.
     beside : tuple of str
         Folders in it whose files outlive a run.
     adding : bool
@@ -138,17 +214,17 @@ def claimed_folder(
     Raises
     ------
     PlaceError
-        When another process holds it, or it cannot be made or written to.
+        When another process holds it, it cannot be made or written to, or a file of the user is in the way.
     FaultError
         When the disc is full or fails.
     """
-    if path.exists() and not path.is_dir():
-        raise PlaceError(f"--out {path}: is a file, not a folder")
+    require_folder(path)
     made = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
         with held(path / LOCK, f"--out {path}", command):
             _remove_parts(path, beside)
             folder = RunFolder(path, command, beside, adding)
+            folder.require_room_for(writes, f"--out {path}")
             with told_of_files(path, folder.place):
                 yield folder
                 folder.finish()

@@ -16,6 +16,8 @@ contradictions      Which field is behind a contradiction: the one that alone ca
 changes             A drive with some fields replaced, validated like a drive file
 writing             A drive as the text of a drive file
 coefficient_schema  What a file of influence coefficients must hold to be used; whoever made it
+held_ring           A round body held along an inner circle, loaded by a patch on its outer one: the closed form of wheel
+                    pins and races
 coefficient_laws    Checks of a file of influence coefficients by laws that need no second computation
 coefficient_file    Files of influence coefficients: written whole with a checksum, read only when schema, laws and
                     checksum hold

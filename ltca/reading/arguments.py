@@ -7,12 +7,81 @@ import it at their head.
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
+LONGEST_PART = 255
+"""Bytes of the name of a file or folder that file systems take."""
 LONGEST_COUNT = 19
 """Digits of a whole number; what is longer is out of every range."""
+
+
+class DifferentValues(argparse.Action):
+    """Gathers the values of a repeatable option; one that is there already is a slip."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
+    ) -> None:
+        """Add a value.
+
+        Raises
+        ------
+        DriveError
+            When it has been given before.
+        """
+        from ltca.errors import DriveError, shortened
+
+        before = getattr(namespace, self.dest) or []
+        if values in before:
+            raise DriveError([f"{option_string} {shortened(str(values))[1:-1]}: is given twice"])
+        setattr(namespace, self.dest, [*before, values])
+
+
+def refuse_idle_options(
+    compliance: str, *, method: str | None, contacts: str | None, coefficients: object, hole_near_field: bool | None
+) -> None:
+    """Refuse options that have no effect together; before the engines are imported, which check more.
+
+    Parameters
+    ----------
+    compliance, method, contacts : str, optional
+        How bodies yield, and how half-spaces are solved.
+    coefficients : object
+        Files of influence coefficients, if any.
+    hole_near_field : bool, optional
+        Whether hole walls yield near the contact, if said.
+
+    Raises
+    ------
+    DriveError
+        With every one of them.
+    """
+    from ltca.errors import DriveError
+
+    if compliance == "half-space":
+        found = {"coefficients": coefficients, "hole_near_field": hole_near_field}
+        idle = [
+            f"{name}: has no effect with compliance {compliance}; leave it out"
+            for name in found
+            if found[name] is not None
+        ]
+        own = "grids" if method == "direct" else "tables"
+        if method in (None, "tables", "direct") and contacts in {"tables", "grids"} - {own}:
+            idle.append(
+                f"contacts = {contacts}: method {method or 'tables'} runs on {own}; only method paper runs on either"
+            )
+    else:
+        given = {"method": None if method == "tables" else method, "contacts": contacts}
+        idle = [
+            f"{name} = {value}: runs on half-space compliance only, not on {compliance}"
+            for name, value in given.items()
+            if value is not None
+        ]
+    if idle:
+        raise DriveError(idle)
 
 
 def add_drive_argument(parser: argparse.ArgumentParser, what: str = DRIVE, *, optional: bool = False) -> None:
@@ -22,13 +91,13 @@ def add_drive_argument(parser: argparse.ArgumentParser, what: str = DRIVE, *, op
 
 def add_case_argument(parser: argparse.ArgumentParser, what: str, *, several: bool = True) -> None:
     """Add the case, or cases."""
-    parser.add_argument("--case", metavar="NAME", action="append" if several else "store", help=what)
+    parser.add_argument("--case", metavar="NAME", action=DifferentValues if several else "store", help=what)
 
 
 def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = "folder for the results") -> None:
     """Add the folder for what a command writes."""
     shown = default_folder("<drive>" if command != "sweep" else "<study>", command)
-    parser.add_argument("--out", metavar="DIR", type=Path, help=f"{what}; default {shown}")
+    parser.add_argument("--out", metavar="DIR", type=path_argument("--out"), help=f"{what}; default {shown}")
 
 
 def default_folder(name: str, command: str) -> Path:
@@ -116,6 +185,41 @@ def torque_argument(text: str) -> float:
         (problem,) = error.problems
         hint = " (load.direction turns it)" if problem.endswith("must be greater than 0 N·mm") else ""
         raise DriveError([f"{problem}{hint}"]) from error
+
+
+def path_argument(option: str) -> Callable[[str], Path]:
+    """Return what reads the text of an option as the name of a file or folder to be written.
+
+    Parameters
+    ----------
+    option : str
+        For messages.
+
+    Returns
+    -------
+    callable
+        For ``type=`` of an argument; it raises `DriveError`.
+
+    Examples
+    --------
+    >>> path_argument("--out")("out/paper").as_posix()
+    'out/paper'
+    """
+
+    def read(text: str) -> Path:
+        from ltca.drive.names import is_seen
+        from ltca.errors import DriveError, shortened
+
+        told = f"{option} = {shortened(text)}"
+        if not text.strip():
+            raise DriveError([f"{told}: is empty; '.' is the folder we are in"])
+        if not is_seen(text):
+            raise DriveError([f"{told}: must not have control or invisible characters"])
+        if max(len(os.fsencode(part)) for part in Path(text).parts or (".",)) > LONGEST_PART:
+            raise DriveError([f"{told}: no name in it can have more than {LONGEST_PART} bytes"])
+        return Path(text)
+
+    return read
 
 
 def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:

@@ -122,7 +122,10 @@ def checksum_of(dataset: xr.Dataset) -> str:
     digest = hashlib.sha256()
     for name in sorted(map(str, dataset.variables)):
         variable = dataset.variables[name]
-        kind = "<i8" if variable.dtype.kind in "iub" else "<f8"
+        if variable.dtype.kind not in "iubf":  # labels, and whatever else somebody has put in
+            digest.update(f"{name} {variable.dims} {variable.values.tolist()}".encode("utf-8", "backslashreplace"))
+            continue
+        kind = "<f8" if variable.dtype.kind == "f" else "<i8"
         digest.update(f"{name} {variable.dims} {variable.shape} {kind}".encode())
         digest.update(np.ascontiguousarray(variable.values, dtype=kind).tobytes())
     for name in sorted(map(str, dataset.attrs)):

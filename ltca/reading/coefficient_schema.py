@@ -52,6 +52,15 @@ OPTIONAL: tuple[dict[str, tuple[str, ...]], ...] = (
 # Bodies of a file, and what the materials of a drive call them.
 PARTS = {"disc": "disc", "pin": "wheel_pin", "roller": "roller", "race": "inner_race"}
 CONSTANTS = ("youngs_modulus", "poisson_ratio")
+# Dimensions whose entries may be labelled, with numbers that count up or with these words: they are taken in their order.
+LABELS: dict[str, tuple[str, ...]] = {
+    "station": (),
+    "station_loaded": (),
+    "stress_station": (),
+    "motion": ("x", "y", "rotation"),
+    "roller_end": ("inner", "outer"),
+    "roller_end_loaded": ("inner", "outer"),
+}
 # Attributes that repeat numbers of `shape`, which says whose bodies they are (`ltca.drive.parts.Drive.body_shape`).
 REPEATED = {"thickness": "disc.thickness", "roller_radius": "crank_bearing.roller_radius"} | {
     f"{body}_{constant}": f"materials.{part}.{constant}" for body, part in PARTS.items() for constant in CONSTANTS
@@ -121,8 +130,25 @@ def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
     for rows, columns in (("station", "station_loaded"), ("roller_end", "roller_end_loaded")):
         if dataset.sizes.get(rows) != dataset.sizes.get(columns):
             yield f"{rows} and {columns} differ in length: {dataset.sizes.get(rows)} and {dataset.sizes.get(columns)}"
+    for name, words in LABELS.items():
+        if name in dataset.variables and not _in_order(dataset, name):
+            told = f", or {', '.join(words)}" if words else ""
+            yield f"{name} must count its entries 0, 1, 2, …{told}: they are taken in their order"
+    if dataset.sizes.get("motion", 3) != 3:
+        yield f"motion has length {dataset.sizes['motion']}: must be 3 (x, y, rotation)"
     if dataset.sizes.get("roller_end", 2) != 2:
         yield f"roller_end has length {dataset.sizes['roller_end']}: must be 2 (inner, outer)"
+
+
+def _in_order(dataset: xr.Dataset, name: str) -> bool:
+    """Tell whether the labels along a dimension say the order that entries are taken in."""
+    labels = dataset[name].values
+    if labels.dtype.kind in "iuf":
+        return labels.ndim == 1 and bool(np.array_equal(labels, labels[:1] + np.arange(labels.size)))
+    said = tuple(
+        label.decode("utf-8", "replace") if isinstance(label, bytes) else str(label) for label in labels.tolist()
+    )
+    return said == LABELS[name]
 
 
 def _implausible(dataset: xr.Dataset) -> Iterator[str]:

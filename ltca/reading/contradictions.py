@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from math import exp, log
 from typing import Any
 
@@ -19,9 +20,19 @@ CAUSES = (
     "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius", "pin_shaft.hole_radius", "clearance.bearing",
     "clearance.pin_hole",
 )  # fmt: skip
+# Two fields of a part that are mistaken for each other, the smaller first.
+SWAPPED = (("crank_bearing", "inner_race_radius", "outer_race_radius"), ("pin_shaft", "pin_radius", "hole_radius"))
+# Modifications of the flank are hundredths of the pin radius; one beyond this share of it is the likeliest mistake.
+OFFSETS = ("disc.equidistant_offset", "disc.shifting_offset")
+LARGE_OFFSET = 0.2
+# How much farther than the bound of one case a field may have to go in another.
+FARTHER = (0.0, 0.01, 0.1)
 COUNTS = ("pin_shaft.number_of_pins", "crank_bearing.number_of_rollers")
 # From 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as the eccentricity a hole leaves; then of 1.22.
 SIZES = (0.01, 0.03, 0.06, *(0.113 * k for k in range(1, 15)), *(1.6 + 0.2 * k for k in range(40)))
+
+
+Mend = Callable[[Drive], bool]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +67,13 @@ class Cause:
                 break
         return f"{'at least' if least else 'at most'} {text} mm"
 
+    def mends(self, drive: Drive) -> bool:
+        """Tell whether a like drive is sound with the field at its bound, or a little beyond."""
+        if self.path in COUNTS:
+            return _sound_with(drive, self.path, self.bound)
+        away = 1.0 if self.bound > self.value else -1.0
+        return any(_sound_with(drive, self.path, self.bound * exp(away * step)) for step in FARTHER)
+
     def named(self) -> str:
         """Return field and value."""
         return f"{self.path} = {self.value:g}" + ("" if self.path in COUNTS else " mm")
@@ -76,15 +94,48 @@ def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
     list of str
         One sentence that names the cause, when one field mends all; otherwise the problems as they are.
     """
+    return find_cause(drive, problems)[0]
+
+
+def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
+    """Return contradictions as `explain_contradictions` does, and what tells whether the same is wrong with a like drive.
+
+    Parameters
+    ----------
+    drive : Drive
+        What they were found in.
+    problems : list of str
+        Of `ltca.reading.physical_checks.find_contradictions`.
+
+    Returns
+    -------
+    list of str
+        One sentence that names the cause, when one field mends all; otherwise the problems as they are.
+    callable
+        Given a drive, tells whether the field that was found mends that one, too.
+    """
     if not problems:
-        return []
+        return [], lambda other: False
     named = {problem.partition(" ")[0].rstrip(":") for problem in problems}
     if not all(path in COUNTS or (path in CAUSES and read_field(drive, path) > 0.0) for path in named):
-        return problems  # of deviations and negative offsets, which are what is wrong themselves
+        return problems, lambda other: False  # of deviations and negative offsets, which are what is wrong themselves
+    for part, smaller, larger in SWAPPED:
+        if getattr(getattr(drive, part), smaller) > getattr(getattr(drive, part), larger) and _sound_swapped(
+            drive, part
+        ):
+            values = [f"{name} = {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
+            told = f"{part}.{values[0]}: must be less than {values[1]}; the two seem to be swapped"
+            return [told], partial(_sound_swapped, part=part)
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)
+    if not causes:
+        return problems, lambda other: False
+    large = LARGE_OFFSET * drive.pin_wheel.pin_radius
+    offsets = [cause for cause in causes if cause.path in OFFSETS and cause.bound < cause.value > large]
     # A field that is named already and mends everything is said well enough.
-    if not causes or (len(named) == 1 and named <= {cause.path for cause in causes}):
-        return problems
+    if len(named) == 1 and named <= {cause.path for cause in offsets or causes}:
+        (own,) = (cause for cause in causes if cause.path in named)
+        return problems, own.mends
+    causes = offsets or causes
     # One that breaks a bound itself is the likelier, unless another is very much nearer to what is sound.
     least = causes[0].distance
     near = [cause for cause in causes if cause.distance <= 10.0 * least]
@@ -93,7 +144,18 @@ def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
         f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance <= 2.5 * first.distance
     )
     reasons = "; ".join(dict.fromkeys(_consequence(problem, first.path) for problem in problems[:2]))
-    return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"]
+    return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"], first.mends
+
+
+def _sound_swapped(drive: Drive, part: str) -> bool:
+    """Tell whether a drive is sound with the two fields of a part in each other's place."""
+    (names,) = ((smaller, larger) for name, smaller, larger in SWAPPED if name == part)
+    own = getattr(drive, part)
+    try:
+        changed: Any = replace(own, **{names[0]: getattr(own, names[1]), names[1]: getattr(own, names[0])})
+        return is_sound(replace(drive, **{part: changed}))
+    except (ValueError, ArithmeticError):
+        return False
 
 
 def _causes(drive: Drive) -> Iterator[Cause]:

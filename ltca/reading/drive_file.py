@@ -17,7 +17,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, parse_tolerances
 from ltca.drive.units import even_share
 from ltca.errors import DriveError, did_you_mean, shortened
-from ltca.reading.contradictions import explain_contradictions
+from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.physical_checks import find_contradictions
 from ltca.reading.toml_text import parse_toml, read_text
 
@@ -154,11 +154,20 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
         wrong += bool(found[name])
         if wrong >= MANY_CASES:
             break
-    everywhere = [problem for problem in common if all(problem in told for told in found.values())]
-    problems = explain_contradictions(base, everywhere)
-    told: dict[str, list[str]] = {}
+    problems, mends = find_cause(base, common)
+    suffering = {name for name, those in found.items() if those and mends(drives[name])}
+    if suffering:  # one field of the common part is behind it, whatever else differs from case to case
+        everywhere = [] if suffering < set(found) else problems
+        told = {name: [] if everywhere else problems for name in suffering}
+        problems = everywhere
+    else:
+        everywhere = [problem for problem in common if all(problem in those for those in found.values())]
+        problems = problems if everywhere == common else explain_contradictions(base, everywhere)
+        told = {}
     explained: dict[tuple[str, ...], list[str]] = {}
     for name, those in found.items():
+        if name in told:
+            continue
         own = tuple(problem for problem in those if problem not in everywhere)
         # Looking for the field behind a contradiction takes a tenth of a second: the first few are enough.
         if own and own not in explained and len(explained) < MOST_EXPLAINED:

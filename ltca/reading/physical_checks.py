@@ -128,7 +128,14 @@ def _pins(drive: Drive) -> Iterator[str]:
 def _bearing(drive: Drive) -> Iterator[str]:
     bearing = drive.crank_bearing
     space = bearing.outer_race_radius - bearing.inner_race_radius
-    if 2.0 * bearing.roller_radius > space + ROUNDING:
+    if space <= 0.0:
+        fitting = bearing.outer_race_radius - 2.0 * bearing.roller_radius
+        bound = f"at most {fitting:g} mm" if fitting > 0.0 else f"less than {bearing.outer_race_radius:g} mm"
+        yield (
+            f"crank_bearing.inner_race_radius = {bearing.inner_race_radius:g} mm: must be {bound}, or the rollers have no "
+            f"room below the outer race (outer_race_radius = {bearing.outer_race_radius:g} mm)"
+        )
+    elif 2.0 * bearing.roller_radius > space + ROUNDING:
         yield (
             f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most {0.5 * space:.6g} mm, "
             "half the space between the races"

@@ -67,6 +67,10 @@ def sobol_rows(seed: int, first: int, last: int, columns: int) -> FloatArray:
     return np.asarray(np.clip(points, 2.0**-54, 1.0 - 2.0**-53))
 
 
+FEWEST_BLOCKS = 8
+"""Saltelli blocks that Sobol indices need."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class ToleranceDesign:
     """Samples drawn from tolerances.

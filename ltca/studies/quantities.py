@@ -13,7 +13,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ContactPressures
 from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
-from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.errors import DriveError, did_you_mean, shortened, told_twice
 from ltca.geometry.pairs import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
@@ -187,17 +187,15 @@ def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
     Raises
     ------
     DriveError
-        When a name is not one of them.
+        When a name is not one of them, or is there twice.
     """
+    if repeated := told_twice(names):
+        raise DriveError([f"{shortened(repeated)[1:-1]}: is given twice"])
     if "all" in names:
         return tuple(QUANTITIES)
     unknown = [name for name in names if name not in QUANTITIES]
     if unknown:
-        known = ", ".join(QUANTITIES)
-        raise DriveError(
-            [
-                f"{shortened(name)[1:-1]}: is no quantity of a study{did_you_mean(name, QUANTITIES) or f'; there are {known}'}"
-                for name in unknown
-            ]
-        )
+        known = [*QUANTITIES, "all"]
+        meant = {name: did_you_mean(name, known) or f"; there are {', '.join(known)}" for name in unknown}
+        raise DriveError([f"{shortened(name)[1:-1]}: is no quantity of a study{meant[name]}" for name in unknown])
     return tuple(name for name in QUANTITIES if name in names)

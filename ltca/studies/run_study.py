@@ -53,6 +53,7 @@ def run_study(
     workers: Workers,
     *,
     resume: bool = False,
+    replace: bool = False,
     advance: Callable[[int, float], None] = lambda samples, rate: None,
     told: Callable[[str], None] = lambda message: None,
 ) -> StudySummary:
@@ -68,6 +69,8 @@ def run_study(
         Who solves it.
     resume : bool
         Whether to continue what the folder holds.
+    replace : bool
+        Whether another study in the folder makes room.
     advance : callable
         Told the samples of every finished batch and the rate so far in positions per second.
     told : callable
@@ -82,7 +85,7 @@ def run_study(
     CycloError
         When the folder holds something else, no sample has influence coefficients, or workers die again and again.
     """
-    left = folder.prepare(study, resume, told)
+    left = folder.prepare(study, resume, told, replace=replace)
     if not study.engine.batches:
         find_beforehand(study.engine, study.shapes(left), told)
     waiting = sum(last - first for first, last in map(study.samples_of, left))
@@ -139,12 +142,23 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
         write_sample(study, folder, sample)
 
 
+def sample_file(number: str) -> str:
+    """Return where the drive of a sample lies in the folder of a study.
+
+    Parameters
+    ----------
+    number : str
+        Of the sample, eight digits.
+    """
+    return f"samples/sample_{number}.toml"
+
+
 def write_sample(study: Study, folder: StudyFolder, sample: int) -> str:
     """Write the drive of one sample as a drive file, ready for ``cyclo run``; return where it is.
 
     A sample that is no sound drive is written as a list of its fields with the reason.
     """
-    path = folder.path / "samples" / f"sample_{sample:08d}.toml"
+    path = folder.path / sample_file(f"{sample:08d}")
     try:
         text = drive_text(study.sample_drive(sample))
     except CycloError as error:

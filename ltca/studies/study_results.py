@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.studies.designs import ToleranceDesign
+from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.execution.storage import CHUNK
 from ltca.studies.sensitivity import Regression, SobolIndices, grouped, regress, sobol_indices
 from ltca.studies.study import Study
@@ -89,7 +89,7 @@ def regression_of(path: Path, study: Study) -> Regression | None:
 
 
 def sobol_of(path: Path, study: Study) -> SobolIndices | None:
-    """Return the Sobol indices of a study of Saltelli blocks; None for other designs or fewer than eight blocks."""
+    """Return the Sobol indices of a study of Saltelli blocks; None for other designs or fewer than `FEWEST_BLOCKS`."""
     design = study.design
     if not isinstance(design, ToleranceDesign) or design.sequence != "saltelli":
         return None
@@ -98,7 +98,7 @@ def sobol_of(path: Path, study: Study) -> SobolIndices | None:
     values = np.stack([read_quantity(path, name) for name in study.quantities], axis=1)
     cut = values[: blocks * size].reshape(blocks, size, len(study.quantities))
     cut = cut[np.isfinite(cut).all(axis=(1, 2))]
-    return sobol_indices(cut) if len(cut) >= 8 else None
+    return sobol_indices(cut) if len(cut) >= FEWEST_BLOCKS else None
 
 
 def factor_groups(study: Study) -> tuple[tuple[str, slice], ...]:

@@ -6,8 +6,9 @@ import json
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.tolerances import Factors
+from ltca.errors import DriveError
 from ltca.reading.drive_file import DriveFile
-from ltca.studies.designs import ToleranceDesign
+from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
 from ltca.studies.study import Study
 
@@ -52,13 +53,22 @@ def tolerance_study(
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
     kept = DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities)
+    design = ToleranceDesign(
+        factors=Factors.of_tolerances(drive, file.tolerances), samples=samples, seed=seed, sequence=sequence
+    )
+    block = len(design.groups) + 2
+    if sequence == "saltelli" and samples < FEWEST_BLOCKS * block:
+        raise DriveError(
+            [
+                f"--samples = {samples}: --design saltelli must have at least {FEWEST_BLOCKS * block}, {FEWEST_BLOCKS} blocks of "
+                f"{block} samples for {len(design.groups)} fields that scatter"
+            ]
+        )
     asked = {"case": name, "samples": samples, "positions": positions, "seed": seed, "design": sequence}
     return Study(
         name=f"{file.name} {name}",
         cases=((name, drive),),
-        design=ToleranceDesign(
-            factors=Factors.of_tolerances(drive, file.tolerances), samples=samples, seed=seed, sequence=sequence
-        ),
+        design=design,
         positions=positions,
         quantities=kept,
         near_nominal=True,

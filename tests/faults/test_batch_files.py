@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.commands.program import main
 from ltca.errors import CycloError, DamagedFileError
 from ltca.reading.drive_file import load_drive
 from ltca.studies.execution.batch_files import PARTS, read_batch
@@ -167,6 +168,35 @@ def test_another_study_does_not_take_an_unfinished_ones_folder(other, interrupte
     with pytest.raises(CycloError, match="another study"):
         interrupted.prepare(other, resume=True)
     assert interrupted.has_batches()
+
+
+def test_another_study_replaces_a_finished_one_only_when_told(study, other, interrupted, reference, solved):
+    """A finished study was replaced in silence by one of another seed."""
+    run_study(study, interrupted, Workers(), resume=True)
+    with pytest.raises(CycloError, match=r"holds a finished study that is another \(.*seed.*--force to replace it$"):
+        interrupted.prepare(other, resume=False)
+    assert interrupted.results.read_bytes() == reference
+    assert interrupted.prepare(study, resume=False) == list(range(study.batches))  # its own it may solve again
+    interrupted.store(study, solved["study"][0])
+    assert interrupted.prepare(other, resume=False, replace=True) == list(range(other.batches))
+    assert not interrupted.has_batches()
+
+
+def test_a_finished_study_can_be_resumed_again_and_again(tmp_path, capsys):
+    """The first --resume took the plan away as a file of the last run: then the folder held 'no study'."""
+    words = ["tolerance", "paper", "--samples", "2", "--positions", "2", "--no-figures", "--out", str(tmp_path)]
+    for resume in ([], ["--resume"], ["--resume"]):
+        assert main([*words, *resume]) == 0
+        assert (tmp_path / "study.json").exists()
+    for more, told in (
+        (["--seed", "9", "--resume"], "holds another study"),
+        (["--seed", "9"], "holds a finished study that is another"),
+        (["--resume", "--force"], "--resume and --force: give one of them"),
+    ):
+        capsys.readouterr()
+        assert main([*words, *more]) == 2
+        assert told in capsys.readouterr().err
+    assert main([*words, "--seed", "9", "--force"]) == 0
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '"a"', "{}"])

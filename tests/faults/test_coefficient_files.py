@@ -11,7 +11,10 @@ from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
 from ltca.compliance.coefficients import load_coefficients
 from ltca.errors import DamagedFileError
+from ltca.output.netcdf import write_netcdf
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
+from ltca.reading.coefficient_laws import near_field_unit
+from ltca.reading.held_ring import held_ring_approach
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
@@ -133,6 +136,65 @@ CONTENTS = {
     "external storage": (elsewhere, "lies in another file"),
     "72 TB": (huge, r"it declares 7\.2e\+13 bytes"),
 }
+
+
+def labelled(name, labels):
+    def change(dataset):
+        return dataset.assign_coords({name: labels(dataset.sizes[name])})
+
+    return change
+
+
+def of_rings(drive):
+    """Pin and race as rings held inside, as derived files have them."""
+    dataset = closed_form(drive)
+    dataset.attrs |= {"core_radius": 2.0, "race_bore_radius": 10.0}
+    for body, inner, outer in (
+        ("pin", 2.0, drive.pin_wheel.pin_radius),
+        ("race", 10.0, drive.crank_bearing.inner_race_radius),
+    ):
+        own = dataset[f"{body}_approach"]
+        angle = 2.0 * np.pi * np.arange(own.size) / own.size
+        kolosov = 3.0 - 4.0 * dataset.attrs[f"{body}_poisson_ratio"]
+        ring = held_ring_approach(inner, outer, float(dataset[f"{body}_half_width"]), kolosov, angle)
+        dataset[f"{body}_approach"] = (own.dims, near_field_unit(dataset, body) * ring.reshape(own.shape))
+    return dataset
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    {
+        **{
+            f"{body} × {factor:g}": (
+                lambda dataset, body=body, factor=factor: dataset.assign(
+                    {f"{body}_half_width": factor * dataset[f"{body}_half_width"]}
+                ),
+                told,
+            )
+            for body, told in (("pin", "pin against the held ring"), ("race", "race against the held ring"))
+            for factor in (10.0, 0.1, 1.1)
+        },
+        "outer end of the roller": (
+            lambda dataset: dataset.assign(roller_half_width=dataset["roller_half_width"] * [1.0, 10.0]),
+            "roller against the compressed cylinder",
+        ),
+        "core": (lambda dataset: dataset.assign_attrs(core_radius=20.0), "pin against the held ring is nan"),
+        "stations": (labelled("station", lambda count: np.arange(count)[::-1]), "station must count its entries"),
+        "ends": (labelled("roller_end", lambda count: ["outer", "inner"]), "or inner, outer"),
+        "loaded": (labelled("station_loaded", lambda count: ["a"] * count), "station_loaded must count its entries"),
+    }.values(),
+)
+def test_half_widths_and_labels_are_checked(change, told, drive, tmp_path):
+    """`race_half_width` or `pin_half_width` ten times too large in a file without checksum passed every law."""
+    path = tmp_path / "coefficients.nc"
+    sound = of_rings(drive).assign_coords(station=np.arange(1, closed_form(drive).sizes["station"] + 1))
+    sound = sound.assign_coords(roller_end=["inner", "outer"])
+    write_netcdf(sound, path)
+    load_coefficients(path, drive)
+    write_netcdf(change(sound), path)
+    with pytest.raises(DamagedFileError, match=told) as refused:
+        load_coefficients(path, drive)
+    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize("name", CONTENTS)

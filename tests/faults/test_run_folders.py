@@ -13,7 +13,7 @@ from ltca.commands.program import main
 from ltca.errors import FaultError, PlaceError
 from ltca.output import files
 from ltca.output.files import STALE, whole_file
-from ltca.output.run_folder import LOCK, MANIFEST, claimed_file, claimed_folder
+from ltca.output.run_folder import LOCK, MANIFEST, claimed_file, claimed_folder, figure_files
 
 FIGURES = ("fig24_pin_load", "fig25_loaded_pins")
 HOLDER = """
@@ -100,6 +100,86 @@ def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path, monke
     content = json.loads((out / MANIFEST).read_text())
     assert sorted(content["files"]) == ["results.nc", "summary.json"]
     assert content["complete"]
+
+
+COMMANDS = {
+    "run": (["run", "paper", "--angles", "0"], "results.nc"),
+    "run figures": (["run", "paper", "--angles", "0"], "figures/fig24_pin_load.svg"),
+    "run pressure": (["run", "paper", "--pressure"], "figures/fig31_roller_pressure_CS-6.png"),
+    "curves": (["curves", "paper"], "figures/torque_curve_CS-3.png"),
+    "show": (["show", "paper"], "drive_CS-1.png"),
+    "tolerance": (["tolerance", "paper"], "study.json"),
+    "tolerance table": (["tolerance", "paper"], "results.parquet"),
+    "tolerance resumed": (["tolerance", "paper", "--resume"], "results.nc"),
+    "sample": (["tolerance", "paper", "--sample", "3"], "samples/sample_00000003.toml"),
+    "optimise": (["optimise", "paper", "--vary", "eccentricity", "--minimise", "max_pin_load"], "figures/search.svg"),
+    "mesh": (["mesh", "paper"], "pin_12.vtu"),
+    "fem": (["fem", "paper"], "summary.json"),
+    "validate": (["validate", "paper"], "rows.csv"),
+}
+
+
+@pytest.mark.parametrize(("words", "name"), COMMANDS.values(), ids=COMMANDS)
+@pytest.mark.parametrize("kind", ["file", "link", "folder"])
+def test_a_file_of_the_user_is_never_overwritten(words, name, kind, tmp_path, capsys):
+    """A user's own results.nc in --out was overwritten in silence, and a link replaced."""
+    out, victim = tmp_path / "out", tmp_path / "victim"
+    place = out / name
+    place.parent.mkdir(parents=True)
+    victim.write_text("the user's")
+    if kind == "file":
+        place.write_text("the user's")
+    elif kind == "link":
+        place.symlink_to(victim)
+    else:
+        place.mkdir()
+    assert main([*words, "--out", str(out)]) == 2
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1, said.err
+    assert f"--out {out}: {name} is there and was not written by the last run" in said.err
+    assert victim.read_text() == "the user's"
+    assert kind != "file" or place.read_text() == "the user's"
+    assert [path for path in out.rglob("*") if path.is_file()] == ([place] if kind != "folder" else [])
+
+
+@pytest.mark.parametrize("name", ["figures", "summary.json"])
+def test_a_link_in_the_place_of_what_a_run_wrote_is_the_users(name, tmp_path, capsys):
+    """Figures went through a link to a folder elsewhere, where no manifest lists them."""
+    (tmp_path / "elsewhere").mkdir()
+    out = tmp_path / "out"
+    put(out, summary_json="{}", figures__fig24_pin_load_svg="")
+    (out / name).rename(tmp_path / "elsewhere" / "moved")
+    (out / name).symlink_to(tmp_path / "elsewhere" / "moved")
+    assert main(["run", "paper", "--angles", "0", "--out", str(out)]) == 2
+    assert f"{name} is there" in capsys.readouterr().err
+    assert (out / name).is_symlink()
+
+
+def test_what_a_run_does_not_write_hinders_none(tmp_path):
+    """Copies beside its files, changed files of its own, files of a run with another name."""
+    out = tmp_path / "out"
+    put(out, results_nc="old", optimum_toml="old")
+    for name in ("results.nc", "fig24_pin_load_mine.svg", "search.svg", "summary.json.bak"):
+        (out / name).write_text("changed by the user")
+    with claimed_folder(out, "run", writes=["results.nc", *figure_files("fig24_pin_load")]):
+        for name in ("results.nc", "figures/fig24_pin_load.svg"):
+            with whole_file(out / name) as part:
+                part.write_text("new")
+    assert (out / "results.nc").read_text() == "new"
+    assert (out / "fig24_pin_load_mine.svg").read_text() == "changed by the user"
+
+
+def test_a_file_that_comes_while_a_run_works_is_not_overwritten(tmp_path):
+    def work():
+        with claimed_folder(tmp_path, "run", writes=["a.txt"]):
+            (tmp_path / "a.txt").write_text("the user's")
+            with whole_file(tmp_path / "a.txt") as part:
+                part.write_text("ours")
+
+    with pytest.raises(PlaceError, match="was not written by the last run"):
+        work()
+    assert names(tmp_path) == ["a.txt"]
+    assert (tmp_path / "a.txt").read_text() == "the user's"
 
 
 def test_a_run_that_fails_leaves_the_last_one(tmp_path):

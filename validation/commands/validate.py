@@ -55,24 +55,28 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input or when something does not converge.
     """
+    from ltca.output.run_folder import claimed_folder, require_folder
+    from ltca.reading.drive_file import load_drive
+
+    # Before finite elements are imported: what is wrong is told at once.
+    file = load_drive(arguments.drive)
+    file.select(arguments.case)
+    out: Path = arguments.out or default_folder(file.name, "validate")
+    require_folder(out)
     from fem.drive.solution import require_solution_memory
     from fem.errors import MemoryLimitError
     from ltca.errors import CycloError
-    from ltca.output.run_folder import claimed_folder
-    from ltca.reading.drive_file import load_drive
     from validation.compare.finite_element_positions import Settings
     from validation.study import plan_study
 
     angles = list(arguments.angles or [])
-    file = load_drive(arguments.drive)
     plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
     try:
         for drive in plan.drives.values():
             require_solution_memory(drive, plan.crank_angles[0], arguments.size)
     except MemoryLimitError as error:
         raise CycloError(f"--size {arguments.size:g}: {error}") from error
-    out: Path = arguments.out or default_folder(file.name, "validate")
-    with claimed_folder(out, "validate", beside=("kept",)):
+    with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=("kept",)):
         return _run_and_write(plan, out)
 
 

@@ -28,6 +28,7 @@ from ltca.studies.study import BatchResult, Study
 
 FloatArray = NDArray[np.float64]
 
+WHAT_DIFFERS = "drive, tolerances, samples, positions, seed, quantities, compliance, coefficients or the code differ"
 CHUNK = 4096
 """Samples of one chunk of the final files."""
 
@@ -55,6 +56,11 @@ class StudyFolder:
         return self.path / "results.parquet"
 
     @property
+    def files(self) -> tuple[Path, ...]:
+        """Plan, dataset and table, with which a finished study goes on."""
+        return self._plan, self.results, self.table
+
+    @property
     def _batches(self) -> Path:
         return self.path / "batches"
 
@@ -66,7 +72,14 @@ class StudyFolder:
         """Tell whether there are finished batches of an interrupted study."""
         return any(True for _ in batch_files(self._batches))
 
-    def prepare(self, study: Study, resume: bool, told: Callable[[str], None] = lambda message: None) -> list[int]:
+    def prepare(
+        self,
+        study: Study,
+        resume: bool,
+        told: Callable[[str], None] = lambda message: None,
+        *,
+        replace: bool = False,
+    ) -> list[int]:
         """Make the folder ready and return the batches that are still to be solved.
 
         Parameters
@@ -77,6 +90,8 @@ class StudyFolder:
             Whether to continue what the folder holds.
         told : callable
             Told which batches are set aside, and why.
+        replace : bool
+            Whether another study in the folder, finished or not, makes room.
 
         Raises
         ------
@@ -91,20 +106,24 @@ class StudyFolder:
                 raise CycloError(f"{self.path}: holds no study to resume")
             if held != fingerprint:
                 raise CycloError(
-                    f"{self.path}: holds another study (drive, tolerances, samples, positions, seed, quantities, "
-                    "compliance, coefficients or the code differ); resume with the options it was started with, or use "
+                    f"{self.path}: holds another study ({WHAT_DIFFERS}); resume with the options it was started with, or use "
                     "another --out"
                 )
             if self.results.exists() and not unfinished:
                 return []
-        elif unfinished:
+        elif unfinished and not replace:
             raise CycloError(
-                f"{self.path}: holds finished batches of an interrupted study; continue it with --resume, or remove "
-                f"{self._batches} to start over"
+                f"{self.path}: holds finished batches of an interrupted study; continue it with --resume, or start over with "
+                "--force"
+            )
+        elif self.results.exists() and held not in (None, fingerprint) and not replace:
+            raise CycloError(
+                f"{self.path}: holds a finished study that is another ({WHAT_DIFFERS}); give another --out, or --force to "
+                "replace it"
             )
         done = self._done(study, told) if resume else set()
         if not resume:
-            for stale in (self.results, self.table):
+            for stale in (self.results, self.table, *batch_files(self._batches)):
                 stale.unlink(missing_ok=True)
         write_json(
             self._plan,

@@ -7,7 +7,8 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.pressure_safety import pressure_safety
-from ltca.analysis.transmission_error_orders import Order, fit_orders, known_orders
+from ltca.analysis.transmission_error_orders import Order, fit_orders, known_orders, least_turns
+from ltca.commands.program import main
 from ltca.geometry.pairs import WHEEL_ANGLE
 
 
@@ -68,3 +69,23 @@ def test_pressure_safety():
         pressure_safety(pressure, 0.0)
     with pytest.raises(ValueError, match="no pin"):
         pressure_safety(0.0 * pressure, 1.0)
+
+
+def test_as_few_turns_as_tell_the_orders_apart(paper_cases):
+    """`cyclo curves --turns 1` said that turns were too few, and not how many are enough."""
+    orders = known_orders(paper_cases["CS-1"], harmonics=7)
+    least = least_turns(orders, 192, 14)
+    for turns in range(1, least + 2):
+        angle = 2.0 * np.pi * np.arange(192 * turns) / 192
+        if turns < least:
+            with pytest.raises(ValueError, match="orders apart"):
+                fit_orders(angle, np.cos(angle), orders)
+        else:
+            assert max(fit_orders(angle, np.cos(angle), orders).amplitude) == pytest.approx(1.0)
+    assert least_turns(orders, 192, 2) == 2
+
+
+def test_too_few_turns_are_refused_with_the_least_before_the_work(tmp_path, capsys):
+    assert main(["curves", "paper", "--turns", "1", "--out", str(tmp_path / "out")]) == 2
+    assert "--turns = 1: must be at least 4, or 60 orders" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

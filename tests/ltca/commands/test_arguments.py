@@ -8,7 +8,9 @@ import math
 import pytest
 
 from ltca.commands.program import ORDER, build_parser, main
+from ltca.drive.names import names_a_file
 from ltca.errors import CycloError
+from ltca.reading.drive_file import shipped_drive
 
 PARSER = build_parser()
 (COMMANDS,) = (action.choices for action in PARSER._actions if isinstance(action, argparse._SubParsersAction))
@@ -123,6 +125,90 @@ def test_usage_is_told_in_one_line_with_what_was_meant(words, told, capsys):
 def test_names_that_are_not_there_ask_for_the_nearest(words, told, capsys):
     assert main(words) == 2
     assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run", "paper", "--case", "CS-1", "--case", "CS-1"], "--case CS-1: is given twice"),
+        (["optimise", "paper", "--vary", "thickness", "disc.thickness=9:12", "--minimise", "max_pin_load"],
+         "--vary disc.thickness: is given twice"),
+        (["optimise", "paper", "--vary", "thickness", "--minimise", "max_pin_load", "max_pin_load"],
+         "--minimise max_pin_load max_pin_load: give one quantity, or two different ones"),
+        (["tolerance", "paper", "--quantities", "max_pin_load", "max_pin_load"], "max_pin_load: is given twice"),
+        # 52 fields of the shipped drive scatter: a block has 54 samples
+        (["tolerance", "paper", "--design", "saltelli", "--samples", "3"],
+         "--samples = 3: --design saltelli must have at least"),
+        (["run", "paper", "--out", ""], "--out = '': is empty"),
+        (["run", "paper", "--out", " "], "--out = ' ': is empty"),
+        (["run", "paper", "--out", "a\nb"], "--out = 'a\\nb': must not have control or invisible characters"),
+        (["run", "paper", "--out", "a\u200bb"], "--out = 'a\\u200bb': must not have control or invisible characters"),
+        (["run", "paper", "--out", "a" * 300], "no name in it can have more than 255 bytes"),
+        (["tolerance", "paper", "--out", "x/" + "ä" * 128], "no name in it can have more than 255 bytes"),
+        (["derive", "paper", "--out", ""], "--out = '': is empty"),
+        (["run", "paper", "--compliance", "fe", "--coefficients", "a" * 300], "File name too long"),
+        (["sweep", "a" * 300], "File name too long"),
+        (["run", "a" * 300], "File name too long"),
+        (["derive", "--check", "a" * 300], "File name too long"),
+        (["run", "paper", "--out", "a/" * 3000], "File name too long"),
+        (["init", "b" * 110 + "/" + "a" * 300 + "/x.toml"], "no name in it can have more than 255"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_meant_is_refused_in_one_line(words, told, tmp_path, monkeypatch, capsys):
+    """Duplicates were taken once in silence, odd folders made, a folder of 300 letters ended with exit status 1."""
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    err = capsys.readouterr().err
+    assert told in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+SOUND = ["out", ".", "..", "a b", "è/ü", "输出", "می\u200cخواهم", "क्\u200dष", "a" * 255, "a$x_{b$", "'\""]
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_sound_folders_are_taken(name):
+    assert str(parse("run", "--out", name).out) == name
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "CS\u200b-1",
+        "\ufeffCS",
+        "CS\u2060",
+        "\u200d",
+        "CS-\u200c1",
+        "\u3164",
+        "C\u00adS",
+        "\u2800",
+        "C\u202eS",
+        "a\U000e0041",
+    ],
+)
+def test_names_that_nobody_sees_are_refused(name):
+    """Two cases could have looked alike."""
+    assert not names_a_file(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["CS-1", "Getriebe Größe 3", "می\u200cخواهم", "क्\u200dष", "减速器", "❤\ufe0f", "\u06dd3", "e\u0301"]
+)
+def test_names_of_any_script_are_taken(name):
+    assert names_a_file(name)
+
+
+@pytest.mark.parametrize("field", ["number_of_pins", "pin_radius"])
+def test_numbers_of_hundreds_of_digits_are_told_as_typed(field, tmp_path, capsys):
+    """A count of 400 digits was told as 1000000000000000."""
+    text = shipped_drive().replace(f"\n{field} = ", f"\n{field} = {'7' * 400} # ", 1)
+    path = tmp_path / "drive.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["show", str(path)]) == 2
+    assert f"pin_wheel.{field} = {'7' * 57}...: must be" in capsys.readouterr().err
+    assert main(["run", "paper", "--positions", "7" * 400]) == 2
+    assert f"--positions = {'7' * 55}...: must be" in capsys.readouterr().err
 
 
 def test_a_torque_turned_round_says_what_turns_it():

@@ -204,3 +204,56 @@ heavy = {"numpy", "scipy", "xarray", "pydantic", "matplotlib"}
 print(sorted(heavy & {name.partition(".")[0] for name in sys.modules}))
 """
     assert python(code) == "[]"
+
+
+REFUSED = (
+    ["run", "paper", "--case", "CS-9"],
+    ["run", "paper", "--contacts", "grids"],
+    ["run", "paper", "--compliance", "fe", "--method", "direct"],
+    ["run", "paper", "--compliance", "fe", "--coefficients", "none.nc"],
+    ["run", "paper", "--out", "/dev/null"],
+    ["curves", "paper", "--case", "CS-9"],
+    ["curves", "paper", "--no-hole-near-field"],
+    ["show", "paper", "--case", "CS-9"],
+    ["tolerance", "paper", "--case", "CS-9"],
+    ["tolerance", "none.toml"],
+    ["tolerance", "paper", "--workers", "2", "--scheduler", "tcp://x:1"],
+    ["sweep", "none.toml"],
+    ["optimise", "paper", "--vary", "thickness", "--minimise", "max_pin_load", "--case", "CS-9"],
+    ["mesh", "paper", "--case", "CS-9"],
+    ["fem", "paper", "--case", "CS-9"],
+    ["derive", "paper", "--case", "CS-9"],
+    ["derive", "--check", "none.nc"],
+    ["validate", "paper", "--case", "CS-9"],
+)
+
+
+def test_arguments_and_drive_are_read_before_what_takes_seconds_to_import(tmp_path):
+    """A wrong --case or --contacts was told after two seconds of imports."""
+    code = (
+        "import sys; from ltca.commands.program import main\n"
+        f"for words in {REFUSED!r}:\n"
+        "    assert main(words) == 2, words\n"
+        "    late = {'scipy', 'xarray', 'matplotlib', 'skfem', 'gmsh', 'pyvista'} & set(sys.modules)\n"
+        "    assert not late, (words, late)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False, env=environment
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("\n") == len(REFUSED)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("words", [["--help"], ["--version"], ["show", "paper"]])
+def test_an_output_that_takes_nothing_is_named(words, unbuffered, tmp_path):
+    """`cyclo --help` ended with exit status 0, `cyclo run` spoke of 'a file'."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": unbuffered}
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "ltca.commands.program", *words], stdout=full, stderr=subprocess.PIPE, text=True,
+            check=False, cwd=tmp_path, env=environment,
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (1, "cyclo: error: standard output: No space left on device\n")

@@ -34,6 +34,12 @@ def test_a_torque_a_thousand_times_too_large(vary):
         analyse(vary(), ANGLE, 377.3e6)
 
 
+def test_a_light_torque_beyond_reason(vary):
+    """It was 'no equilibrium … the teeth slip': only the torque itself was looked at."""
+    with pytest.raises(DriveError, match=r"^load.light_torque = 1e\+09 N·mm is 1e\+06 N·m and would press"):
+        analyse(vary(load={"light_torque": 1e9}), ANGLE)
+
+
 def test_a_stiffness_in_another_unit(vary):
     with pytest.raises(DriveError, match=r"pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
         analyse(vary(pin_shaft={"stiffness": 1.0}), ANGLE)

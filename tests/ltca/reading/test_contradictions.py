@@ -41,6 +41,72 @@ def test_the_field_that_was_spoilt_is_named_with_its_bound(part, field, value, s
     build_drive(paper_table(**{part: {field: float(found[1])}}))
 
 
+# In the file with its six cases, whose clearances differ. The root circle is at 77.59 mm less the offset, and the holes
+# reach to 56 + 14.075 mm: 7.515 mm of it leave no wall. Interference ends where both offsets are alike.
+ONE_LINE = {
+    (
+        "equidistant_offset = 0.15",
+        "equidistant_offset = 15",
+    ): r"disc\.equidistant_offset = 15 mm: must be at most 7\.51\d? mm",
+    ("shifting_offset = 0.09", "shifting_offset = 9"): r"disc\.shifting_offset = 9 mm: must be at most 0\.15 mm",
+    (
+        "outer_race_radius = 29.5",
+        "outer_race_radius = 295",
+    ): r"crank_bearing\.outer_race_radius = 295 mm: must be at most 30\.61",
+    (
+        "inner_race_radius = 19.5",
+        "inner_race_radius = 195",
+    ): r"crank_bearing\.inner_race_radius = 195 mm: must be at most 19\.5 mm",
+    (
+        "pin_circle_radius = 56.0",
+        "pin_circle_radius = 66.0",
+    ): r"pin_shaft\.pin_circle_radius = 66 mm: .* must be less than 63\.365",
+}
+
+
+@pytest.mark.parametrize(("old", "new"), ONE_LINE)
+def test_what_is_wrong_in_the_common_part_is_told_once_by_its_field(old, new):
+    """An offset of 15 mm named the circle of the holes, four times; a race of 295 mm took seven lines."""
+    text = shipped_drive()
+    assert text.count(f"\n{old} ") == 1
+    with pytest.raises(DriveError) as caught:
+        parse_drive(text.replace(f"\n{old} ", f"\n{new} "))
+    (problem,) = caught.value.problems
+    assert re.match(ONE_LINE[old, new], problem), problem
+
+
+@pytest.mark.parametrize(
+    ("part", "smaller", "larger"),
+    [("crank_bearing", "inner_race_radius", "outer_race_radius"), ("pin_shaft", "pin_radius", "hole_radius")],
+)
+def test_swapped_fields_are_both_named(part, smaller, larger):
+    """Races given the wrong way round read 'roller_radius must be at most −5 mm'."""
+    head, mark, tail = shipped_drive().partition(f"[{part}]\n")
+    text = (
+        head
+        + mark
+        + tail.replace(f"{smaller} =", "@", 1).replace(f"{larger} =", f"{smaller} =", 1).replace("@", f"{larger} =", 1)
+    )
+    with pytest.raises(DriveError) as caught:
+        parse_drive(text)
+    (problem,) = caught.value.problems
+    assert re.fullmatch(
+        rf"{part}\.{smaller} = \S+ mm: must be less than {larger} = \S+ mm; the two seem to be swapped", problem
+    )
+
+
+def test_a_case_that_is_wrong_in_another_way_is_told_beside(paper_table):
+    """What one field of the common part mends is told once, what it does not mend stays with its case."""
+    text = shipped_drive().replace("\nshifting_offset = 0.09 ", "\nshifting_offset = 9 ").partition("[[case]]")[0]
+    text += '[[case]]\nname = "A"\n[[case]]\nname = "B"\nclearance = { pin_hole = 3.0 }\n'
+    with pytest.raises(DriveError) as caught:
+        parse_drive(text)
+    first, *others = caught.value.problems
+    assert first.startswith("case A: disc.shifting_offset = 9 mm: must be at most 0.15 mm")
+    assert others
+    assert all(problem.startswith("case B: ") for problem in others)
+
+
 def test_a_count_that_was_spoilt_is_named(paper_table):
     with pytest.raises(
         DriveError, match=r"^pin_shaft.number_of_pins = 18: must be at most 12 for the rest of the drive"

@@ -270,7 +270,7 @@ def test_wrong_options_are_refused(tmp_path):
             ["paper", "--sample", 10, "--samples", 10, "--out", tmp_path],
             "--sample = 10: must be from 0 to 9",
         ),
-        (optimise, ["paper", "--vary", "thickness", "--minimise", "beauty"], "give one or two of"),
+        (optimise, ["paper", "--vary", "thickness", "--minimise", "beauty"], "is no quantity of a study"),
         (curves, ["paper", "--pressure-limit", 0], "--pressure-limit = 0"),
     ):
         with pytest.raises(DriveError, match=message):
