@@ -26,8 +26,8 @@ def is_seen(text: str) -> bool:
 
     Examples
     --------
-    >>> is_seen("می\u200cخواهم"), is_seen("CS\u200b-1"), is_seen("CS\u200c-1"), is_seen("a\tb")
-    (True, False, False, False)
+    >>> is_seen("CS-1"), is_seen(f"CS{chr(0x200B)}-1"), is_seen(f"a{chr(9)}b")
+    (True, False, False)
     """
     for place, sign in enumerate(text):
         if sign in JOINERS:
