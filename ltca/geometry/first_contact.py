@@ -14,6 +14,12 @@ from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
+STEEP = 1e-3
+"""Lever arm of a pin's contact normal, as a part of e u, above which Newton's method finds where it touches."""
+TOUCHING = 1e-12
+"""Interference that counts as touching, as a part of the pin circle radius: some thousand times the round-off."""
+ROUNDS, BISECTIONS = 60, 60
+
 
 def first_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
@@ -75,10 +81,10 @@ def turn_to_contact(
     history: list[float] = []
     settled = np.zeros(angle.size, dtype=bool)
     pin = np.zeros(angle.size, dtype=np.intp)
-    for _ in range(60):
+    for _ in range(ROUNDS):
         motion = geometry.flank(angle, pose)
         rate = sense * motion.gradient[..., coordinate]
-        closing = rate > 1e-3 * lever
+        closing = rate > STEEP * lever
         travel = np.where(closing, -motion.approach / np.where(closing, rate, 1.0), np.inf)
         pin = np.argmin(travel, axis=1)
         step = np.take_along_axis(travel, pin[:, None], axis=1)[:, 0]
@@ -89,8 +95,64 @@ def turn_to_contact(
         history.append(float(np.max(np.abs(step))))
         if np.all(settled | ~reachable):
             break
+    # A pin whose normal points at the axis hardly moves along it: such pins were left out above.
+    others = np.max(geometry.flank(angle, pose).approach, axis=1) > TOUCHING * _size(geometry)
+    unsure = np.nonzero(~settled | others)[0]
+    if unsure.size:
+        rotation, touching, free = _farthest_free(geometry.take(unsure), angle[unsure], coordinate, sense)
+        # Where pins interfere at every rotation, the one that those which close define stands.
+        better = unsure[free]
+        pose[better, coordinate], pin[better], settled[better] = rotation[free], touching[free], True
     pose[~settled, coordinate] = 0.0
     return pose[:, coordinate], pin, settled, history
+
+
+def _size(geometry: ContactGeometry) -> float:
+    return float(np.max(np.abs(geometry.placement.wheel_pin_centres)))
+
+
+def _farthest_free(
+    geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int
+) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_]]:
+    """Return how far it can turn until the largest approach of all pins is zero, by bisection, and whether it can.
+
+    The largest approach is a valley over the rotation: its bottom is found first, from the sign of its slope there.
+    Unmodified flanks have it at zero, where all pins touch; equal offsets just below.
+    """
+    rows = np.arange(angle.size)
+
+    def approach_at(rotation: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
+        pose = np.zeros((angle.size, 4))
+        pose[:, coordinate] = rotation
+        motion = geometry.flank(angle, pose)
+        pin = np.argmax(motion.approach, axis=1)
+        return motion.approach[rows, pin], motion.gradient[rows, pin, coordinate], pin
+
+    quarter = 0.5 * np.pi / geometry.placement.reduction_ratio  # of a pitch
+    touching = TOUCHING * _size(geometry)
+    bottom = np.zeros(angle.size)
+    largest, slope, _ = approach_at(bottom)
+    low, high = np.full(angle.size, -quarter), np.full(angle.size, quarter)
+    for _ in range(BISECTIONS):
+        free = largest <= touching
+        if np.all(free):
+            break
+        low, high = np.where(slope < 0.0, bottom, low), np.where(slope < 0.0, high, bottom)
+        bottom = np.where(free, bottom, 0.5 * (low + high))
+        largest, slope, _ = approach_at(bottom)
+    free = largest <= touching
+    # Where all touch at the bottom, round-off of their approaches is no way to go.
+    level = np.maximum(largest, 0.0)
+    inside, outside = bottom, bottom + sense * quarter
+    outside = np.where(approach_at(outside)[0] > level, outside, outside + sense * quarter)
+    stopping, _, pin = approach_at(outside)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (inside + outside)
+        largest, _, found = approach_at(middle)
+        over = largest > level
+        inside, outside = np.where(over, inside, middle), np.where(over, middle, outside)
+        pin = np.where(over, found, pin)
+    return inside, pin, free & (stopping > level)
 
 
 def backlash(geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int) -> FloatArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -64,6 +66,48 @@ def test_first_contact_against_root_finding(paper_cases, crank):
             assert approach[pin[0]] == pytest.approx(0.0, abs=1e-12)
 
 
+def with_offsets(drive, equidistant, shifting):
+    return replace(drive, disc=replace(drive.disc, equidistant_offset=equidistant, shifting_offset=shifting))
+
+
+@pytest.mark.parametrize("crank", [0.004, 0.9, 1.234, 5.1])
+def test_equal_offsets_have_a_small_backlash(paper_cases, crank):
+    """A pin whose normal points at the axis stops the wheel: "no pin touches the flank" was the answer."""
+    drive = with_offsets(paper_cases["CS-1"], 0.1, 0.1)
+    geometry = ContactGeometry.of_drive(drive)
+    for sense in (1, -1):
+        found, _ = first_contact(geometry, np.array([crank]), WHEEL_ANGLE, sense)
+        expected = brentq(lambda turn: smallest_gap(drive, crank, 0.0, turn), 0.0, sense * 0.001, xtol=1e-13)
+        # the gap of such a pin grows with a hundredth of a usual lever arm: 1e-12 mm of it are some 1e-11 rad
+        assert found[0] == pytest.approx(expected, abs=2e-11)
+        assert 1e-7 < sense * found[0] < 1e-4
+
+
+def test_equal_offsets_have_no_backlash_where_a_normal_points_at_the_axis(paper_cases):
+    geometry = ContactGeometry.of_drive(with_offsets(paper_cases["CS-1"], 0.1, 0.1))
+    # φ_C = 0 and every pitch of the flank: a root of the flank stands before a pin
+    angles = 2.0 * np.pi / 13.0 * np.arange(6)
+    # the gap there grows with the square of the rotation: its round-off of 1e-13 mm is some 1e-8 rad
+    assert np.all(np.abs(backlash(geometry, angles, WHEEL_ANGLE)) < 1e-7)
+    assert np.all(backlash(geometry, angles + 0.05, WHEEL_ANGLE) > 1e-5)
+
+
+@pytest.mark.parametrize("pins", [6, 30, 40, 60, 76, 90])
+def test_unmodified_flanks_have_no_backlash(paper_cases, pins):
+    """All loaded pins touch at once: at some numbers of pins round-off was taken for interference."""
+    drive = with_offsets(paper_cases["CS-1"], 0.0, 0.0)
+    scale = 14.0 / pins
+    wheel = replace(drive.pin_wheel, number_of_pins=pins, pin_radius=drive.pin_wheel.pin_radius * min(scale, 1.0))
+    disc = replace(drive.disc, number_of_teeth=pins - 1)
+    crank = replace(drive.crank, eccentricity=drive.crank.eccentricity * scale)
+    drive = replace(drive, pin_wheel=wheel, disc=disc, crank=crank)
+    geometry = ContactGeometry.of_drive(drive)
+    angles = np.linspace(0.0, 2.0 * np.pi, 97)
+    for coordinate in (DISC_ROTATION, WHEEL_ANGLE):
+        # round-off of 1e-13 mm where the lever arm of a touching pin may be a thousandth of 56 mm
+        np.testing.assert_allclose(backlash(geometry, angles, coordinate), 0.0, atol=1e-11)
+
+
 def test_backlash_is_the_sum_of_both_senses_and_positive(random_drives):
     for drive in random_drives:
         geometry = ContactGeometry.of_drive(drive)
@@ -89,16 +133,14 @@ def test_unloaded_transmission_error_has_the_sign_of_the_convention(paper_cases)
 
 
 def test_nothing_touches_when_no_pin_can(paper_cases):
-    from dataclasses import replace
-
     geometry = ContactGeometry.of_drive(paper_cases["CS-1"])
-    # a wheel of a single pin on the eccentricity line: its normal passes through the wheel axis
+    # a wheel of a single pin too thin for its flank
     lone = replace(
         geometry,
         placement=replace(
             geometry.placement,
             wheel_pin_centres=geometry.placement.wheel_pin_centres[:1],
-            wheel_pin_radii=geometry.placement.wheel_pin_radii[:1],
+            wheel_pin_radii=geometry.placement.wheel_pin_radii[:1] - 10.0,
         ),
     )
     with pytest.raises(ConvergenceError, match="no pin touches"):
