@@ -1,0 +1,154 @@
+"""Drives as people draw them: round numbers, zeros and equalities, steel, aluminium or plastic.
+
+Where `random_drives` fills the space of what is valid, these crowd at the plain choices: no offsets at all, equal ones,
+no clearance, equal radii, full and hundredth torque.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator
+
+from ltca.drive.parts import Drive
+from ltca.errors import DriveError
+from ltca.geometry.flank import FlankProfile
+from ltca.reading.drive_file import build_drive
+
+MATERIALS = {
+    "steel": (206e3, 0.3, 1200.0),
+    "aluminium": (70e3, 0.33, 350.0),
+    "plastic": (2.6e3, 0.38, 50.0),
+}
+"""Young's modulus, MPa, Poisson's ratio and flank pressure at the rated torque, MPa, of the disc; its pins are steel."""
+TOOTH_NUMBERS = (6, 8, 10, 11, 12, 14, 16, 18, 20, 24, 25, 26, 30, 32, 36, 40, 41, 44, 48, 50, 52, 60, 64, 76, 80, 90, 100, 120)
+CIRCLES = (20.0, 25.0, 30.0, 32.0, 40.0, 50.0, 55.0, 60.0, 72.0, 80.0, 88.0, 100.0, 120.0, 150.0, 180.0)
+
+
+def practical_drive(seed: int) -> tuple[Drive, float]:
+    """Return a drive that somebody could have drawn, and a crank angle in rad.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative; the same seed gives the same drive.
+
+    Returns
+    -------
+    Drive
+        With its rated torque or a hundredth of it.
+    float
+        φ_C, rad; one in four is zero.
+    """
+    random = np.random.default_rng(seed)
+    while True:
+        drawn = _draw(random)
+        if drawn is not None:
+            break
+    return drawn, float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+
+
+def _draw(random: Generator) -> Drive | None:
+    table = _teeth(random)
+    if table is None or not _inside(random, table):
+        return None
+    _load(random, table)
+    try:
+        return build_drive(table)
+    except DriveError:
+        return None
+
+
+def _round(value: float, step: float) -> float:
+    """Round to a step, as one writes it."""
+    return float(round(round(value / step) * step, 6))
+
+
+def _step(value: float) -> float:
+    """Step of what is written for a length: 0.05 mm above 1 mm, 0.01 mm below."""
+    return 0.05 if value > 1.0 else 0.01
+
+
+def _teeth(random: Generator) -> dict[str, Any] | None:
+    pins, circle = int(random.choice(TOOTH_NUMBERS)), float(random.choice(CIRCLES))
+    wanted = random.uniform(0.4, 0.8) * circle / pins
+    eccentricity = _round(wanted, _step(wanted))
+    if eccentricity <= 0.0 or eccentricity * pins > 0.9 * circle:
+        return None
+    path = FlankProfile(
+        generating_radius=circle, eccentricity=eccentricity, reduction_ratio=float(pins), offset=1.0
+    ).locus_curvature(np.linspace(0.0, 2.0 * np.pi / pins, 721))
+    room = min(circle * float(np.sin(np.pi / pins)), 1.0 / float(np.max(path)))
+    wanted = room * random.uniform(0.4, 0.75)
+    pin_radius = _round(wanted, 0.25 if wanted > 1.0 else 0.05)
+    size = float(random.choice([0.01, 0.02, 0.05, 0.1]))
+    equidistant, shifting = [
+        (0.0, 0.0), (size, size), (-size, -size), (2.0 * size, size), (size, 0.0), (1.5 * size, 0.9 * size), (0.0, -size)
+    ][random.integers(7)]  # fmt: skip
+    if pin_radius <= 0.0 or equidistant > 0.05 * pin_radius or pin_radius > 0.9 * room:
+        return None
+    return {
+        "crank": {"eccentricity": eccentricity},
+        "pin_wheel": {"number_of_pins": pins, "pin_circle_radius": circle, "pin_radius": pin_radius},
+        "disc": {
+            "number_of_teeth": pins - 1,
+            "thickness": _round(circle * random.uniform(0.1, 0.25), 0.5),
+            "equidistant_offset": equidistant,
+            "shifting_offset": shifting,
+        },
+    }
+
+
+def _inside(random: Generator, table: dict[str, Any]) -> bool:
+    """Bearing and holes in what the teeth leave; False where nothing fits."""
+    wheel, disc, eccentricity = table["pin_wheel"], table["disc"], table["crank"]["eccentricity"]
+    root = wheel["pin_circle_radius"] - eccentricity - wheel["pin_radius"]
+    bore = _round(root * random.uniform(0.3, 0.5), 0.5)
+    roller = _round(bore * random.uniform(0.1, 0.2), 0.25)
+    race = bore - 2.0 * roller
+    if roller <= 0.0 or race <= roller:
+        return False
+    fitting = int(np.pi / np.arcsin(1.05 * roller / (race + roller)))
+    length = disc["thickness"] * float(random.choice([1.0, 1.0, 0.8]))
+    holes = int(random.choice([4, 6, 8, 10, 12]))
+    circle = _round(0.5 * (bore + root), 0.5)
+    room = 0.9 * min(circle - bore, root - circle, circle * float(np.sin(np.pi / holes)))
+    pin = _round((room - eccentricity) * random.uniform(0.6, 1.0), 0.25)
+    if pin <= 0.0:
+        return False
+    table["crank_bearing"] = {
+        "inner_race_radius": race,
+        "outer_race_radius": bore,
+        "number_of_rollers": max(6, fitting - int(random.integers(0, 4))),
+        "roller_radius": roller,
+        "roller_length": length,
+    }
+    table["pin_shaft"] = {
+        "number_of_pins": holes,
+        "pin_circle_radius": circle,
+        "pin_radius": pin,
+        "hole_radius": pin + eccentricity,
+        "stiffness": float(random.choice([1e5, 3e5, 1e6])),
+    }
+    table["clearance"] = {
+        "bearing": float(random.choice([0.0, 0.0, 0.01, 0.03])),
+        "pin_hole": float(random.choice([0.0, 0.0, 0.01, 0.03])),
+    }
+    return True
+
+
+def _load(random: Generator, table: dict[str, Any]) -> None:
+    modulus, ratio, pressure = MATERIALS[str(random.choice(["steel", "steel", "aluminium", "plastic"]))]
+    wheel, disc = table["pin_wheel"], table["disc"]
+    # A quarter of the pins share the load of the one that carries most, Hertz pressure on its own radius.
+    contact_modulus = 1.0 / ((1.0 - ratio**2) / modulus + (1.0 - 0.3**2) / 206e3)
+    line_load = np.pi * pressure**2 * wheel["pin_radius"] / contact_modulus
+    lever = table["crank"]["eccentricity"] * wheel["number_of_pins"]
+    rated = float(f"{0.25 * wheel['number_of_pins'] * line_load * disc['thickness'] * lever:.2g}")
+    torque = rated * float(random.choice([1.0, 0.01]))
+    table["load"] = {"torque": torque, "light_torque": 0.03 * torque, "direction": str(random.choice(["ccw", "cw"]))}
+    steel = {"youngs_modulus": 206e3, "poisson_ratio": 0.3}
+    table["materials"] = {"disc": {"youngs_modulus": modulus, "poisson_ratio": ratio}} | dict.fromkeys(
+        ("wheel_pin", "roller", "inner_race", "shaft_pin"), steel
+    )
