@@ -1,5 +1,7 @@
 """Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
 
+``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`); none of them may be refused.
+
 Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
 `ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
 written as JSON, also in between, so that a long run may be watched or stopped.
@@ -20,17 +22,18 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
+from ltca.testing.practical_drives import practical_drive
 from ltca.testing.random_drives import COORDINATES, random_drive
 
 
-def try_drive(seed: int) -> tuple[str, str, int]:
+def try_drive(seed: int, practical: bool) -> tuple[str, str, int]:
     """Return outcome, detail and iterations of the drive of a seed."""
-    drawn = random_drive(np.random.default_rng(seed).random(COORDINATES))
+    drawn = practical_drive(seed) if practical else random_drive(np.random.default_rng(seed).random(COORDINATES))
     if drawn is None:
         return "no drive fits", "", 0
     drive, angle = drawn
-    model = HalfSpaceCompliance.of_drive(drive)
     try:
+        model = HalfSpaceCompliance.of_drive(drive)
         balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
     except ConvergenceError as error:
         return ("convergence error" if error.history else "error without history"), str(error), 0
@@ -42,6 +45,7 @@ def main() -> int:
     """Run the count asked for; exit status 1 when an answer was wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=2000, help="drives to draw; default 2000")
+    parser.add_argument("--practical", action="store_true", help="drives as people draw them")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
@@ -52,7 +56,7 @@ def main() -> int:
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     for number, seed in enumerate(range(arguments.first, arguments.first + arguments.count), start=1):
         start = time.perf_counter()
-        outcome, detail, steps = try_drive(seed)
+        outcome, detail, steps = try_drive(seed, arguments.practical)
         taken = time.perf_counter() - start
         if number > 1 and taken > slowest:  # the first one builds the table of the contact law
             slowest, slowest_seed = taken, seed
@@ -74,7 +78,8 @@ def main() -> int:
             }
             arguments.out.write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
             print(f"{number}: {dict(outcomes)}, {report['seconds']} s", flush=True)
-    return 1 if outcomes["wrong"] + outcomes["error without history"] else 0
+    bad = outcomes["wrong"] + outcomes["error without history"]
+    return 1 if bad or (arguments.practical and outcomes["balanced"] < arguments.count) else 0
 
 
 if __name__ == "__main__":

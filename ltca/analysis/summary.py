@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.units import ARCMIN, ARCSEC
-from ltca.geometry.first_contact import backlash
+from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
@@ -73,6 +73,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     values = {
         "backlash_disc_arcmin": np.mean(backlash(geometry, angle, DISC_ROTATION)) * ARCMIN,
         "backlash_wheel_arcmin": np.mean(backlash(geometry, angle, WHEEL_ANGLE)) * ARCMIN,
+        "interference_mm": np.max(interference(geometry, angle)),
         "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
         "mean_radial_bearing_load_N": np.mean(radial),
         "mean_tangential_bearing_load_N": np.mean(tangential),

@@ -247,8 +247,8 @@ ROWS = (
     ("loaded pin-shaft pins, mean", "mean_loaded_pin_shaft_pins", "", "{:.2f}"),
     ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
     ("  at the light torque", "ptp_transmission_error_light_arcsec", "″", "{:.2f}"),
-    ("backlash at the disc", "backlash_disc_arcmin", "′", "{:.2f}"),
-    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:.2f}"),
+    ("backlash at the disc", "backlash_disc_arcmin", "′", "{:z.2f}"),
+    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
     ("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),
 )
 
@@ -257,6 +257,7 @@ RIGID_SHAFT_PINS = (
     "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
     "--no-hole-near-field"
 )
+INTERFERENCE_ROWS = (("  pins and flank overlap at rest by", "interference_mm", "mm", "{:.4f}"),)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
     ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),
@@ -273,7 +274,8 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str])
         f"{'torque, direction of the crank':<40}" + "".join(f"{load:>{width}}" for load in loads.values()),
     ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
-    for title, key, unit, form in (*ROWS, *walls):
+    pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
+    for title, key, unit, form in (*ROWS, *pressed, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) for case in summaries.values()]
         lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))

@@ -47,13 +47,17 @@ def first_contact(
     Raises
     ------
     ConvergenceError
-        When no pin can touch in that sense, or pins interfere at every rotation.
+        When no pin can touch in that sense.
+
+    Notes
+    -----
+    Where errors of single parts press pins on the flank at every rotation, the answer is the rotation at which those
+    that close stop touching, so that backlash is negative, or that of least `interference` where there is none.
     """
     rotation, pin, settled, history = turn_to_contact(geometry, crank_angle, coordinate, sense)
     if not np.all(settled):
         raise ConvergenceError(
-            "no pin touches the flank, or some interfere at every rotation, the disc in its nominal place; last "
-            "rotations in rad",
+            "no pin touches the flank within half a pitch, the disc in its nominal place; last rotations in rad",
             history,
         )
     return rotation, pin
@@ -99,60 +103,96 @@ def turn_to_contact(
     others = np.max(geometry.flank(angle, pose).approach, axis=1) > TOUCHING * _size(geometry)
     unsure = np.nonzero(~settled | others)[0]
     if unsure.size:
-        rotation, touching, free = _farthest_free(geometry.take(unsure), angle[unsure], coordinate, sense)
-        # Where pins interfere at every rotation, the one that those which close define stands.
-        better = unsure[free]
-        pose[better, coordinate], pin[better], settled[better] = rotation[free], touching[free], True
+        part = geometry.take(unsure)
+        bottom, pressed, _ = _least_interference(part, angle[unsure], coordinate)
+        rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
+        free = pressed <= TOUCHING * _size(geometry)
+        rotation = np.where(free, rotation, bottom)
+        better = free & stopped | ~free & ~settled[unsure]
+        rows = unsure[better]
+        pose[rows, coordinate], pin[rows], settled[rows] = rotation[better], touching[better], True
     pose[~settled, coordinate] = 0.0
     return pose[:, coordinate], pin, settled, history
+
+
+def interference(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
+    """Return how far pins and flank overlap where turning the wheel makes it least, the disc in its nominal place, mm.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        The drive.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+
+    Returns
+    -------
+    array, shape (positions,)
+        Zero where there is backlash.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    _, pressed, _ = _least_interference(geometry, angle, WHEEL_ANGLE)
+    return np.where(pressed > TOUCHING * _size(geometry), pressed, 0.0)
 
 
 def _size(geometry: ContactGeometry) -> float:
     return float(np.max(np.abs(geometry.placement.wheel_pin_centres)))
 
 
-def _farthest_free(
-    geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int
-) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_]]:
-    """Return how far it can turn until the largest approach of all pins is zero, by bisection, and whether it can.
+def _quarter(geometry: ContactGeometry) -> float:
+    return 0.5 * np.pi / geometry.placement.reduction_ratio  # of a pitch, rad
 
-    The largest approach is a valley over the rotation: its bottom is found first, from the sign of its slope there.
-    Unmodified flanks have it at zero, where all pins touch; equal offsets just below.
+
+def _largest_approach(
+    geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
+) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
+    """Largest approach of all pins, its slope by the rotation, and the pin."""
+    pose = np.zeros((angle.size, 4))
+    pose[:, coordinate] = rotation
+    motion = geometry.flank(angle, pose)
+    rows, pin = np.arange(angle.size), np.argmax(motion.approach, axis=1)
+    return motion.approach[rows, pin], motion.gradient[rows, pin, coordinate], pin
+
+
+def _least_interference(
+    geometry: ContactGeometry, angle: FloatArray, coordinate: int
+) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
+    """Rotation at which the largest approach is no interference, or the least one, that approach, and its pin.
+
+    The largest approach is a valley over the rotation: its slope says on which side of a place the bottom lies. With
+    unmodified flanks that is where all pins touch; with equal offsets it is just below zero.
     """
-    rows = np.arange(angle.size)
-
-    def approach_at(rotation: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
-        pose = np.zeros((angle.size, 4))
-        pose[:, coordinate] = rotation
-        motion = geometry.flank(angle, pose)
-        pin = np.argmax(motion.approach, axis=1)
-        return motion.approach[rows, pin], motion.gradient[rows, pin, coordinate], pin
-
-    quarter = 0.5 * np.pi / geometry.placement.reduction_ratio  # of a pitch
-    touching = TOUCHING * _size(geometry)
+    quarter, touching = _quarter(geometry), TOUCHING * _size(geometry)
     bottom = np.zeros(angle.size)
-    largest, slope, _ = approach_at(bottom)
     low, high = np.full(angle.size, -quarter), np.full(angle.size, quarter)
+    largest, slope, pin = _largest_approach(geometry, angle, coordinate, bottom)
     for _ in range(BISECTIONS):
         free = largest <= touching
         if np.all(free):
             break
         low, high = np.where(slope < 0.0, bottom, low), np.where(slope < 0.0, high, bottom)
         bottom = np.where(free, bottom, 0.5 * (low + high))
-        largest, slope, _ = approach_at(bottom)
-    free = largest <= touching
-    # Where all touch at the bottom, round-off of their approaches is no way to go.
-    level = np.maximum(largest, 0.0)
-    inside, outside = bottom, bottom + sense * quarter
-    outside = np.where(approach_at(outside)[0] > level, outside, outside + sense * quarter)
-    stopping, _, pin = approach_at(outside)
+        largest, slope, pin = _largest_approach(geometry, angle, coordinate, bottom)
+    return bottom, largest, pin
+
+
+def _farthest_free(
+    geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int, start: FloatArray
+) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_]]:
+    """How far it can turn from a start until a pin presses, by bisection, which one, and whether one does."""
+    # Where all touch at the start, round-off of their approaches is no way to go.
+    level = np.maximum(_largest_approach(geometry, angle, coordinate, start)[0], 0.0)
+    step = sense * _quarter(geometry)
+    inside, outside = start, start + step
+    outside = np.where(_largest_approach(geometry, angle, coordinate, outside)[0] > level, outside, outside + step)
+    stopping, _, pin = _largest_approach(geometry, angle, coordinate, outside)
     for _ in range(BISECTIONS):
         middle = 0.5 * (inside + outside)
-        largest, _, found = approach_at(middle)
+        largest, _, found = _largest_approach(geometry, angle, coordinate, middle)
         over = largest > level
         inside, outside = np.where(over, inside, middle), np.where(over, middle, outside)
         pin = np.where(over, found, pin)
-    return inside, pin, free & (stopping > level)
+    return inside, pin, stopping > level
 
 
 def backlash(geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int) -> FloatArray:

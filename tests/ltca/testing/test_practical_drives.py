@@ -1,0 +1,43 @@
+"""Drives as people draw them: every one is answered, and confirmed by energies alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.testing.balance_check import find_imbalance
+from ltca.testing.practical_drives import practical_drive
+
+
+def check_seeds(first, count):
+    for seed in range(first, first + count):
+        drive, angle = practical_drive(seed)
+        model = HalfSpaceCompliance.of_drive(drive)
+        balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
+        assert find_imbalance(drive, model, balanced) == [], seed
+
+
+def test_practical_drives_quick():
+    check_seeds(0, 20)
+
+
+@pytest.mark.slow
+def test_five_hundred_practical_drives():
+    """``benchmarks/random_drives.py --practical`` runs 10,000."""
+    check_seeds(20, 480)
+
+
+def test_zeros_and_equalities_are_drawn():
+    """They are what people type, and what a generator of real numbers never meets."""
+    drives = [practical_drive(seed)[0] for seed in range(120)]
+    offsets = [(drive.disc.equidistant_offset, drive.disc.shifting_offset) for drive in drives]
+    assert any(offset == (0.0, 0.0) for offset in offsets)
+    assert any(first == second != 0.0 for first, second in offsets)
+    assert any(drive.clearance.bearing == drive.clearance.pin_hole == 0.0 for drive in drives)
+    assert any(drive.crank_bearing.roller_length == drive.disc.thickness for drive in drives)
+    assert {drive.load.direction for drive in drives} == {"ccw", "cw"}
+    assert {drive.materials.disc.youngs_modulus for drive in drives} == {206e3, 70e3, 2.6e3}
+    assert min(drive.pin_wheel.number_of_pins for drive in drives) <= 8
+    assert max(drive.pin_wheel.number_of_pins for drive in drives) >= 100
