@@ -3,6 +3,7 @@
 Modules in the order data passes:
 
 ==============  ============================================================
+newton          Damped Newton iteration for the pose in which a batch of positions balances
 balance         Equilibrium of the floating disc at held crank angles (Eq. 43–44, 70–72, 85–89)
 paper_method    The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
                 43–46, 90–93)

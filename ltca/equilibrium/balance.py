@@ -1,10 +1,9 @@
 r"""Equilibrium of the floating disc at held crank angles (Eq. 43–44, 70–72, 85–89).
 
 The pose q minimises Π(q) = Σ U_i(δ_i(q)) − T_load · wheel_angle. Its gradient is the residual, its Hessian the
-4×4 tangent. Before first contact the disc floats and the tangent is singular, so Newton's step is damped
-(Levenberg–Marquardt) and its length bounded. Π is convex but for the small geometric part, and stiff where contacts
-open and close: along each step the slope of Π is brought down by a bracketed secant before the step is taken, so Π
-falls in every iteration and no cycle is possible between contacts that take turns.
+4×4 tangent; `ltca.equilibrium.newton` goes downhill. Under a light load a disc that starts with play wanders between
+contacts that take turns. Such positions are solved under a heavier torque, which leaves no play, and followed from there
+down to their own.
 """
 
 from __future__ import annotations
@@ -15,28 +14,21 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import BatchModel, ComplianceModel, Response, Start
+from ltca.compliance.response import BatchModel, ComplianceModel, Response
+from ltca.equilibrium.newton import Search
 from ltca.errors import ConvergenceError
 from ltca.geometry.first_contact import turn_to_contact
-from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
-TOLERANCE = 1e-9
-"""Largest residual accepted, as a part of the load T/(e z_P)."""
-ROUND_OFF = 4.0 * np.finfo(float).eps
-"""Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
-ROUND_OFF_BOUND = 1e-5
-"""Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
-
-ITERATIONS = 200
-STEP_BOUND = 1e-3
-"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
-(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
-It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
-LINE_TRIALS = 12
-SLOPE_LEFT = 0.3
-"""A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
+ITERATIONS = 100
+"""Newton iterations after which a start counts as lost; usual are ten, and fifty where contacts take turns."""
+HEAVIER = 8.0
+"""Ratio of torques of a continuation; it shrinks where a step is too long, down to `LEAST_RATIO`."""
+HEAVIEST = 7
+"""Most times that the torque grows by `HEAVIER` to find a start."""
+LEAST_RATIO = 1.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,13 +101,91 @@ def solve_equilibrium(
     lever = lever_arms(model)
     load = np.abs(moment) / lever[..., WHEEL_ANGLE]
     if start is None:
-        start = np.zeros((angle.size, 4))
-        sense = np.where(moment < 0.0, -1, 1)
-        for value in np.unique(sense):
-            rows = sense == value
-            start[rows, WHEEL_ANGLE] = _take_up(model.geometry.take(rows), angle[rows], int(value))
-    search = _Search(model, angle, moment, lever, load, np.array(start, dtype=float))
-    return search.run()
+        start = _at_first_contact(model.geometry, angle, moment)
+    pose = np.array(start, dtype=float)
+    search = Search(model, angle, moment, lever, load, pose)
+    left = search.iterate(ITERATIONS)
+    if left.size:
+        left = _follow_down(search, left)
+    if left.size:
+        raise _failure(search, left)
+    response, gradient, _ = search.evaluate(np.arange(angle.size), search.pose, search.known)
+    return Equilibrium(
+        crank_angle=angle,
+        wheel_moment=np.array(moment),
+        pose=search.pose,
+        response=response,
+        residual=np.max(np.abs(gradient), axis=1),
+        iterations=search.iterations,
+    )
+
+
+def _at_first_contact(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> FloatArray:
+    """Poses with the disc on the inner-race centre and the wheel turned until a pin touches."""
+    pose = np.zeros((angle.size, 4))
+    sense = np.where(moment < 0.0, -1, 1)
+    for value in np.unique(sense):
+        rows = sense == value
+        pose[rows, WHEEL_ANGLE] = _take_up(geometry.take(rows), angle[rows], int(value))
+    return pose
+
+
+def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: FloatArray) -> Search:
+    """The search for some positions under other torques."""
+    model = cast(BatchModel, search.model).take(rows) if search.batch else search.model
+    moment, load = factor * search.moment[rows], factor * search.load[rows]
+    return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
+
+
+def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Solve positions from heavier torques down to their own; return those that have no balance there either."""
+    pose = _at_first_contact(search.model.geometry.take(rows), search.angle[rows], search.moment[rows])
+    level = np.full(rows.size, np.nan)
+    for power in range(1, HEAVIEST + 1):
+        new = np.nonzero(np.isnan(level))[0]
+        if new.size == 0:
+            break
+        part = _part(search, rows[new], np.full(new.size, HEAVIER**power), pose[new])
+        found = np.setdiff1d(np.arange(new.size), part.iterate(ITERATIONS))
+        search.iterations[rows[new]] += part.iterations
+        pose[new[found]], level[new[found]] = part.pose[found], HEAVIER**power
+    ratio = np.full(rows.size, HEAVIER)
+    going = np.nonzero(~np.isnan(level))[0]
+    while going.size:
+        target = np.maximum(level[going] / ratio[going], 1.0)
+        part = _part(search, rows[going], target, pose[going])
+        lost = part.iterate(ITERATIONS)
+        search.iterations[rows[going]] += part.iterations
+        found = np.setdiff1d(np.arange(going.size), lost)
+        pose[going[found]], level[going[found]] = part.pose[found], target[found]
+        ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, HEAVIER)
+        ratio[going[lost]] = np.sqrt(ratio[going[lost]])
+        there = going[found][target[found] == 1.0]
+        if there.size:
+            search.pose[rows[there]] = pose[there]
+            search.known = search.known.replaced(rows[there], part.known.take(found[target[found] == 1.0]))
+        going = going[(level[going] > 1.0) & (ratio[going] > LEAST_RATIO)]
+    return np.asarray(rows[level != 1.0])
+
+
+def _failure(search: Search, rows: NDArray[np.intp]) -> ConvergenceError:
+    """What to say of positions that do not balance."""
+    residual, count = search.history[-1], search.angle.size
+    slipped = rows[search.slipped[rows]]
+    worst = int(slipped[0] if slipped.size else rows[np.argmax((residual / search.load)[rows])])
+    place = f"no equilibrium at crank angle {search.angle[worst]:.6g} rad (position {worst} of {count}"
+    history = [float(values[worst]) for values in search.history]
+    if slipped.size:
+        return ConvergenceError(
+            f"{place}): the teeth slip, wheel or disc turns by more than half a pin pitch ({search.half_pitch:.4g} rad) "
+            f"under {abs(search.moment[worst]):.4g} N·mm; residual in N",
+            history,
+        )
+    return ConvergenceError(
+        f"{place}, {rows.size} unbalanced) after {search.iterations[worst]} iterations, under heavier torques, too; "
+        f"residual in N against a load of {search.load[worst]:.4g} N",
+        history,
+    )
 
 
 def _take_up(geometry: ContactGeometry, angle: FloatArray, sense: int) -> FloatArray:
@@ -128,161 +198,3 @@ def _take_up(geometry: ContactGeometry, angle: FloatArray, sense: int) -> FloatA
             return np.zeros(1)
         halves = np.array_split(np.arange(angle.size), 2)
         return np.concatenate([_take_up(geometry.take(half), angle[half], sense) for half in halves])
-
-
-class _Search:
-    """Damped Newton iteration of a batch; positions leave it as they balance."""
-
-    def __init__(
-        self,
-        model: ComplianceModel,
-        angle: FloatArray,
-        moment: FloatArray,
-        lever: FloatArray,
-        load: FloatArray,
-        pose: FloatArray,
-    ) -> None:
-        self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
-        self.pose = pose
-        self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
-        self.batch = model.geometry.placement.is_batch
-        self.history: list[FloatArray] = []
-
-    def levers(self, rows: NDArray[np.intp]) -> FloatArray:
-        """Return the lever arms of some positions: one row for all where the drives are the same."""
-        return self.lever[rows] if self.batch else self.lever
-
-    def evaluate(
-        self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None
-    ) -> tuple[Response, FloatArray, FloatArray]:
-        """Return the response, the scaled gradient and the scaled tangent (forces and lengths only)."""
-        whole = not self.batch or rows.size == self.angle.size
-        lever = self.levers(rows)
-        model = self.model if whole else cast(BatchModel, self.model).take(rows)
-        response = model.respond(self.angle[rows], pose, start)
-        gradient = response.force.copy()
-        gradient[:, WHEEL_ANGLE] -= self.moment[rows]
-        gradient /= lever
-        if np.isnan(gradient).any():
-            row = rows[np.isnan(gradient).any(axis=1)][0]
-            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
-        tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
-        return response, gradient, tangent
-
-    def run(self) -> Equilibrium:
-        count = self.angle.size
-        iterations = np.zeros(count, dtype=np.intp)
-        active = np.arange(count)
-        first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
-        damping, bound = np.full(count, 1e-6), np.full(count, first_bound)
-        response, gradient, tangent = self.evaluate(active, self.pose, None)
-        start = known = Start.after(response)
-        residual = np.max(np.abs(gradient), axis=1)
-        for _ in range(ITERATIONS):
-            self.history.append(residual.copy())
-            # A residual that is no number does not balance either.
-            going = ~(residual[active] <= self.accepted(active, tangent))
-            active, start = active[going], start.take(going)
-            gradient, tangent = gradient[going], tangent[going]
-            if active.size == 0:
-                return self.finish(iterations, known)
-            iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
-            taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
-            self.pose[active] = taken
-            self.refuse_slip(active, residual)
-            residual[active] = np.max(np.abs(gradient), axis=1)
-            bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
-            bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
-            damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
-            damping[active] = damping[active].clip(1e-12, 1e3)
-            known = known.replaced(active, start)
-        worst = int(np.argmax(residual / self.load))
-        raise ConvergenceError(
-            f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {count}, "
-            f"{active.size} unbalanced) after {ITERATIONS} iterations; residual in N against a load of "
-            f"{self.load[worst]:.4g} N",
-            [float(values[worst]) for values in self.history],
-        )
-
-    def refuse_slip(self, rows: NDArray[np.intp], residual: FloatArray) -> None:
-        """Stop where wheel or disc has turned by half a pin pitch: the teeth have slipped, other pins would carry."""
-        turned = np.max(np.abs(self.pose[rows][:, ROTATIONS]), axis=1)
-        pitch = np.pi / self.model.geometry.placement.reduction_ratio
-        if np.max(turned) > pitch:
-            worst = rows[int(np.argmax(turned))]
-            self.history.append(residual.copy())
-            raise ConvergenceError(
-                f"no equilibrium at crank angle {self.angle[worst]:.6g} rad (position {worst} of {self.angle.size}): "
-                f"the teeth slip, wheel or disc turns by more than half a pin pitch ({pitch:.4g} rad) under "
-                f"{abs(self.moment[worst]):.4g} N·mm; residual in N",
-                [float(values[worst]) for values in self.history],
-            )
-
-    def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
-        """Return the largest residual that counts as balance, N."""
-        size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
-        round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
-        load = self.load[rows]
-        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
-
-    def walk(
-        self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Start, FloatArray]:
-        """Walk along the steps until Π stops falling: poses, gradients, tangents, starts there, parts of the steps."""
-        low, high = np.zeros(rows.size), np.ones(rows.size)
-        low_slope, high_slope = slope.copy(), np.zeros(rows.size)
-        fraction = np.ones(rows.size)
-        step_pose = step / self.levers(rows)
-        pose = self.pose[rows] + step_pose
-        response, gradient, tangent = self.evaluate(rows, pose, start)
-        start = Start.after(response)
-        # Longer than the minimum: round-off of the slope must not send a step back.
-        noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
-        end = np.einsum("bi,bi->b", gradient, step)
-        for _ in range(LINE_TRIALS):
-            far = end > SLOPE_LEFT * np.abs(slope) + noise
-            if not np.any(far):
-                break
-            high[far], high_slope[far] = fraction[far], end[far]
-            back = np.nonzero(far)[0]
-            width = high[back] - low[back]
-            place = -low_slope[back] / (high_slope[back] - low_slope[back])
-            fraction[back] = low[back] + width * place.clip(0.05, 0.9)
-            pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            response, gradient[back], tangent[back] = self.evaluate(rows[back], pose[back], start.take(back))
-            start = start.replaced(back, Start.after(response))
-            end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
-            near = back[end[back] < 0.0]
-            low[near], low_slope[near] = fraction[near], end[near]
-        return pose, gradient, tangent, start, fraction
-
-    def finish(self, iterations: NDArray[np.intp], start: Start) -> Equilibrium:
-        response, gradient, _ = self.evaluate(np.arange(self.angle.size), self.pose, start)
-        return Equilibrium(
-            crank_angle=self.angle,
-            wheel_moment=np.array(self.moment),
-            pose=self.pose,
-            response=response,
-            residual=np.max(np.abs(gradient), axis=1),
-            iterations=iterations,
-        )
-
-
-def _damped_step(
-    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
-
-    With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
-    downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
-    direction still corrects the others.
-    """
-    stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / 4.0
-    # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
-    stiffness = np.where(stiffness > 0.0, stiffness, 1.0)
-    values, modes = np.linalg.eigh(tangent)
-    along = np.einsum("bij,bi->bj", modes, gradient)
-    floor = np.maximum(damping, 1e-15) * stiffness
-    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound[:, None], bound[:, None])
-    return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.response import ComplianceModel, Response, Start
-from ltca.equilibrium.balance import TOLERANCE, Equilibrium, lever_arms
+from ltca.equilibrium.balance import Equilibrium, lever_arms
+from ltca.equilibrium.newton import TOLERANCE
 from ltca.errors import ConvergenceError
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
@@ -40,7 +41,7 @@ class PaperIteration:
     unknowns : array, shape (positions, 4)
         δ_r, δ_t in mm, δ_φ, δ_φC in rad.
     converged : array of bool, shape (positions,)
-        Whether the residual fell below `ltca.equilibrium.balance.TOLERANCE` of the load.
+        Whether the residual fell below `ltca.equilibrium.newton.TOLERANCE` of the load.
     iterations : array of int, shape (positions,)
         Newton steps taken.
     failure : tuple of str

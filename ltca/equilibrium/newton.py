@@ -1,0 +1,194 @@
+r"""Damped Newton iteration for the pose in which a batch of positions balances, to the nearest minimum downhill.
+
+Before first contact the disc floats and the tangent is singular, so Newton's step is damped (Levenberg–Marquardt) and
+its length bounded. Π is convex but for the small geometric part, and stiff where contacts open and close: along each
+step the slope of Π is brought down by a bracketed secant before the step is taken, so Π falls in every iteration and no
+cycle is possible between contacts that take turns.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import BatchModel, ComplianceModel, Response, Start
+from ltca.errors import ConvergenceError
+from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE
+
+FloatArray = NDArray[np.float64]
+
+TOLERANCE = 1e-9
+"""Largest residual accepted, as a part of the load T/(e z_P)."""
+ROUND_OFF = 4.0 * np.finfo(float).eps
+"""Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
+ROUND_OFF_BOUND = 1e-5
+"""Largest residual accepted on account of round-off, as a part of the load: beyond it there is no answer."""
+STEP_BOUND = 1e-3
+"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
+(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
+It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
+LINE_TRIALS = 12
+SLOPE_LEFT = 0.3
+"""A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
+
+
+class Search:
+    """Damped Newton iteration of a batch; positions leave it as they balance.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        Loads at a pose.
+    angle, moment : array, shape (positions,)
+        φ_C, rad, and external moment on the wheel, N·mm.
+    lever : array, shape (4,) or (positions, 4)
+        What turns the residual into forces, mm.
+    load : array, shape (positions,)
+        Moment by the lever of the wheel, N.
+    pose : array, shape (positions, 4)
+        Where to start; changed in place.
+
+    Attributes
+    ----------
+    history : list of array
+        Residuals of each iteration, N.
+    iterations : array of int, shape (positions,)
+        Newton iterations so far.
+    known : Start
+        Inner unknowns at the poses.
+    slipped : array of bool, shape (positions,)
+        Whether wheel or disc had turned by more than half a pin pitch.
+    """
+
+    def __init__(
+        self,
+        model: ComplianceModel,
+        angle: FloatArray,
+        moment: FloatArray,
+        lever: FloatArray,
+        load: FloatArray,
+        pose: FloatArray,
+    ) -> None:
+        self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
+        self.pose = pose
+        self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
+        self.batch = model.geometry.placement.is_batch
+        self.half_pitch = np.pi / model.geometry.placement.reduction_ratio
+        self.history: list[FloatArray] = []
+        self.iterations = np.zeros(angle.size, dtype=np.intp)
+        self.slipped = np.zeros(angle.size, dtype=bool)
+
+    def levers(self, rows: NDArray[np.intp]) -> FloatArray:
+        """Return the lever arms of some positions: one row for all where the drives are the same."""
+        return self.lever[rows] if self.batch else self.lever
+
+    def evaluate(
+        self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None
+    ) -> tuple[Response, FloatArray, FloatArray]:
+        """Return the response, the scaled gradient and the scaled tangent (forces and lengths only)."""
+        whole = not self.batch or rows.size == self.angle.size
+        lever = self.levers(rows)
+        model = self.model if whole else cast(BatchModel, self.model).take(rows)
+        response = model.respond(self.angle[rows], pose, start)
+        gradient = response.force.copy()
+        gradient[:, WHEEL_ANGLE] -= self.moment[rows]
+        gradient /= lever
+        if np.isnan(gradient).any():
+            row = rows[np.isnan(gradient).any(axis=1)][0]
+            raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
+        tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
+        return response, gradient, tangent
+
+    def iterate(self, most: int) -> NDArray[np.intp]:
+        """Move all positions towards balance; return those that do not balance, ascending.
+
+        Parameters
+        ----------
+        most : int
+            Iterations.
+        """
+        active = np.arange(self.angle.size)
+        first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
+        damping, bound = np.full(active.size, 1e-6), np.full(active.size, first_bound)
+        response, gradient, tangent = self.evaluate(active, self.pose, None)
+        start = self.known = Start.after(response)
+        residual = np.max(np.abs(gradient), axis=1)
+        for _ in range(most):
+            self.history.append(residual.copy())
+            # A residual that is no number does not balance either.
+            going = ~(residual[active] <= self.accepted(active, tangent)) & ~self.slipped[active]
+            active, start = active[going], start.take(going)
+            gradient, tangent = gradient[going], tangent[going]
+            if active.size == 0:
+                break
+            self.iterations[active] += 1
+            step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
+            taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
+            self.pose[active] = taken
+            self.slipped[active] = np.max(np.abs(taken[:, ROTATIONS]), axis=1) > self.half_pitch
+            residual[active] = np.max(np.abs(gradient), axis=1)
+            bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
+            bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
+            damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
+            damping[active] = damping[active].clip(1e-12, 1e3)
+            self.known = self.known.replaced(active, start)
+        return np.union1d(active, np.nonzero(self.slipped)[0])
+
+    def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
+        """Return the largest residual that counts as balance, N."""
+        size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
+        round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
+        load = self.load[rows]
+        return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
+
+    def walk(
+        self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Start, FloatArray]:
+        """Walk along the steps until Π stops falling: poses, gradients, tangents, starts there, parts of the steps."""
+        low, high = np.zeros(rows.size), np.ones(rows.size)
+        low_slope, high_slope = slope.copy(), np.zeros(rows.size)
+        fraction = np.ones(rows.size)
+        step_pose = step / self.levers(rows)
+        pose = self.pose[rows] + step_pose
+        response, gradient, tangent = self.evaluate(rows, pose, start)
+        start = Start.after(response)
+        # Longer than the minimum: round-off of the slope must not send a step back.
+        noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
+        end = np.einsum("bi,bi->b", gradient, step)
+        for _ in range(LINE_TRIALS):
+            far = end > SLOPE_LEFT * np.abs(slope) + noise
+            if not np.any(far):
+                break
+            high[far], high_slope[far] = fraction[far], end[far]
+            back = np.nonzero(far)[0]
+            width = high[back] - low[back]
+            place = -low_slope[back] / (high_slope[back] - low_slope[back])
+            fraction[back] = low[back] + width * place.clip(0.05, 0.9)
+            pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
+            response, gradient[back], tangent[back] = self.evaluate(rows[back], pose[back], start.take(back))
+            start = start.replaced(back, Start.after(response))
+            end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
+            near = back[end[back] < 0.0]
+            low[near], low_slope[near] = fraction[near], end[near]
+        return pose, gradient, tangent, start, fraction
+
+
+def _damped_step(
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
+
+    With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
+    downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
+    direction still corrects the others.
+    """
+    stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / 4.0
+    # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
+    stiffness = np.where(stiffness > 0.0, stiffness, 1.0)
+    values, modes = np.linalg.eigh(tangent)
+    along = np.einsum("bij,bi->bj", modes, gradient)
+    floor = np.maximum(damping, 1e-15) * stiffness
+    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound[:, None], bound[:, None])
+    return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)
