@@ -6,7 +6,7 @@ positions as often as wanted. Names given as text become engines in `engine_name
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Protocol, Self, get_args
@@ -198,12 +198,34 @@ class _Coupled:
         and kept there.
     hole_near_field : bool
         Whether hole walls yield like a Hertz contact.
+
+    Raises
+    ------
+    DriveError
+        When an option is of another kind.
     """
 
     batches: ClassVar[bool] = False
 
     coefficients: InfluenceCoefficients | Path | Sequence[Path] | None = field(default=None, repr=False)
     hole_near_field: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the options; files become a tuple of paths, which nobody changes."""
+        if not isinstance(self.hole_near_field, bool):
+            raise DriveError([f"hole_near_field = {shortened(self.hole_near_field)}: must be true or false"])
+        given: Any = self.coefficients
+        if given is None or isinstance(given, InfluenceCoefficients):
+            return
+        one = isinstance(given, str | Path)
+        files: list[Any] = [given] if one else list(given) if isinstance(given, Iterable) else [None]
+        if not all(isinstance(file, str | Path) for file in files):
+            raise DriveError(
+                [
+                    f"coefficients = {shortened(given)}: must be influence coefficients, a file or several of 'cyclo derive'"
+                ]
+            )
+        object.__setattr__(self, "coefficients", tuple(Path(file) for file in files))
 
     @property
     def options(self) -> dict[str, str]:

@@ -16,7 +16,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.drive.unit_table import range_of
 from ltca.equilibrium.balance import Equilibrium
-from ltca.errors import DriveError
+from ltca.errors import DriveError, shortened
 from ltca.frozen_arrays import freeze
 from ltca.geometry.pairs import DISC_ROTATION
 
@@ -135,9 +135,12 @@ def check_positions(crank_angle: FloatArray) -> FloatArray:
         When there is none, or one is no finite number.
     """
     try:
-        angle = np.array(crank_angle, dtype=float, ndmin=1)
+        given = np.array(crank_angle, ndmin=1)
     except (TypeError, ValueError) as error:
-        raise DriveError([f"crank_angle = {crank_angle!r}: must be numbers in rad"]) from error
+        raise DriveError([f"crank_angle = {shortened(crank_angle)}: must be numbers in rad"]) from error
+    if given.size and given.dtype.kind not in "iuf":
+        raise DriveError([f"crank_angle = {shortened(crank_angle)}: must be numbers in rad"])
+    angle = given.astype(float)
     if angle.ndim != 1 or angle.size == 0:
         raise DriveError([f"crank_angle has the shape {angle.shape}: must be one row of at least one angle in rad"])
     if not np.all(np.isfinite(angle)):

@@ -50,16 +50,10 @@ class Search:
     pose : array, shape (positions, 4)
         Where to start; changed in place.
 
-    Attributes
-    ----------
-    history : list of array
-        Residuals of each iteration, N.
-    iterations : array of int, shape (positions,)
-        Newton iterations so far.
-    known : Start
-        Inner unknowns at the poses.
-    slipped : array of bool, shape (positions,)
-        Whether wheel or disc had turned by more than half a pin pitch.
+    Notes
+    -----
+    ``history`` are the residuals of each iteration, N, ``iterations`` the number for each position, ``known`` the inner
+    unknowns at the poses, and ``slipped`` tells where wheel or disc had turned by more than half a pin pitch.
     """
 
     def __init__(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -60,6 +61,14 @@ def test_front_door_names():
         ({"crank_angle": [[0.0]]}, "must be one row of at least one angle"),
         ({"crank_angle": [np.inf]}, "must be finite, in rad"),
         ({"crank_angle": ["a"]}, "must be numbers in rad"),
+        ({"crank_angle": ["0.1"]}, "must be numbers in rad"),
+        ({"crank_angle": [1j]}, "must be numbers in rad"),
+        ({"crank_angle": [True]}, "must be numbers in rad"),
+        ({"compliance": "fe", "hole_near_field": "no"}, "hole_near_field = 'no': must be true or false"),
+        (
+            {"compliance": "fe", "coefficients": 3},
+            "coefficients = 3: must be influence coefficients, a file or several",
+        ),
         ({"positions": 0}, "must be a whole number from 1"),
         ({"positions": 2.5}, "must be a whole number from 1"),
         ({"positions": 4, "crank_angle": [0.0]}, "give one of them"),
@@ -81,6 +90,16 @@ def test_names_become_engines():
     assert engine_named(method="direct") == ltca.HalfSpace(method="direct", contacts="grids")
     assert engine_named("fe", coefficients=coefficients) == ltca.PlaneStrain(coefficients=coefficients)
     assert not engine_named("hybrid", hole_near_field=False).hole_near_field
+
+
+def test_an_engine_keeps_the_files_it_was_given():
+    """A list that grew afterwards changed the engine, and a file given as text failed when it was read."""
+    files = [Path("one.nc")]
+    engine = ltca.Hybrid(coefficients=files)
+    files.append(Path("two.nc"))
+    assert engine.coefficients == (Path("one.nc"),)
+    assert ltca.Hybrid(coefficients="one.nc") == engine
+    assert hash(engine) == hash(ltca.Hybrid(coefficients=(Path("one.nc"),)))
 
 
 def test_dataset_is_one_case_of_the_runs_results(result):
