@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ltca.studies.study import Study
 
 DEFAULT_POSITIONS = 28
-BESIDE = ("batches",)
-"""Folders of a study that outlive an interrupted run."""
 COPIES = 3
 """Of all numbers of a study there are for a while batches, dataset and table."""
 MOST_REASONS = 5
@@ -101,7 +99,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     from ltca.errors import DriveError
     from ltca.output.processes import Terminated
     from ltca.output.resources import require_room
-    from ltca.output.run_folder import claimed_folder, figure_files
+    from ltca.output.run_folder import BATCHES, claimed_folder, figure_files
     from ltca.studies.run_study import sample_file, write_sample
 
     workers = workers_of(arguments)
@@ -109,7 +107,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
         if not 0 <= arguments.sample < study.design.samples:
             raise DriveError([f"--sample = {arguments.sample}: must be from 0 to {study.design.samples - 1}"])
         with claimed_folder(
-            folder.path, "study", writes=[sample_file(f"{arguments.sample:08d}")], adding=True, beside=BESIDE
+            folder.path, "study", writes=[sample_file(f"{arguments.sample:08d}")], adding=True, beside=(BATCHES,)
         ):
             print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
@@ -118,7 +116,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
     figures = [] if arguments.no_figures else figure_files("responses", "distributions", "sensitivity")
     writes = [*(path.name for path in folder.files), "summary.json", sample_file("[0-9]" * 8), *figures]
-    with claimed_folder(folder.path, "study", writes=writes, beside=BESIDE) as held:
+    with claimed_folder(folder.path, "study", writes=writes, beside=(BATCHES,)) as held:
         if arguments.resume:
             held.keep(*folder.files)
         try:

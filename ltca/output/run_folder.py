@@ -22,6 +22,8 @@ from ltca.output.files import PART, remove_parts_of, told_of_files, whole_file
 
 MANIFEST = "cyclo-manifest.json"
 LOCK = ".cyclo.lock"
+PLAN, BATCHES = "study.json", "batches"
+"""Of a study, the only run that goes on after an interruption: its plan, and the folder of what is finished."""
 FORMAT = 1
 FOLDERS = ("figures", "samples")
 """Folders of results in the folder of a run."""
@@ -187,6 +189,14 @@ def require_folder(path: Path) -> None:
         raise PlaceError(f"--out {path}: is a file, not a folder")
 
 
+def _require_no_interrupted_study(path: Path) -> None:
+    """Its plan would be removed as a file of the last run; batches without one are of no use to anybody."""
+    if (path / PLAN).exists() and any((path / BATCHES).glob("*.npz")):
+        raise PlaceError(
+            f"--out {path}: holds an interrupted study; continue it with --resume, or choose another --out"
+        )
+
+
 @contextmanager
 def claimed_folder(
     path: Path, command: str, *, writes: Iterable[str] = (), beside: tuple[str, ...] = (), adding: bool = False
@@ -214,7 +224,8 @@ def claimed_folder(
     Raises
     ------
     PlaceError
-        When another process holds it, it cannot be made or written to, or a file of the user is in the way.
+        When another process holds it, it cannot be made or written to, a file of the user is in the way, or it holds an
+        interrupted study and this is none.
     FaultError
         When the disc is full or fails.
     """
@@ -222,6 +233,8 @@ def claimed_folder(
     made = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
         with held(path / LOCK, f"--out {path}", command):
+            if BATCHES not in beside:
+                _require_no_interrupted_study(path)
             _remove_parts(path, beside)
             folder = RunFolder(path, command, beside, adding)
             folder.require_room_for(writes, f"--out {path}")

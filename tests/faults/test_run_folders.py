@@ -142,6 +142,21 @@ def test_a_file_of_the_user_is_never_overwritten(words, name, kind, tmp_path, ca
     assert [path for path in out.rglob("*") if path.is_file()] == ([place] if kind != "folder" else [])
 
 
+@pytest.mark.parametrize("words", [words for words, name in COMMANDS.values() if words[0] != "tolerance"], ids=str)
+def test_an_interrupted_study_is_not_made_useless_by_another_command(words, tmp_path, capsys):
+    """A run removed study.json as a file of the last run: batches were left that could never be resumed."""
+    out = tmp_path / "out"
+    put(out, study_json="{}")
+    (out / "batches").mkdir()
+    (out / "batches" / "00000000.npz").write_text("a batch")
+    before = names(out)
+    assert main([*words, "--out", str(out)]) == 2
+    assert capsys.readouterr().err == (
+        f"cyclo: error: --out {out}: holds an interrupted study; continue it with --resume, or choose another --out\n"
+    )
+    assert names(out) == before
+
+
 @pytest.mark.parametrize("name", ["figures", "summary.json"])
 def test_a_link_in_the_place_of_what_a_run_wrote_is_the_users(name, tmp_path, capsys):
     """Figures went through a link to a folder elsewhere, where no manifest lists them."""

@@ -20,6 +20,7 @@ from ltca.errors import CycloError, DamagedFileError
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import DiscStream, netcdf_stream
 from ltca.output.provenance import code_hash, code_version
+from ltca.output.run_folder import BATCHES, PLAN
 from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.batch_files import batch_files, read_batch, write_batch
@@ -62,11 +63,11 @@ class StudyFolder:
 
     @property
     def _batches(self) -> Path:
-        return self.path / "batches"
+        return self.path / BATCHES
 
     @property
     def _plan(self) -> Path:
-        return self.path / "study.json"
+        return self.path / PLAN
 
     def has_batches(self) -> bool:
         """Tell whether there are finished batches of an interrupted study."""
