@@ -148,6 +148,12 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     )
 
 
+def _is_whole(path: str) -> bool:
+    """Tell whether a field takes no fractions; elements of arrays all have a unit."""
+    kind = field_kinds().get(path)
+    return kind is not None and not kind.unit
+
+
 def _is_count(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
@@ -294,6 +300,11 @@ def _design(table: Any, factors: tuple[SweepFactor, ...], reader: _Reader) -> Sw
         if factors and not ranges and design.samples > MOST_SAMPLES:
             reader.problems.append(f"factors: make a grid of {design.samples} samples, must be at most {MOST_SAMPLES}")
         return design
+    reader.problems += [
+        f"factors.{path}: takes whole numbers, {kind} draws fractions between low and high; give an array of values, or levels"
+        for path in ranges
+        if _is_whole(path)
+    ]
     samples, seed = table.get("samples"), table.get("seed", 0)
     if samples is None:
         reader.problems.append(f"design.samples: is missing; {kind} needs a whole number of them")

@@ -105,6 +105,16 @@ def test_wrong_sweeps_are_refused(change, message):
         parse_sweep(tomllib.loads(f"{head}[factors]\n{change}\n"), "paper")
 
 
+@pytest.mark.parametrize("kind", ["sobol", "latin-hypercube"])
+def test_fractions_of_a_pin_are_refused_before_the_work(kind):
+    """A range of counts was drawn as fractions, which no drive takes: the samples failed one by one."""
+    head = f'design = {{ kind = "{kind}", samples = 4 }}\n[factors]\n"pin_shaft.number_of_pins" = '
+    with pytest.raises(DriveError, match=r"^study: factors\.pin_shaft\.number_of_pins: takes whole numbers, [^\n]*$"):
+        parse_sweep(tomllib.loads(f"{head}{{ low = 6, high = 10 }}"), "paper")
+    for whole in ("[6, 7, 8]", "{ low = 6, high = 10, levels = 5 }"):
+        assert parse_sweep(tomllib.loads(f"{head}{whole}"), "paper").samples_of(0) == (0, 4)
+
+
 def test_wrong_designs_are_refused():
     for text, message in (
         ('design = { kind = "star" }\nfactors.case = ["CS-1"]', "design.kind = .star"),
