@@ -11,7 +11,7 @@ import errno
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
@@ -30,6 +30,7 @@ FOLDERS = ("figures", "samples")
 LOCKLESS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)
 """What a file system answers that knows no locks: two runs are not kept apart there."""
 ELSEWHERE = "move it, or choose another place"
+CHANGED = f"was changed since the last run wrote it (it has not the checksum of {MANIFEST}): {ELSEWHERE}"
 NOT_OURS = f"is there and was not written by the last run ({MANIFEST} does not list it): {ELSEWHERE}"
 FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 """What is no fault of whoever chose the folder."""
@@ -48,12 +49,17 @@ class RunFolder:
         Folders in it whose files outlive a run: kept answers, finished batches.
     adding : bool
         Whether files of earlier runs stay.
+    renewing : tuple of str
+        Names of files of earlier runs that are replaced even where they were changed since.
     """
 
-    def __init__(self, path: Path, command: str, beside: tuple[str, ...], adding: bool) -> None:
+    def __init__(
+        self, path: Path, command: str, beside: tuple[str, ...], adding: bool, renewing: tuple[str, ...] = ()
+    ) -> None:
         self.path, self.command = path.resolve(), command
         self._beside = {self.path / name for name in beside}
-        self._old = _read_manifest(self.path)
+        self._old, self._replaced = _read_manifest(self.path, "files"), _read_manifest(self.path, "replaced")
+        self._renewing = renewing
         self._files = dict(self._old) if adding else {}
         self._kept: set[str] = set(self._old) if adding else set()
         self._cleared = adding
@@ -77,11 +83,14 @@ class RunFolder:
         name = self._name(path)
         if name is None:
             return
-        if name not in self._old and name not in self._files and os.path.lexists(path):
-            raise PlaceError(f"{path}: {NOT_OURS}")  # it came while we worked; those before are found at the start
+        there = os.path.lexists(path)
+        if there and not self._may_be_replaced(path):  # it came while we worked; those before are found at the start
+            raise PlaceError(f"{path}: {self._why_not(name)}")
+        # Who is killed before the file takes its place leaves the one before: that is not the user's either.
+        replaced = {name: _checksum(path)} if there else {}
         self._clear(name)
         self._files[name] = _checksum(part)
-        self._write(complete=False)
+        self._write(complete=False, replaced=replaced)
 
     def finish(self) -> None:
         """Say in the manifest that the run is complete."""
@@ -104,26 +113,39 @@ class RunFolder:
         PlaceError
             Naming the first of them.
         """
-        foreign = [
-            path.relative_to(self.path).as_posix()
+        there = {
+            path.relative_to(self.path).as_posix(): path
             for folder in (self.path, *(self.path / name for name in FOLDERS))
             for path in sorted(folder.glob("*"))
-            if not self._may_be_replaced(path)
-        ]
-        patterns = tuple(writes) if foreign else ()
+            if path.name not in (MANIFEST, LOCK)
+        }
+        patterns = tuple(writes) if there else ()
         patterns += tuple({pattern.rpartition("/")[0] for pattern in patterns} - {""})
-        found = [name for name in foreign if any(fnmatchcase(name, pattern) for pattern in patterns)]
+        met = [name for name in there if any(fnmatchcase(name, pattern) for pattern in patterns)]
+        found = [name for name in met if not self._may_be_replaced(there[name])]
         if found:
             more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-            raise PlaceError(f"{what}: {found[0]}{more} {NOT_OURS}")
+            raise PlaceError(f"{what}: {found[0]}{more} {self._why_not(found[0])}")
 
     def _may_be_replaced(self, path: Path) -> bool:
-        """Tell whether what lies in the folder is of the last run; links never are, for a run writes none."""
+        """Tell whether what lies in the folder is as a run wrote it; links never are, for a run writes none."""
         if path.is_symlink():
             return False
         if path.parent == self.path and path.name in FOLDERS:
             return path.is_dir()
-        return path.is_file() and self._name(path) in {None, *self._old}
+        name = self._name(path)
+        if name is None or not path.is_file():
+            return path.is_file()
+        known = self._checksums(name)
+        return bool(known) and (name in self._renewing or _checksum(path) in known)
+
+    def _checksums(self, name: str) -> set[str]:
+        """What runs wrote under a name: this one, the last one, and the one before where the last was killed."""
+        return {files[name] for files in (self._files, self._old, self._replaced) if name in files}
+
+    def _why_not(self, name: str) -> str:
+        changed = self._checksums(name) and (self.path / name).is_file() and not (self.path / name).is_symlink()
+        return CHANGED if changed else NOT_OURS
 
     def _name(self, path: Path) -> str | None:
         """Return the name of a file in the manifest; None for one that is kept beside the results or lies elsewhere."""
@@ -138,20 +160,22 @@ class RunFolder:
             return
         for old in sorted(set(self._old) - self._kept - {name}):
             place = self.path / old
-            if place.is_file() and not place.is_symlink() and _checksum(place) == self._old[old]:
+            if place.is_file() and not place.is_symlink() and _checksum(place) in self._checksums(old):
                 place.unlink()
                 if place.parent != self.path:
                     with suppress(OSError):  # the folder stays while anything is in it
                         place.parent.rmdir()
         self._cleared = True
 
-    def _write(self, *, complete: bool) -> None:
-        content = {
+    def _write(self, *, complete: bool, replaced: Mapping[str, str] | None = None) -> None:
+        content: dict[str, Any] = {
             "cyclo": FORMAT,
             "command": self.command,
             "complete": complete,
             "files": dict(sorted(self._files.items())),
         }
+        if replaced:
+            content["replaced"] = dict(replaced)
         with whole_file(self.path / MANIFEST) as part:
             part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
@@ -199,7 +223,13 @@ def _require_no_interrupted_study(path: Path) -> None:
 
 @contextmanager
 def claimed_folder(
-    path: Path, command: str, *, writes: Iterable[str] = (), beside: tuple[str, ...] = (), adding: bool = False
+    path: Path,
+    command: str,
+    *,
+    writes: Iterable[str] = (),
+    beside: tuple[str, ...] = (),
+    adding: bool = False,
+    renewing: tuple[str, ...] = (),
 ) -> Iterator[RunFolder]:
     """Hold a folder while a run writes to it.
 
@@ -215,6 +245,8 @@ def claimed_folder(
         Folders in it whose files outlive a run.
     adding : bool
         Whether the run adds to what is there instead of replacing it.
+    renewing : tuple of str
+        Names of files of earlier runs that are replaced even where they were changed since.
 
     Yields
     ------
@@ -236,7 +268,7 @@ def claimed_folder(
             if BATCHES not in beside:
                 _require_no_interrupted_study(path)
             _remove_parts(path, beside)
-            folder = RunFolder(path, command, beside, adding)
+            folder = RunFolder(path, command, beside, adding, renewing)
             folder.require_room_for(writes, f"--out {path}")
             with told_of_files(path, folder.place):
                 yield folder
@@ -349,12 +381,12 @@ def _holder(lock: Path) -> str:
     return text if text.isprintable() and text.startswith("cyclo ") else "another process"
 
 
-def _read_manifest(folder: Path) -> dict[str, str]:
-    """Return the files that the last run lists, by name with checksum; nothing where the manifest is damaged or not ours."""
+def _read_manifest(folder: Path, key: str) -> dict[str, str]:
+    """Return files that the last run lists, by name with checksum; nothing where the manifest is damaged or not ours."""
     try:
         content: Any = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-        files = dict(content["files"]) if content["cyclo"] == FORMAT else {}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        files = dict(content.get(key, {})) if content["cyclo"] == FORMAT else {}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
     return {name: checksum for name, checksum in files.items() if _ours(folder, name) and isinstance(checksum, str)}
 
@@ -370,8 +402,12 @@ def _ours(folder: Path, name: object) -> bool:
 
 
 def _checksum(path: Path) -> str:
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    """Return the checksum of a file; of one that cannot be read, which no manifest lists, it is empty."""
+    try:
+        with path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except PermissionError:
+        return ""
 
 
 def _remove_parts(folder: Path, beside: tuple[str, ...]) -> None:

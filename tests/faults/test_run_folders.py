@@ -171,10 +171,10 @@ def test_a_link_in_the_place_of_what_a_run_wrote_is_the_users(name, tmp_path, ca
 
 
 def test_what_a_run_does_not_write_hinders_none(tmp_path):
-    """Copies beside its files, changed files of its own, files of a run with another name."""
+    """Copies beside its files, changed files of another run, files of a run with another name."""
     out = tmp_path / "out"
     put(out, results_nc="old", optimum_toml="old")
-    for name in ("results.nc", "fig24_pin_load_mine.svg", "search.svg", "summary.json.bak"):
+    for name in ("optimum.toml", "fig24_pin_load_mine.svg", "search.svg", "summary.json.bak"):
         (out / name).write_text("changed by the user")
     with claimed_folder(out, "run", writes=["results.nc", *figure_files("fig24_pin_load")]):
         for name in ("results.nc", "figures/fig24_pin_load.svg"):
@@ -182,6 +182,58 @@ def test_what_a_run_does_not_write_hinders_none(tmp_path):
                 part.write_text("new")
     assert (out / "results.nc").read_text() == "new"
     assert (out / "fig24_pin_load_mine.svg").read_text() == "changed by the user"
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [entry for entry in COMMANDS.values() if "--sample" not in entry[0] and "--resume" not in entry[0]],
+)
+def test_what_the_user_changed_of_a_run_is_not_overwritten(words, name, tmp_path, capsys):
+    """A summary.json with notes in it was overwritten: the manifest was asked for its name, not for its checksum."""
+    out = tmp_path / "out"
+    place = out / name
+    with claimed_folder(out, "run"), whole_file(place) as part:
+        part.write_text("ours")
+    place.write_text("notes")
+    assert main([*words, "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f"--out {out}: {name} was changed since the last run wrote it" in said
+    assert place.read_text() == "notes"
+
+
+def test_a_file_of_ours_that_is_changed_while_a_run_works_is_not_overwritten(tmp_path):
+    put(tmp_path, a_txt="old")
+
+    def work():
+        with claimed_folder(tmp_path, "run", writes=["a.txt"]):
+            (tmp_path / "a.txt").write_text("notes")
+            with whole_file(tmp_path / "a.txt") as part:
+                part.write_text("ours")
+
+    with pytest.raises(PlaceError, match="was changed since the last run"):
+        work()
+    assert (tmp_path / "a.txt").read_text() == "notes"
+
+
+def test_a_run_killed_before_a_file_takes_its_place_leaves_none_of_the_users(tmp_path):
+    """The manifest lists the new file while the old one still lies there."""
+    put(tmp_path, a_txt="old")
+    before = tmp_path / "a.txt"
+
+    def end():
+        with claimed_folder(tmp_path, "run", writes=["a.txt"]) as folder:
+            part = tmp_path / "part"
+            part.write_text("new")
+            folder.place(before, part)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        end()
+    assert before.read_text() == "old"
+    with claimed_folder(tmp_path, "run", writes=["a.txt"]), whole_file(before) as part:
+        part.write_text("third")
+    assert before.read_text() == "third"
 
 
 def test_a_file_that_comes_while_a_run_works_is_not_overwritten(tmp_path):
