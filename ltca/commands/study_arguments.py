@@ -116,8 +116,12 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
     figures = [] if arguments.no_figures else figure_files("responses", "distributions", "sensitivity")
     writes = [*(path.name for path in folder.files), "summary.json", sample_file("[0-9]" * 8), *figures]
-    with claimed_folder(folder.path, "study", writes=writes, beside=(BATCHES,)) as held:
+    # Of its own files that are not as it wrote them a study tells what to do, or it was told to replace them.
+    renewing = tuple(path.name for path in folder.files) if arguments.resume or arguments.force else ()
+    with claimed_folder(folder.path, "study", writes=writes, beside=(BATCHES,), renewing=renewing) as held:
         if arguments.resume:
+            if not folder.has_batches():
+                held.require_whole(*folder.files[1:])
             held.keep(*folder.files)
         try:
             return _solve_and_write(study, folder, workers, arguments)

@@ -17,7 +17,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from ltca.errors import FaultError, PlaceError
+from ltca.errors import DamagedFileError, FaultError, PlaceError
 from ltca.output.files import PART, remove_parts_of, told_of_files, whole_file
 
 MANIFEST = "cyclo-manifest.json"
@@ -77,6 +77,27 @@ class RunFolder:
             if name in self._old:
                 self._kept.add(name)
                 self._files[name] = self._old[name]
+
+    def require_whole(self, *paths: Path) -> None:
+        """Refuse files of the last run that are damaged or missing: whoever goes on with them must find what it wrote.
+
+        Parameters
+        ----------
+        *paths : Path
+            Those that the last manifest does not list are not looked at.
+
+        Raises
+        ------
+        DamagedFileError
+            Naming the first of them.
+        """
+        for path in paths:
+            known = self._checksums(self._name(path) or "")
+            if known and (not path.is_file() or _checksum(path) not in known):
+                what = (
+                    f"has not the checksum of {MANIFEST}: it was damaged or changed" if path.is_file() else "is missing"
+                )
+                raise DamagedFileError(f"{path}: {what}; solve it again with --force, or choose another --out")
 
     def place(self, path: Path, part: Path) -> None:
         """Enter a finished file into the manifest just before it takes its place."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
-from ltca.studies.execution.storage import CHUNK
+from ltca.studies.execution.storage import CHUNK, opened_results
 from ltca.studies.sensitivity import Regression, SobolIndices, grouped, regress, sobol_indices
 from ltca.studies.study import Study
 
@@ -47,9 +47,7 @@ class QuantitySummary:
 
 def read_quantity(path: Path, name: str) -> FloatArray:
     """Return one quantity of all samples, not a number where they failed."""
-    import h5netcdf
-
-    with h5netcdf.File(path, "r") as file:
+    with opened_results(path) as file:
         return np.asarray(file.variables[name][...])
 
 
@@ -71,9 +69,7 @@ def summarise_quantity(values: FloatArray) -> QuantitySummary | None:
 
 
 def _chunks(path: Path, quantities: Sequence[str]) -> Iterator[tuple[FloatArray, FloatArray]]:
-    import h5netcdf
-
-    with h5netcdf.File(path, "r") as file:
+    with opened_results(path) as file:
         samples = file.dimensions["sample"].size
         for first in range(0, samples, CHUNK):
             rows = slice(first, min(first + CHUNK, samples))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import pickle
+import shutil
 import zipfile
 from dataclasses import replace
 
@@ -18,9 +19,11 @@ from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers
 from ltca.studies.run_study import run_study
 from ltca.studies.study import run_batch
+from ltca.studies.study_results import read_quantity
 from ltca.studies.tolerance_study import tolerance_study
 
 RAN = []
+FINISHED = ["tolerance", "paper", "--samples", "2", "--positions", "2", "--quantities", "max_pin_load", "--no-figures"]
 
 
 class Trap:
@@ -180,6 +183,62 @@ def test_another_study_replaces_a_finished_one_only_when_told(study, other, inte
     interrupted.store(study, solved["study"][0])
     assert interrupted.prepare(other, resume=False, replace=True) == list(range(other.batches))
     assert not interrupted.has_batches()
+
+
+def flip(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+SPOILT = {
+    "one byte": flip,
+    "cut off": lambda path: path.write_bytes(path.read_bytes()[:-2000]),
+    "empty": lambda path: path.write_bytes(b""),
+    "missing": lambda path: path.unlink(),
+}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    out = tmp_path_factory.mktemp("finished") / "out"
+    assert main([*FINISHED, "--out", str(out)]) == 0
+    return out
+
+
+@pytest.mark.parametrize("name", ["results.nc", "results.parquet"])
+@pytest.mark.parametrize("spoil", SPOILT.values(), ids=SPOILT)
+def test_a_finished_study_that_is_damaged_is_not_believed(spoil, name, finished, tmp_path, capsys):
+    """One byte of results.nc was told as a result, half a file as an unforeseen fault, a missing table not at all."""
+    out = shutil.copytree(finished, tmp_path / "out")
+    spoil(out / name)
+    capsys.readouterr()
+    assert main([*FINISHED, "--out", str(out), "--resume"]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert f"{out / name}: " in said.err
+    assert "solve it again with --force" in said.err
+
+
+@pytest.mark.parametrize("name", ["study.json", "results.nc"])
+def test_a_damaged_study_is_solved_again_when_told_to(name, finished, tmp_path):
+    out = shutil.copytree(finished, tmp_path / "out")
+    (out / name).write_bytes(b"{")
+    assert main([*FINISHED, "--out", str(out), "--force"]) == 0
+    for file in ("study.json", "results.nc", "results.parquet", "summary.json"):
+        assert (out / file).read_bytes() == (finished / file).read_bytes()
+
+
+def test_results_that_cannot_be_read_are_told_in_a_line(finished, tmp_path):
+    """Without a manifest, as in Python, there is no checksum to find it by."""
+    folder = StudyFolder(path=shutil.copytree(finished, tmp_path / "out"))
+    folder.results.write_bytes(folder.results.read_bytes()[:-2000])
+    for read in (lambda: read_quantity(folder.results, "max_pin_load"), lambda: folder.failures(None)):
+        with pytest.raises(
+            DamagedFileError, match=r"results\.nc: cannot be read as the results of a study: [^\n]*--force"
+        ):
+            read()
 
 
 def test_a_finished_study_can_be_resumed_again_and_again(tmp_path, capsys):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.fields import field_kinds
-from ltca.errors import CycloError, DamagedFileError
+from ltca.errors import CycloError, DamagedFileError, one_line
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import DiscStream, netcdf_stream
 from ltca.output.provenance import code_hash, code_version
 from ltca.output.run_folder import BATCHES, PLAN
 from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
-from ltca.studies.execution.batch_files import batch_files, read_batch, write_batch
+from ltca.studies.execution.batch_files import DAMAGE, batch_files, read_batch, write_batch
 from ltca.studies.quantities import QUANTITIES
 from ltca.studies.study import BatchResult, Study
 
@@ -32,6 +32,36 @@ FloatArray = NDArray[np.float64]
 WHAT_DIFFERS = "drive, tolerances, samples, positions, seed, quantities, compliance, coefficients or the code differ"
 CHUNK = 4096
 """Samples of one chunk of the final files."""
+
+
+@contextmanager
+def opened_results(path: Path) -> Iterator[Any]:
+    """Open the dataset of a finished study.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Yields
+    ------
+    h5netcdf.File
+        For reading.
+
+    Raises
+    ------
+    DamagedFileError
+        When it, or what is asked of it while the block runs, cannot be read.
+    """
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            yield file
+    except (*DAMAGE, AttributeError, IndexError) as error:
+        raise DamagedFileError(
+            f"{path}: cannot be read as the results of a study: {one_line(error)}; solve it again with --force"
+        ) from error
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +130,7 @@ class StudyFolder:
             When the folder holds another or an unfinished study and that was not expected.
         """
         fingerprint = study.fingerprint()
-        held = self._held()
+        held = None if replace else self._held()
         unfinished = self.has_batches()
         if resume:
             if held is None:
@@ -144,7 +174,9 @@ class StudyFolder:
         except FileNotFoundError:
             return None
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-            raise DamagedFileError(f"{self._plan}: cannot be read as the plan of a study: {error}") from error
+            raise DamagedFileError(
+                f"{self._plan}: cannot be read as the plan of a study: {error}; start over with --force"
+            ) from error
 
     def _done(self, study: Study, told: Callable[[str], None]) -> set[int]:
         """Finished batches of this study; what is damaged or of another is set aside and solved again."""
@@ -186,9 +218,7 @@ class StudyFolder:
 
     def failures(self, study: Study) -> list[tuple[int, str]]:
         """Return the failed samples of the finished dataset and why."""
-        import h5netcdf
-
-        with h5netcdf.File(self.results, "r") as file:
+        with opened_results(self.results) as file:
             if "failed_sample" not in file.variables:
                 return []
             numbers = file.variables["failed_sample"][...].tolist()
