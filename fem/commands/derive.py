@@ -84,10 +84,12 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.drive is None:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
     from ltca.output.run_folder import claimed_file
+    from ltca.reading.coefficient_file import require_replaceable
 
     name, case, drive = chosen_drive(arguments)
     out = arguments.out or default_folder(name, "derive") / COEFFICIENTS
     with claimed_file(out, "derive"):
+        require_replaceable(out)
         return _derive(name, case, drive, arguments, out)
 
 

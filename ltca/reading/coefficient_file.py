@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ltca.errors import DamagedFileError, one_line
+from ltca.errors import DamagedFileError, PlaceError, one_line
 from ltca.output.files import whole_file
 from ltca.output.netcdf import write_netcdf
 from ltca.output.resources import available_memory
 from ltca.reading.coefficient_laws import STATED_QUALITY, check_coefficients
-from ltca.reading.coefficient_schema import require_schema
+from ltca.reading.coefficient_schema import NEEDED, require_schema
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,6 +109,37 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
             raise DamagedFileError(f"{path}: breaks laws of influence coefficients (cyclo derive --check): {said}")
         _LAWFUL.add(checksum)
     return dataset
+
+
+def require_replaceable(path: Path) -> None:
+    """Refuse to derive into the place of a file that no derivation wrote.
+
+    Parameters
+    ----------
+    path : Path
+        ``--out``.
+
+    Raises
+    ------
+    PlaceError
+        When there is something else than coefficients with the checksum that `write_coefficients` gives them: notes, results
+        of a run, a file of another code, a link.
+    """
+    if path.is_symlink() or (path.exists() and not _is_written_by_us(path)):
+        raise PlaceError(
+            f"--out {path}: is there and is no coefficient file that cyclo derive wrote: move it, or choose another place"
+        )
+
+
+def _is_written_by_us(path: Path) -> bool:
+    """Look at names only, no number is read."""
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            return CHECKSUM in file.attrs and all(name in file for name in NEEDED)
+    except DAMAGE:
+        return False
 
 
 def checksum_of(dataset: xr.Dataset) -> str:

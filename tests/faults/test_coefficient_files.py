@@ -7,6 +7,7 @@ import shutil
 import numpy as np
 import pytest
 
+from ltca.commands.program import main
 from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
 from ltca.compliance.coefficients import load_coefficients
@@ -270,3 +271,36 @@ def test_the_checksum_is_of_the_content_not_of_its_storage(drive, sound, tmp_pat
     assert read_coefficients(packed).attrs[CHECKSUM] == read_coefficients(sound).attrs[CHECKSUM]
     assert checksum_of(dataset.assign_attrs(plane="stress")) != checksum_of(dataset)
     assert checksum_of(dataset.drop_vars("pin_approach")) != checksum_of(dataset)
+
+
+FOREIGN = {
+    "notes": lambda dataset, path: path.write_text("notes"),
+    "empty": lambda dataset, path: path.touch(),
+    "results of a run": lambda dataset, path: write_netcdf(dataset[["station_x"]].assign_attrs({CHECKSUM: "a"}), path),
+    "another code's": write_netcdf,
+    "link": lambda dataset, path: path.symlink_to(write_coefficients(dataset, path.with_name("elsewhere.nc"))),
+}
+
+
+@pytest.mark.parametrize("make", FOREIGN.values(), ids=FOREIGN)
+def test_a_file_that_is_no_derivation_is_not_overwritten(make, drive, tmp_path, monkeypatch, capsys):
+    """`cyclo derive --out notes.txt` put coefficients in the place of the notes."""
+    monkeypatch.setattr("fem.coefficients.dataset.derive_coefficients", lambda *args, **options: pytest.fail("derived"))
+    out = tmp_path / "notes.txt"
+    make(closed_form(drive), out)
+    before = out.read_bytes()
+    assert main(["derive", "paper", "--out", str(out)]) == 2
+    assert capsys.readouterr().err == (
+        f"cyclo: error: --out {out}: is there and is no coefficient file that cyclo derive wrote: move it, or choose another "
+        "place\n"
+    )
+    assert out.read_bytes() == before
+
+
+def test_a_derivation_takes_the_place_of_another(drive, sound, tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        "fem.commands.derive._derive", lambda *given: write_coefficients(closed_form(drive), given[-1]) and 0
+    )
+    out = shutil.copy(sound, tmp_path / "c.nc")
+    for _ in range(2):
+        assert main(["derive", "paper", "--out", str(out)]) == 0
