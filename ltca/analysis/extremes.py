@@ -118,41 +118,53 @@ def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
     2
     """
     teeth, count = drive.disc.number_of_teeth, crank_angle.size
-    if is_full_turn(crank_angle):
-        return Sampling(
-            positions=count, positions_per_mesh_period=count / teeth, distinct_mesh_phases=count // gcd(count, teeth)
-        )
-    # A phase is a place on a circle; 1e-9 rad of crank angle are the round-off of many turns.
-    phases = np.sort(np.mod(crank_angle * teeth / TURN, 1.0))
-    apart = np.diff(phases, append=phases[0] + 1.0) > 1e-9 * teeth
-    passages = float(np.ptp(crank_angle)) * teeth / TURN
+    whole = is_full_turn(crank_angle)
+    passages = float(teeth) if whole else max(float(np.ptp(crank_angle)) * teeth / TURN, 1.0)
     return Sampling(
         positions=count,
-        positions_per_mesh_period=count / max(passages, 1.0),
-        distinct_mesh_phases=max(1, int(np.count_nonzero(apart))),
+        positions_per_mesh_period=count / passages,
+        distinct_mesh_phases=_distinct_phases(crank_angle, teeth),
     )
 
 
-def sampling_warning(drive: Drive, crank_angle: FloatArray) -> str | None:
+def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = True) -> str | None:
     """Return what to say of crank angles that see too few phases of the mesh; None where they see enough.
 
     Parameters
     ----------
     drive : Drive
-        For its teeth.
+        For its teeth and holes.
     crank_angle : array, shape (positions,)
         φ_C, rad; nothing is said of a single one, which has neither mean nor range.
+    refined : bool
+        Whether extremes are refined between them. Where they are not, the angles have to see twice as many phases, of
+        the holes, too.
     """
     found = sampling(drive, crank_angle)
-    if found.positions == 1 or found.distinct_mesh_phases >= RESOLVED:
+    teeth, holes = drive.disc.number_of_teeth, drive.pin_shaft.number_of_pins
+    needed = RESOLVED if refined else 2 * RESOLVED
+    seen, what = found.distinct_mesh_phases, f"mesh of {teeth} teeth"
+    if not refined and seen >= needed:
+        seen, what = _distinct_phases(crank_angle, holes), f"{holes} holes"
+    if found.positions == 1 or seen >= needed:
         return None
-    teeth = drive.disc.number_of_teeth
-    enough = next(count for count in range(2 * RESOLVED, 2 * RESOLVED + teeth) if gcd(count, teeth) == 1)
-    phases = f"{found.distinct_mesh_phases} phase{'s' if found.distinct_mesh_phases > 1 else ''}"
-    return (
-        f"{found.positions} positions see {phases} of the mesh of {teeth} teeth: values over them alone say little of "
-        f"the turn; take at least {enough} over it, a number that shares no factor with {teeth}"
+    enough = next(
+        count for count in range(2 * RESOLVED, 2 * RESOLVED + 2 * teeth * holes) if gcd(count, teeth * holes) == 1
     )
+    return (
+        f"{found.positions} positions see {seen} phase{'s' if seen > 1 else ''} of the {what}: values over them alone say "
+        f"little of the turn; take at least {enough} over it, a number that shares no factor with {teeth} and {holes}"
+    )
+
+
+def _distinct_phases(crank_angle: FloatArray, periods: int) -> int:
+    """How many different places in a period of which there are some in a turn."""
+    if is_full_turn(crank_angle):
+        return crank_angle.size // gcd(crank_angle.size, periods)
+    # A phase is a place on a circle; 1e-9 rad of crank angle are the round-off of many turns.
+    phases = np.sort(np.mod(crank_angle * periods / TURN, 1.0))
+    apart = np.diff(phases, append=phases[0] + 1.0) > 1e-9 * periods
+    return max(1, int(np.count_nonzero(apart)))
 
 
 def refine_extremes(analysis: LoadedAnalysis) -> Extremes:

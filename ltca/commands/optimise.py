@@ -139,7 +139,7 @@ def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Names
     from ltca.studies.optimiser import most_candidates, varies_shape
     from ltca.studies.shapes import SECONDS, find_beforehand, shapes_of
 
-    warning = sampling_warning(problem.drive, position_angles(arguments.positions))
+    warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
     if not engine.batches and varies_shape(problem):

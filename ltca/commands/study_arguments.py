@@ -137,7 +137,7 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
     from ltca.output.progress import progress
     from ltca.studies.run_study import run_study
 
-    warning = sampling_warning(study.cases[0][1], position_angles(study.positions))
+    warning = sampling_warning(study.cases[0][1], position_angles(study.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
     with progress("samples", study.design.samples) as bar:

@@ -205,6 +205,17 @@ def test_phases_of_the_mesh(paper_cases, positions):
         assert sampling_warning(drive, position_angles(enough)) is None
 
 
+def test_studies_are_warned_of_holes_too(paper_cases):
+    """Their values are not refined: 28 positions of CS-1 see 28 phases of the teeth, 7 of the holes, and read 5.0 of 5.4″."""
+    drive = paper_cases["CS-1"]
+    assert sampling_warning(drive, position_angles(28)) is None
+    for positions, told in ((9, "9 phases of the mesh of 13 teeth"), (28, "7 phases of the 8 holes")):
+        warning = sampling_warning(drive, position_angles(positions), refined=False)
+        assert told in warning
+        enough = int(warning.split("take at least ")[1].split()[0])
+        assert sampling_warning(drive, position_angles(enough), refined=False) is None
+
+
 def test_one_angle_warns_of_nothing(paper_cases):
     assert sampling_warning(paper_cases["CS-1"], np.array([0.3])) is None
     assert sampling(paper_cases["CS-1"], np.array([0.3])).distinct_mesh_phases == 1
