@@ -19,6 +19,9 @@ from ltca.errors import CycloError, FaultError
 from ltca.output.process_pools import become_worker, process_pool
 from ltca.studies.study import BatchResult, Study, run_batch
 
+ANSWERING = 10.0
+"""Time, s, in which a scheduler has to answer."""
+
 LOSSES = 3
 """Times the local pool is built anew after a worker has died before the study gives up."""
 
@@ -96,7 +99,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     for name in ("distributed", "distributed.client", "distributed.core", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # some have levels of their own
     try:
-        client: Any = cast(Any, Client)(address, timeout="10s", set_as_default=False)
+        client: Any = cast(Any, Client)(address, timeout=ANSWERING, set_as_default=False)
     except (OSError, ValueError) as error:
         raise CycloError(f"--scheduler = {address}: no scheduler answers there: {error}") from error
     try:

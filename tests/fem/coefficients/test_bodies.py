@@ -275,7 +275,7 @@ def test_halving_divides_the_error():
 
 
 @pytest.mark.slow
-def test_mesh_halved(disc_shape, stations, disc):
+def test_mesh_halved(disc_shape, stations):
     """The issue's bound: 0.3 % of the largest entry once rigid motions are projected out; measured 0.05 %."""
     default, fine = (derive_disc(disc_shape, stations, STEEL, thickness=THICKNESS, size=size) for size in (1.0, 0.5))
     reference = project_rigid_motions(fine.approach, fine.resultants)

@@ -136,10 +136,9 @@ def test_stagnation_is_an_error_with_its_history(models):
     assert len(caught.value.history) == 100
 
 
-@pytest.mark.parametrize("seed", [pytest.param(10, marks=pytest.mark.slow), 107])
-def test_a_light_torque_is_followed_down_from_a_heavier_one(seed):
+def test_a_light_torque_is_followed_down_from_a_heavier_one():
     """Started at rest the disc wanders between contacts that take turns: it was "no equilibrium" of a sound drive."""
-    drive, angle = random_drive(np.random.default_rng(seed).random(COORDINATES))
+    drive, angle = random_drive(np.random.default_rng(107).random(COORDINATES))
     model, angles = HalfSpaceCompliance.of_drive(drive), angle + np.linspace(0.0, 6.28, 7)
     moment = 0.003 * drive.wheel_moment()
     found = solve_equilibrium(model, angles, moment)

@@ -16,6 +16,7 @@ import pytest
 from ltca.errors import CycloError
 from ltca.output import process_pools
 from ltca.reading.drive_file import load_drive
+from ltca.studies.execution import workers as workers_module
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.run_study import run_study
@@ -199,7 +200,8 @@ def test_dask_cluster_of_processes_survives_a_killed_worker(study, straight, tmp
 
 
 @pytest.mark.slow
-def test_scheduler_that_does_not_answer_is_told(study, tmp_path):
+def test_scheduler_that_does_not_answer_is_told(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(workers_module, "ANSWERING", 1.0)
     pytest.importorskip("distributed", reason="dask.distributed (extra 'cluster') is not installed")
     with pytest.raises(CycloError, match="no scheduler answers there"):
         run_study(study, StudyFolder(path=tmp_path), Workers(scheduler="tcp://127.0.0.1:9"))
