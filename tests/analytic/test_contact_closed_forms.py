@@ -78,6 +78,7 @@ def two_cylinders(elements, ratio, first, second, radii=(8.0, 6.5), load=1500.0,
     return contact, width, float(hertz_peak_pressure(load / thickness, effective, modulus))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [1.0, 0.7, 1.3])
 @pytest.mark.parametrize("second", [STEEL, Material(youngs_modulus=70_000.0, poisson_ratio=0.33)])
 def test_cylinder_on_cylinder(ratio, second):

@@ -16,6 +16,7 @@ def solutions(slenderness, counts):
     return [solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=c, half_width=half_width) for c in counts]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slenderness", [3.0, 30.0, 300.0])
 def test_energy_converges_with_the_order_the_table_assumes(slenderness):
     coarse, middle, fine = (s.energy for s in solutions(slenderness, (8, 16, 32)))
@@ -24,6 +25,7 @@ def test_energy_converges_with_the_order_the_table_assumes(slenderness):
     assert 2.4 < order < 3.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slenderness", [3.0, 30.0, 300.0])
 def test_energy_rises_to_its_limit_from_below(slenderness):
     """The discrete energy is the maximum over fewer pressures: it must not exceed the limit."""

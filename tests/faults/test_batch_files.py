@@ -126,6 +126,7 @@ DAMAGES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_damaged_batches_are_set_aside(damage, study, interrupted, reference):
     path = sorted(interrupted.path.glob("batches/*.npz"))[0]
@@ -241,6 +242,7 @@ def test_results_that_cannot_be_read_are_told_in_a_line(finished, tmp_path):
             read()
 
 
+@pytest.mark.slow
 def test_a_finished_study_can_be_resumed_again_and_again(tmp_path, capsys):
     """The first --resume took the plan away as a file of the last run: then the folder held 'no study'."""
     words = ["tolerance", "paper", "--samples", "2", "--positions", "2", "--no-figures", "--out", str(tmp_path)]

@@ -162,6 +162,7 @@ def of_rings(drive):
     return dataset
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "told"),
     {

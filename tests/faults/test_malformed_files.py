@@ -54,6 +54,7 @@ def test_the_base_of_the_generator_is_sound():
     assert list(parse_drive(BASE).cases) == ["nominal"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("override", "counted"),
     [

@@ -101,6 +101,7 @@ def test_a_signal_while_an_object_is_removed_is_heard(number, kind):
     assert time.monotonic() - began < 3.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["spawn", "forkserver"])
 def test_workers_end_with_their_parent(method, tmp_path):
     script = tmp_path / "pool.py"

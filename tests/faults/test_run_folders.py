@@ -81,6 +81,7 @@ def test_one_process_does_not_hold_a_folder_twice(tmp_path):
     assert names(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path, monkeypatch):
     from ltca.figures import run_figures
 

@@ -214,6 +214,7 @@ def test_plane_stress_is_softer(disc_shape, stations, disc):
     assert np.all((ratio > 1.08) & (ratio < 1.0 / 0.91 + 1e-3))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("state", ["strain", "stress"])
 @pytest.mark.parametrize("poisson_ratio", [0.0, 0.3, 0.45])
 def test_roller_is_johnsons_compressed_cylinder(poisson_ratio, state):

@@ -227,6 +227,7 @@ def test_the_same_input_gives_the_same_mesh_in_another_process(
     assert hashlib.sha256(mesh.doflocs.tobytes() + mesh.t.tobytes()).hexdigest() == child.stdout.strip()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_drive_meshes_are_good_and_of_the_estimated_size(drive: Drive, shapes: DriveShapes, angle: float) -> None:
     contacts = expect_contacts(drive, angle)

@@ -72,6 +72,7 @@ def test_grid_halved():
     assert pressures_apart(fine.pressures(second), coarse.pressures(first)) < 3e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_paper_agrees_on_the_same_law(case):
     """The issue asks for 0.01 %; both end at the same residual, so they agree to 1e-8."""

@@ -71,6 +71,7 @@ def test_figures_of_the_paper_as_svg_and_png(quick_run):
         assert unit in (quick_run / "figures" / f"{stem}.svg").read_text()
 
 
+@pytest.mark.slow
 def test_torque_with_a_unit_is_that_torque(tmp_path):
     for name, torque in (("a", "188.65 N m"), ("b", "188650")):
         arguments = ["run", "paper", "--case", "CS-1", "--positions", "3", "--torque", torque, "--no-figures"]
@@ -247,7 +248,7 @@ def test_arguments_and_drive_are_read_before_what_takes_seconds_to_import(tmp_pa
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("words", [["--help"], ["--version"], ["show", "paper"]])
+@pytest.mark.parametrize("words", [["--help"], ["--version"], pytest.param(["show", "paper"], marks=pytest.mark.slow)])
 def test_an_output_that_takes_nothing_is_named(words, unbuffered, tmp_path):
     """`cyclo --help` ended with exit status 0, `cyclo run` spoke of 'a file'."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": unbuffered}

@@ -49,6 +49,7 @@ def poses_about(near, count=3, size=1e-3):
     return [near + size * rng.normal(size=near.shape) / np.array([1.0, 1.0, 52.0, 56.0]) for _ in range(count)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["CS-4", "profiled"])
 def test_loads_follow_from_the_pose_alone(paper_cases, profiled, balanced, name):
     """Loads at one pose differed by 0.26 N of 3,500 with what had been solved before."""

@@ -205,6 +205,7 @@ def test_a_file_without_stresses_gives_loads_and_no_numbers(drive, tmp_path):
     assert profiles_of(answer) == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [

@@ -125,6 +125,7 @@ def test_a_lopsided_separation_carries_more_on_the_flatter_side():
     assert np.sum(x * pressure) > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "approach"), [(1.0, 1e-3), (2.0, 4e-3), (5.0, 1e-2), (40.0, 3e-3)])
 def test_halving_the_grid(radius, approach):
     coarse = cylinder(approach, radius, cells=16)

@@ -136,6 +136,7 @@ def test_stagnation_is_an_error_with_its_history(models):
     assert len(caught.value.history) == 100
 
 
+@pytest.mark.slow
 def test_a_light_torque_is_followed_down_from_a_heavier_one():
     """Started at rest the disc wanders between contacts that take turns: it was "no equilibrium" of a sound drive."""
     drive, angle = random_drive(np.random.default_rng(107).random(COORDINATES))

@@ -79,6 +79,7 @@ def test_load_and_stiffness_are_exact_derivatives(profile):
     assert np.all(stiffness > 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("profile", "approach"),
     [

@@ -27,6 +27,7 @@ def keep(rows, passed):
     return tuple(row for row in rows if row.passed is passed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("status", [0, 1])
 def test_a_failed_row_makes_the_exit_status_one(status, small_study, tmp_path, monkeypatch, capsys):
     rows = keep(small_study.rows, True)

@@ -79,6 +79,7 @@ def interrupted_pool(half):
         raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("half", ["nothing", "batch", "result"])
 def test_a_pool_is_left_with_half_of_something_in_its_pipes(half, monkeypatch):
     """It waited for ever for the other half; closing the pipes beforehand was a race for who closes them."""
