@@ -24,6 +24,8 @@ SOFT = 1000.0
 """Young's modulus below that of the softest rigid plastics (polyethylene, some 1000 MPa), MPa."""
 DIAMOND, STIFF = 1.2e6, 2e6
 """Young's modulus of diamond, and one that nothing has, MPa."""
+METALS = 40e3, 700e3
+"""Young's moduli of magnesium and of cemented carbide, MPa."""
 PARTS = tuple(item.name for item in fields(Materials))
 BORNE = 10_000.0
 """Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
@@ -137,7 +139,10 @@ def names_unit_mistakes(solve: Callable[P, R]) -> Callable[P, R]:
 
 
 def stiffness_warning(drive: Drive) -> str | None:
-    """Return a warning where a modulus is beyond that of any material, None elsewhere: pascals are likely.
+    """Return a warning where a modulus is likely in pascals or gigapascals, None elsewhere.
+
+    Beyond that of any material pascals are likely; what would be a metal in GPa, beside a part a hundred times stiffer,
+    is likely one: a soft shaft pin alone lets every solution succeed.
 
     Parameters
     ----------
@@ -150,5 +155,13 @@ def stiffness_warning(drive: Drive) -> str | None:
             return (
                 f"materials.{part}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
                 "number is MPa, not Pa"
+            )
+    stiffest = max(getattr(drive.materials, part).youngs_modulus for part in PARTS)
+    for part in PARTS:
+        modulus = getattr(drive.materials, part).youngs_modulus
+        if METALS[0] <= 1000.0 * modulus <= METALS[1] and stiffest >= 100.0 * modulus:
+            return (
+                f"materials.{part}.youngs_modulus = {modulus:g} MPa, beside {stiffest:g} MPa of another part; a plain number "
+                f'is MPa: write "{modulus:g} GPa" for a metal'
             )
     return None

@@ -65,3 +65,13 @@ def test_what_is_in_order_is_not_explained(vary):
 def test_pascals_are_warned_about(vary):
     assert stiffness_warning(vary()) is None
     assert "stiffer than diamond" in stiffness_warning(vary(materials={"disc": {"youngs_modulus": 206e9}}))
+
+
+def test_one_part_in_gigapascals_is_warned_of(vary):
+    """E = 206 of the shaft pins alone passed: everything balances, their pressure reads a twentieth."""
+    told = stiffness_warning(vary(materials={"shaft_pin": {"youngs_modulus": 206.0}}))
+    assert "materials.shaft_pin.youngs_modulus = 206 MPa, beside 206000 MPa of another part" in told
+    assert '"206 GPa"' in told
+    # a disc of plastic, a rubber drive, one part of TPU: no metal in GPa, or nothing beside it
+    for materials in ({"disc": {"youngs_modulus": 2600.0}}, all_of(206.0), {"disc": {"youngs_modulus": 30.0}}):
+        assert stiffness_warning(vary(materials=materials)) is None
