@@ -100,11 +100,11 @@ def turn_to_contact(
         if np.all(settled | ~reachable):
             break
     # A pin whose normal points at the axis hardly moves along it: such pins were left out above.
-    others = np.max(geometry.flank(angle, pose).approach, axis=1) > TOUCHING * _size(geometry)
+    others = np.max(motion.approach, axis=1) > TOUCHING * _size(geometry)  # where it settled, at that pose
     unsure = np.nonzero(~settled | others)[0]
     if unsure.size:
         part = geometry.take(unsure)
-        bottom, pressed, _ = _least_interference(part, angle[unsure], coordinate)
+        bottom, pressed = _least_interference(part, angle[unsure], coordinate)
         rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
         free = pressed <= TOUCHING * _size(geometry)
         rotation = np.where(free, rotation, bottom)
@@ -131,7 +131,7 @@ def interference(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArr
         Zero where there is backlash.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    _, pressed, _ = _least_interference(geometry, angle, WHEEL_ANGLE)
+    _, pressed = _least_interference(geometry, angle, WHEEL_ANGLE)
     return np.where(pressed > TOUCHING * _size(geometry), pressed, 0.0)
 
 
@@ -154,10 +154,8 @@ def _largest_approach(
     return motion.approach[rows, pin], motion.gradient[rows, pin, coordinate], pin
 
 
-def _least_interference(
-    geometry: ContactGeometry, angle: FloatArray, coordinate: int
-) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
-    """Rotation at which the largest approach is no interference, or the least one, that approach, and its pin.
+def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate: int) -> tuple[FloatArray, FloatArray]:
+    """Rotation at which the largest approach is no interference, or the least one, and that approach.
 
     The largest approach is a valley over the rotation: its slope says on which side of a place the bottom lies. With
     unmodified flanks that is where all pins touch; with equal offsets it is just below zero.
@@ -165,15 +163,15 @@ def _least_interference(
     quarter, touching = _quarter(geometry), TOUCHING * _size(geometry)
     bottom = np.zeros(angle.size)
     low, high = np.full(angle.size, -quarter), np.full(angle.size, quarter)
-    largest, slope, pin = _largest_approach(geometry, angle, coordinate, bottom)
+    largest, slope, _ = _largest_approach(geometry, angle, coordinate, bottom)
     for _ in range(BISECTIONS):
         free = largest <= touching
         if np.all(free):
             break
         low, high = np.where(slope < 0.0, bottom, low), np.where(slope < 0.0, high, bottom)
         bottom = np.where(free, bottom, 0.5 * (low + high))
-        largest, slope, pin = _largest_approach(geometry, angle, coordinate, bottom)
-    return bottom, largest, pin
+        largest, slope, _ = _largest_approach(geometry, angle, coordinate, bottom)
+    return bottom, largest
 
 
 def _farthest_free(

@@ -317,8 +317,7 @@ class PotentialEnergy:
 
         # Golden section: beside a plastic disc the steel race takes less than a hundredth of the approach.
         low, high = np.zeros(whole.shape), np.ones(whole.shape)
-        left, right = 1.0 - GOLDEN, np.broadcast_to(GOLDEN, whole.shape)
-        left = np.broadcast_to(left, whole.shape)
+        left, right = np.full(whole.shape, 1.0 - GOLDEN), np.full(whole.shape, GOLDEN)
         at_left, at_right = energy(left), energy(right)
         for _ in range(SECTIONS):
             falls = at_left > at_right  # to the right

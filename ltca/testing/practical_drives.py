@@ -22,7 +22,7 @@ MATERIALS = {
     "plastic": (2.6e3, 0.38, 50.0),
 }
 """Young's modulus, MPa, Poisson's ratio and flank pressure at the rated torque, MPa, of the disc; its pins are steel."""
-TOOTH_NUMBERS = (
+PIN_NUMBERS = (
     6,
     8,
     10,
@@ -100,7 +100,7 @@ def _step(value: float) -> float:
 
 
 def _teeth(random: Generator) -> dict[str, Any] | None:
-    pins, circle = int(random.choice(TOOTH_NUMBERS)), float(random.choice(CIRCLES))
+    pins, circle = int(random.choice(PIN_NUMBERS)), float(random.choice(CIRCLES))
     wanted = random.uniform(0.4, 0.8) * circle / pins
     eccentricity = _round(wanted, _step(wanted))
     if eccentricity <= 0.0 or eccentricity * pins > 0.9 * circle:

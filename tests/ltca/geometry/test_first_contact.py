@@ -16,6 +16,7 @@ from ltca.geometry.first_contact import (
     carrying_pins,
     carrying_rollers,
     first_contact,
+    interference,
     unloaded_transmission_error,
 )
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
@@ -106,6 +107,16 @@ def test_unmodified_flanks_have_no_backlash(paper_cases, pins):
     for coordinate in (DISC_ROTATION, WHEEL_ANGLE):
         # round-off of 1e-13 mm where the lever arm of a touching pin may be a thousandth of 56 mm
         np.testing.assert_allclose(backlash(geometry, angles, coordinate), 0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.004, 0.03])
+def test_pins_larger_than_their_flank_interfere_by_what_they_are_larger(paper_cases, growth):
+    """Every pin touches an unmodified flank: larger by as much they press by as much, wherever their normals point."""
+    geometry = ContactGeometry.of_drive(with_offsets(paper_cases["CS-1"], 0.0, 0.0))
+    placement = replace(geometry.placement, wheel_pin_radii=geometry.placement.wheel_pin_radii + growth)
+    found = interference(replace(geometry, placement=placement), np.linspace(0.0, 2.0 * np.pi, 9))
+    # round-off of places, some 1e-13 mm
+    np.testing.assert_allclose(found, growth, rtol=0.0, atol=1e-12)
 
 
 def test_backlash_is_the_sum_of_both_senses_and_positive(random_drives):
