@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Protocol, Self, get_args
+from typing import Any, ClassVar, Literal, Protocol, Self, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +23,11 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
+from ltca.equilibrium.reducer import reducer_of
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
 
@@ -33,6 +36,8 @@ FloatArray = NDArray[np.float64]
 Method = Literal["tables", "direct", "paper"]
 Contacts = Literal["tables", "grids"]
 Compliance = Literal["half-space", "fe", "hybrid"]
+Given: TypeAlias = InfluenceCoefficients | Sequence[InfluenceCoefficients] | Path | Sequence[Path] | None
+"""Influence coefficients as an engine takes them."""
 
 PAPER_START = 0.95
 """Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
@@ -87,10 +92,10 @@ class _OnTables:
     """Equilibrium on a model whose loads come cheaply from anywhere."""
 
     drive: Drive
-    model: HalfSpaceCompliance
+    model: ComplianceModel
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        return solve_equilibrium(self.model, crank_angle, self.drive.wheel_moment(torque), start)
+        return solve_at_output(self.model, self.drive, crank_angle, torque, start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,15 +103,14 @@ class _FromTables:
     """Equilibrium on a dearer model, started from the solution on tables."""
 
     drive: Drive
-    tables: HalfSpaceCompliance
+    tables: ComplianceModel
     model: ComplianceModel
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        moment = self.drive.wheel_moment(torque)
-        near = solve_equilibrium(self.tables, crank_angle, moment, start)
+        near = solve_at_output(self.tables, self.drive, crank_angle, torque, start)
         # Grids wider than the bodies are curved have no separation: refused before they are laid.
         check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
-        return solve_equilibrium(self.model, crank_angle, moment, near.pose)
+        return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,13 +118,15 @@ class _HeldWheel:
     """The paper's iteration, started from the solution on tables at a little less torque."""
 
     drive: Drive
-    tables: HalfSpaceCompliance
+    tables: ComplianceModel
     model: ComplianceModel
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        moment = self.drive.wheel_moment(torque)
-        near = solve_equilibrium(self.tables, crank_angle, PAPER_START * moment, start)
-        return solve_paper_equilibrium(self.model, crank_angle, moment, near.pose)
+        def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
+            near = solve_equilibrium(self.tables, angle, PAPER_START * moment, begin)
+            return solve_paper_equilibrium(self.model, angle, moment, near.pose)
+
+        return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,9 +180,16 @@ class HalfSpace:
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
-        tables = HalfSpaceCompliance.of_drive(drive)
-        model = tables if self.contacts == "tables" else GridCompliance.of_drive(drive)
+        singles = single_discs(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles])
+        model = tables
+        if self.contacts == "grids":
+            model = reducer_of([GridCompliance.of_drive(single) for single in singles])
         if self.method == "paper":
+            if len(singles) > 1:
+                raise DriveError(
+                    [f"disc.number_of_discs = {len(singles)}: must be 1 for method paper, which knows one disc"]
+                )
             return _HeldWheel(drive=drive, tables=tables, model=model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
@@ -184,7 +197,8 @@ class HalfSpace:
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
         """Return the tables of several drives, each at the same number of positions."""
-        return HalfSpaceCompliance.of_drives(drives, positions)
+        discs = zip(*(single_discs(drive) for drive in drives), strict=True)
+        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,9 +207,9 @@ class _Coupled:
 
     Parameters
     ----------
-    coefficients : InfluenceCoefficients, Path, sequence of Path or None
-        Of the drive: read, files of ``cyclo derive`` of which one belongs to it, or (None) found in the cache or derived
-        and kept there.
+    coefficients : InfluenceCoefficients or sequence of them, Path, sequence of Path, or None
+        Of the drive, of all its discs alike or of each: read, files of ``cyclo derive`` of which each disc takes the one of
+        its shape, or (None) found in the cache or derived and kept there.
     hole_near_field : bool
         Whether hole walls yield like a Hertz contact.
 
@@ -207,7 +221,7 @@ class _Coupled:
 
     batches: ClassVar[bool] = False
 
-    coefficients: InfluenceCoefficients | Path | Sequence[Path] | None = field(default=None, repr=False)
+    coefficients: Given = field(default=None, repr=False)
     hole_near_field: bool = True
 
     def __post_init__(self) -> None:
@@ -215,7 +229,9 @@ class _Coupled:
         if not isinstance(self.hole_near_field, bool):
             raise DriveError([f"hole_near_field = {shortened(self.hole_near_field)}: must be true or false"])
         given: Any = self.coefficients
-        if given is None or isinstance(given, InfluenceCoefficients):
+        if isinstance(given, list):
+            object.__setattr__(self, "coefficients", tuple(given))
+        if given is None or self._of_discs:
             return
         one = isinstance(given, str | Path)
         files: list[Any] = [given] if one else list(given) if isinstance(given, Iterable) else [None]
@@ -234,23 +250,48 @@ class _Coupled:
         near = "yes" if self.hole_near_field else "no"
         return {"compliance": compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
 
-    def with_coefficients(self, drive: Drive) -> Self:
-        """Return the engine with the coefficients of a drive in it: read from file or cache, or derived."""
-        found = self.coefficients
-        if isinstance(found, InfluenceCoefficients):
-            return self
-        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
-        return replace(self, coefficients=find_coefficients(drive, found, near_field=near_field))
+    @property
+    def _of_discs(self) -> tuple[InfluenceCoefficients, ...]:
+        """Coefficients that are given or found already, of all discs alike or of each; empty where there are none."""
+        given: Any = self.coefficients
+        found = given if isinstance(given, tuple) else (given,)
+        return found if all(isinstance(each, InfluenceCoefficients) for each in found) else ()
 
-    def model(self, drive: Drive) -> CoupledCompliance:
-        """Return the coupled compliance of a drive."""
-        found: Any = self.with_coefficients(drive).coefficients
+    def with_coefficients(self, drive: Drive) -> Self:
+        """Return the engine with the coefficients of a drive in it, disc by disc: read from file or cache, or derived."""
+        if self._of_discs:
+            return self
+        files: Any = self.coefficients
         near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
-        return CoupledCompliance.of_drive(drive, found, near_field, hole_near_field=self.hole_near_field)
+        found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
+        return replace(self, coefficients=found)
+
+    def model(self, drive: Drive) -> ComplianceModel:
+        """Return the coupled compliance of a drive.
+
+        Raises
+        ------
+        DriveError
+            When the coefficients are those of another number of discs.
+        """
+        found, singles = self.with_coefficients(drive)._of_discs, single_discs(drive)
+        if len(found) not in (1, len(singles)):
+            raise DriveError(
+                [f"coefficients: are those of {len(found)} discs, must be those of {len(singles)} (or of one, for all)"]
+            )
+        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
+        each = found if len(found) == len(singles) else found * len(singles)
+        return reducer_of(
+            [
+                CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)
+                for single, own in zip(singles, each, strict=True)
+            ]
+        )
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
-        return _FromTables(drive=drive, tables=HalfSpaceCompliance.of_drive(drive), model=self.model(drive))
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in single_discs(drive)])
+        return _FromTables(drive=drive, tables=tables, model=self.model(drive))
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
         """Return the compliance of one drive.
@@ -299,7 +340,7 @@ def engine_named(
     *,
     method: str | None = None,
     contacts: str | None = None,
-    coefficients: InfluenceCoefficients | Path | Sequence[Path] | None = None,
+    coefficients: Given = None,
     hole_near_field: bool | None = None,
 ) -> Engine:
     """Return the engine that names and options ask for; what an engine cannot use is refused.

@@ -17,8 +17,11 @@ from numpy.typing import NDArray
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE, disc_displacement
+from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import bearing_forces, geometries
+from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, X, Y, disc_displacement
 from ltca.geometry.placement import Placement, position_angles
 
 FloatArray = NDArray[np.float64]
@@ -204,7 +207,10 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
     return Extremes(
         ptp_transmission_error=found["wheel_angle"] + found["wheel_angle_negative"],
         ptp_transmission_error_light=found_light["wheel_angle"] + found_light["wheel_angle_negative"],
-        ptp_tangential_bearing_load=found["tangential"] + found["tangential_negative"],
+        ptp_tangential_bearing_load=max(
+            found[f"tangential_{disc}"] + found[f"tangential_negative_{disc}"]
+            for disc in range(analysis.drive.disc.number_of_discs)
+        ),
         max_bearing_load=found["bearing"],
         max_pin_load=found["pin"],
         max_roller_load=found["roller"],
@@ -223,8 +229,12 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
 def _stages(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
     passages = passages_per_turn(analysis.drive)
     return (
-        _Stage.of(analysis.full, _full_signals(analysis.full, analysis.pressures), passages),
-        _Stage.of(analysis.light, _wheel_signals(analysis.light), passages),
+        _Stage.of(
+            analysis.full, analysis.torque, _full_signals(analysis, analysis.full, analysis.pressures), passages
+        ),
+        _Stage.of(
+            analysis.light, analysis.drive.load.light_torque, _wheel_signals(analysis, analysis.light), passages
+        ),
     )
 
 
@@ -243,7 +253,7 @@ def _searched(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
 
 def passages_per_turn(drive: Drive) -> int:
     """Return how many teeth, holes or rollers, whichever are most, pass the load in a turn of the crank."""
-    rollers = drive.crank_bearing.number_of_rollers * (1.0 - float(Placement.of_drive(drive).cage_speed))
+    rollers = drive.crank_bearing.number_of_rollers * (1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed))
     return max(drive.disc.number_of_teeth, drive.pin_shaft.number_of_pins, ceil(rollers))
 
 
@@ -343,10 +353,10 @@ class _Stage:
     search: PeakSearch
     angle: FloatArray
     pose: FloatArray
-    moment: float
+    torque: float
 
     @classmethod
-    def of(cls, found: Equilibrium, signals: dict[str, FloatArray], passages: int) -> _Stage:
+    def of(cls, found: Equilibrium, torque: float, signals: dict[str, FloatArray], passages: int) -> _Stage:
         groups, column = {}, 0
         for name, values in signals.items():
             groups[name] = (slice(column, column + values.shape[1]), name.startswith(("wheel", "tangential")))
@@ -358,7 +368,7 @@ class _Stage:
             nearest=NEAREST * TURN / passages,
         )
         pose = _turned(found.pose, -found.crank_angle)
-        return cls(search=search, angle=found.crank_angle, pose=pose, moment=float(found.wheel_moment[0]))
+        return cls(search=search, angle=found.crank_angle, pose=pose, torque=torque)
 
     def start(self, angle: FloatArray) -> FloatArray:
         """Poses between those known."""
@@ -373,8 +383,11 @@ class _Stage:
 
 
 def _turned(pose: FloatArray, angle: FloatArray) -> FloatArray:
-    place = disc_displacement(pose) * np.exp(1j * angle)
-    return np.column_stack([place.real, place.imag, pose[:, ROTATIONS]])
+    turned = pose.copy()
+    for first in range(0, pose.shape[1] - 1, DISC_COORDINATES):
+        place = disc_displacement(pose[:, first:]) * np.exp(1j * angle)
+        turned[:, first + X], turned[:, first + Y] = place.real, place.imag
+    return turned
 
 
 def _solve(
@@ -387,31 +400,34 @@ def _solve(
 ) -> None:
     """Balance new positions of both torques in one batch and give them to their stages."""
     joined = np.concatenate([angles, light_angles])
-    moment = np.repeat([full.moment, light.moment], [angles.size, light_angles.size])
-    found = solve_equilibrium(analysis.model, joined, moment, start)
+    torque = np.repeat([full.torque, light.torque], [angles.size, light_angles.size])
+    found = solve_at_output(analysis.model, analysis.drive, joined, torque, start)
     if angles.size:
-        signals = _full_signals(found, analysis.model.pressures(found.response))
+        signals = _full_signals(analysis, found, analysis.model.pressures(found.response))
         loaded = slice(angles.size)
         full.add(angles, found.pose[loaded], {name: values[loaded] for name, values in signals.items()})
     if light_angles.size:
         behind = slice(angles.size, None)
-        signals = _wheel_signals(found)
+        signals = _wheel_signals(analysis, found)
         light.add(light_angles, found.pose[behind], {name: values[behind] for name, values in signals.items()})
 
 
-def _wheel_signals(found: Equilibrium) -> dict[str, FloatArray]:
-    wheel = found.pose[:, WHEEL_ANGLE, None]
-    return {"wheel_angle": wheel, "wheel_angle_negative": -wheel}
+def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, FloatArray]:
+    output = analysis.drive.output_per_wheel_angle * found.pose[:, WHEEL_ANGLE, None]
+    return {"wheel_angle": output, "wheel_angle_negative": -output}
 
 
-def _full_signals(found: Equilibrium, pressures: ContactPressures) -> dict[str, FloatArray]:
+def _full_signals(
+    analysis: LoadedAnalysis, found: Equilibrium, pressures: ContactPressures
+) -> dict[str, FloatArray]:
     rollers, outer, inner = found.response.rollers, pressures.outer, pressures.inner
-    push = (rollers.outer_load * rollers.outer_direction).sum(axis=1, keepdims=True)
-    tangential = (push * np.exp(-1j * found.crank_angle[:, None])).imag
+    push = bearing_forces(found.response)
+    ahead = [disc.placement.eccentric_direction(found.crank_angle) for disc in geometries(analysis.model)]
+    tangential = (push * np.stack(ahead, axis=1).conjugate()).imag
     return {
-        **_wheel_signals(found),
-        "tangential": tangential,
-        "tangential_negative": -tangential,
+        **_wheel_signals(analysis, found),
+        **{f"tangential_{disc}": column[:, None] for disc, column in enumerate(tangential.T)},
+        **{f"tangential_negative_{disc}": -column[:, None] for disc, column in enumerate(tangential.T)},
         "bearing": np.abs(push),
         "pin": found.response.pin_load,
         "roller": rollers.outer_load,

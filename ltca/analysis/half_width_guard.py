@@ -44,6 +44,7 @@ def check_half_widths(
         ("roller on the bore", pressures.outer.half_width, roller),
         ("roller on the inner race", pressures.inner.half_width, roller),
     ]
+    discs = drive.disc.number_of_discs
     named = "load.torque" if torque is None else f"load.torque = {torque:g} N·mm"
     problems = []
     for name, half_width, radius in found:
@@ -51,8 +52,10 @@ def check_half_widths(
         if np.max(ratio) > 1.0:
             worst = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             bound = float(half_width[worst] / ratio[worst])
+            disc, pair = divmod(int(worst[1]), ratio.shape[1] // discs)
+            place = f"{pair}" if discs == 1 else f"{pair} of disc {disc}"
             problems.append(
-                f"{named} cannot be carried: contact half-width {half_width[worst]:.4g} mm of {name} {worst[1]}, must "
+                f"{named} cannot be carried: contact half-width {half_width[worst]:.4g} mm of {name} {place}, must "
                 f"be at most {bound:.4g} mm ({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
             )
     if problems:

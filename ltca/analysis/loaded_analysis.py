@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,20 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.drive.unit_table import range_of
-from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
+from ltca.equilibrium.reducer import (
+    bearing_forces,
+    disc_pressures,
+    disc_responses,
+    disc_torques,
+    geometries,
+)
 from ltca.errors import DriveError, shortened
 from ltca.frozen_arrays import freeze
-from ltca.geometry.pairs import DISC_ROTATION
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_pose
 
 FloatArray = NDArray[np.float64]
 
@@ -41,10 +49,10 @@ class LoadedAnalysis:
         The compliance behind both.
     pressures : ContactPressures
         Pressures and half-widths at that torque.
-    bearing_radial, bearing_tangential : array, shape (positions,)
-        Bearing force on the disc along the eccentricity and 90° ahead, N.
-    wall_stresses : WallStresses or None
-        Stresses along the walls of the disc at that torque; None where bodies are half-spaces and have no walls.
+    bearing_radial, bearing_tangential : array, shape (positions, discs)
+        Bearing force on each disc along its own eccentricity and 90° ahead, N.
+    wall_stresses : tuple of WallStresses
+        Stresses along the walls of each disc at that torque; empty where bodies are half-spaces and have no walls.
     """
 
     drive: Drive
@@ -56,7 +64,52 @@ class LoadedAnalysis:
     pressures: ContactPressures
     bearing_radial: FloatArray
     bearing_tangential: FloatArray
-    wall_stresses: WallStresses | None
+    wall_stresses: tuple[WallStresses, ...]
+
+    @property
+    def discs(self) -> tuple[LoadedAnalysis, ...]:
+        """What each disc takes part in, as the analysis of a drive of that disc alone: itself where there is one.
+
+        The torque of each is that of the whole drive; what the disc carries of it is in `disc_torques`.
+        """
+        singles = single_discs(self.drive)
+        if len(singles) == 1:
+            return (self,)
+        pressures = disc_pressures(self.pressures, len(singles))
+        return tuple(
+            replace(
+                self,
+                drive=single,
+                full=equilibrium_of_disc(self.full, number),
+                light=equilibrium_of_disc(self.light, number),
+                model=model,
+                pressures=pressures[number],
+                bearing_radial=self.bearing_radial[:, number : number + 1],
+                bearing_tangential=self.bearing_tangential[:, number : number + 1],
+                wall_stresses=self.wall_stresses[number : number + 1],
+            )
+            for number, (single, model) in enumerate(zip(singles, self.model.discs, strict=True))
+        )
+
+    @property
+    def disc_torques(self) -> FloatArray:
+        """Part of the external moment on the wheel that each disc carries, ccw positive, shape (positions, discs), N·mm."""
+        return disc_torques(self.full.response)
+
+    @property
+    def torque_share(self) -> FloatArray:
+        """Part of the wheel's moment that each disc carries, shape (positions, discs)."""
+        return np.asarray(self.disc_torques / self.disc_torques.sum(axis=1, keepdims=True))
+
+    @property
+    def transmission_error(self) -> FloatArray:
+        """Deviation of the output at the torque of the run, ccw positive, shape (positions,), rad."""
+        return np.asarray(self.drive.output_per_wheel_angle * self.full.pose[:, WHEEL_ANGLE])
+
+    @property
+    def transmission_error_light(self) -> FloatArray:
+        """The same at the light torque, rad."""
+        return np.asarray(self.drive.output_per_wheel_angle * self.light.pose[:, WHEEL_ANGLE])
 
 
 @names_unit_mistakes
@@ -94,7 +147,7 @@ def analyse(
     >>> import numpy as np
     >>> from ltca.reading.drive_file import load_drive
     >>> result = analyse(load_drive("paper").cases["CS-1"], np.array([0.5]))
-    >>> print(f"{result.bearing_tangential[0]:.0f} N")
+    >>> print(f"{result.bearing_tangential[0, 0]:.0f} N")
     6738 N
     """
     angle, torque = check_positions(crank_angle), check_torque(drive, torque)
@@ -102,8 +155,9 @@ def analyse(
     prepared = used.prepare(drive)
     full = prepared.balance(angle, torque)
     light = prepared.balance(angle, drive.load.light_torque, full.pose)
-    rollers = full.response.rollers
-    push = (rollers.outer_load * rollers.outer_direction).sum(axis=1) * np.exp(-1j * full.crank_angle)
+    push = bearing_forces(full.response) * np.stack(
+        [disc.placement.eccentric_direction(full.crank_angle).conjugate() for disc in geometries(prepared.model)], axis=1
+    )
     pressures = prepared.model.pressures(full.response)
     check_half_widths(drive, full.response, pressures, torque)
     return LoadedAnalysis(
@@ -120,10 +174,14 @@ def analyse(
     )
 
 
-def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: ContactPressures) -> WallStresses | None:
-    if not isinstance(model, CoupledCompliance):
-        return None
-    return wall_stresses(model, full.response, pressures, full.pose[:, DISC_ROTATION])
+def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: ContactPressures) -> tuple[WallStresses, ...]:
+    count = len(model.discs)
+    parts = zip(model.discs, disc_responses(full.response), disc_pressures(pressures, count), strict=True)
+    return tuple(
+        wall_stresses(disc, response, own, disc_pose(full.pose, number)[:, DISC_ROTATION])
+        for number, (disc, response, own) in enumerate(parts)
+        if isinstance(disc, CoupledCompliance)
+    )
 
 
 def check_positions(crank_angle: FloatArray) -> FloatArray:

@@ -109,7 +109,7 @@ def _unfolded(solved: PatchSolution) -> tuple[FloatArray, FloatArray, FloatArray
 def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS) -> dict[int, PressureField]:
     """Return the pressure fields of the loaded wheel pins of one position, by pin."""
     kind = ContactKinds.of_drive(analysis.drive, cells).pins
-    contacts, geometry = analysis.full.response, analysis.model.geometry
+    contacts, geometry = analysis.full.response, analysis.model.discs[0].geometry
     fields = {}
     for pin in _loaded(contacts.pin_load, position):
         theta = float(contacts.flank.parameter[position, pin])
@@ -145,7 +145,7 @@ def roller_fields(
         Cells over the half-width and half the length.
     """
     kinds = ContactKinds.of_drive(analysis.drive, cells)
-    rollers, place = analysis.full.response.rollers, analysis.model.geometry.placement
+    rollers, place = analysis.full.response.rollers, analysis.model.discs[0].geometry.placement
     outer = side == "outer"
     kind = kinds.outer if outer else kinds.inner
     approach = rollers.outer_approach if outer else rollers.inner_approach

@@ -1,7 +1,7 @@
 """The labelled dataset of a run: what ``results.nc`` holds.
 
 Dimensions stand in the order case, disc, crank, position, then pin, roller or hole, always all of them that a
-quantity has, of size 1 where a drive has one disc and one crank. Places of the parts are coordinates: wheel pins in
+quantity has, of size 1 where a drive has one disc or one crank. Places of the parts are coordinates: wheel pins in
 the frame of the wheel, holes in that of the disc, shaft pins in the fixed frame, rollers by their angle in the cage.
 """
 
@@ -70,6 +70,8 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "pin_contact_parameter": ("pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"),
     "bearing_radial": ("crank", "N", "bearing force on the disc along the eccentricity"),
     "bearing_tangential": ("crank", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
+    "disc_torque": ("disc", "N mm", "part of the external moment on the wheel that the disc carries, ccw positive"),
+    "wheel_moment": ("drive", "N mm", "external moment on the wheel at the torque of the run, ccw positive"),
     "wheel_angle": ("drive", "rad", "deviation of the wheel from φ_C/u at the torque of the run, ccw positive"),
     "wheel_angle_light": ("drive", "rad", "the same at the light torque"),
     "transmission_error": ("drive", "rad", "deviation of the output at the torque of the run, ccw positive"),
@@ -93,12 +95,28 @@ WALL_VARIABLES: dict[str, tuple[str, str, str]] = {
 
 
 def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
-    """Quantities of one case, of one disc on one crank: (position,) or (position, pair)."""
-    walls = analysis.wall_stresses
+    """Quantities of one case in the dimensions that `DIMENSIONS` says."""
     full, light = analysis.full, analysis.light
-    contacts, pressures = full.response, analysis.pressures
-    displacement = disc_displacement(full.pose) * np.exp(-1j * full.crank_angle)
-    return {
+    per_disc = [_disc_values(disc) for disc in analysis.discs]
+    values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]}
+    return {name: _spread(value, VARIABLES.get(name) or WALL_VARIABLES[name]) for name, value in values.items()} | {
+        "wheel_moment": full.wheel_moment,
+        "wheel_angle": full.pose[:, WHEEL_ANGLE],
+        "wheel_angle_light": light.pose[:, WHEEL_ANGLE],
+        "transmission_error": analysis.transmission_error,
+        "transmission_error_light": analysis.transmission_error_light,
+        "equilibrium_residual": full.residual,
+        "iterations": full.iterations,
+    }
+
+
+def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
+    """Quantities of one disc on its eccentric: (position,) or (position, pair)."""
+    full, pressures = analysis.full, analysis.pressures
+    contacts = full.response
+    place = analysis.model.discs[0].geometry.placement
+    displacement = disc_displacement(full.pose) * place.eccentric_direction(full.crank_angle).conjugate()
+    values = {
         "pin_load": contacts.pin_load,
         "roller_load": contacts.rollers.outer_load,
         "roller_load_inner": contacts.rollers.inner_load,
@@ -120,19 +138,16 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "roller_half_width_inner": pressures.inner.half_width,
         "pin_shaft_half_width": pressures.holes.half_width,
         "pin_contact_parameter": np.mod(contacts.flank.parameter, 2.0 * np.pi),
-        "bearing_radial": analysis.bearing_radial,
-        "bearing_tangential": analysis.bearing_tangential,
-        "wheel_angle": full.pose[:, WHEEL_ANGLE],
-        "wheel_angle_light": light.pose[:, WHEEL_ANGLE],
-        # The pin shaft is held: the wheel is the output.
-        "transmission_error": full.pose[:, WHEEL_ANGLE],
-        "transmission_error_light": light.pose[:, WHEEL_ANGLE],
+        "bearing_radial": analysis.bearing_radial[:, 0],
+        "bearing_tangential": analysis.bearing_tangential[:, 0],
+        "disc_torque": contacts.force[:, WHEEL_ANGLE],
         "disc_radial": displacement.real,
         "disc_tangential": displacement.imag,
         "disc_rotation": full.pose[:, DISC_ROTATION],
-        "equilibrium_residual": full.residual,
-        "iterations": full.iterations,
-    } | ({} if walls is None else _wall_values(walls, pressures))
+    }
+    for walls in analysis.wall_stresses:
+        values |= _wall_values(walls, pressures)
+    return values
 
 
 def _wall_values(walls: WallStresses, pressures: ContactPressures) -> dict[str, Any]:
@@ -146,23 +161,25 @@ def _wall_values(walls: WallStresses, pressures: ContactPressures) -> dict[str, 
     }
 
 
-def _spread(values: Any, kind: str) -> Any:
-    """Put the axes of the one disc and the one crank in front of the positions."""
-    missing = len(DIMENSIONS[kind]) - np.ndim(values)
-    return np.reshape(values, (1,) * missing + np.shape(values))
+def _spread(values: FloatArray, described: tuple[str, str, str]) -> FloatArray:
+    """Put the axis of the one crank behind that of the discs where a quantity has one."""
+    return values[:, None] if "crank" in DIMENSIONS[described[0]] else values
 
 
 def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
     """Return the coordinates of a dataset of analyses: cases, positions, places of the parts, torques."""
-    places = [analysis.model.geometry.placement for analysis in analyses.values()]
+    discs = [[disc.geometry.placement for disc in analysis.model.discs] for analysis in analyses.values()]
+    places = [each[0] for each in discs]
     first = next(iter(analyses.values()))
     counts = {"pin": places[0].wheel_pin_radii.size, "roller": places[0].roller_radii.size}
     counts["hole"] = places[0].hole_radii.size
-    wheel_pins, holes, shaft_pins = (
-        np.stack([getattr(place, name) for place in places])
-        for name in ("wheel_pin_centres", "hole_centres", "shaft_pin_centres")
+    wheel_pins, shaft_pins = (
+        np.stack([getattr(place, name) for place in places]) for name in ("wheel_pin_centres", "shaft_pin_centres")
     )
-    cages = np.stack([place.roller_cage_angles for place in places])
+    holes, cages = (
+        np.array([[getattr(place, name) for place in each] for each in discs])
+        for name in ("hole_centres", "roller_cage_angles")
+    )
     mm, rad = {"units": "mm"}, {"units": "rad"}
 
     def per_case(values: list[Any], unit: str, text: str) -> tuple[str, list[Any], dict[str, str]]:
@@ -170,30 +187,40 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
 
     return {
         "case": list(analyses),
-        "disc": [0],
+        "disc": np.arange(len(discs[0])),
         "crank": [0],
         "position": np.arange(first.full.crank_angle.size),
         **{name: np.arange(count) for name, count in counts.items()},
-        **({} if first.wall_stresses is None else {"lobe": np.arange(first.drive.disc.number_of_teeth)}),
+        **({} if not first.wall_stresses else {"lobe": np.arange(first.drive.disc.number_of_teeth)}),
         "crank_angle": ("position", first.full.crank_angle, {**rad, "long_name": "crank angle φ_C, held"}),
         "pin_x": (("case", "pin"), wheel_pins.real, {**mm, "long_name": "wheel pin, in the frame of the wheel"}),
         "pin_y": (("case", "pin"), wheel_pins.imag, {**mm, "long_name": "wheel pin, in the frame of the wheel"}),
         "hole_x": (
             ("case", "disc", "hole"),
-            holes.real[:, None],
+            holes.real,
             {**mm, "long_name": "hole, in the frame of the disc"},
         ),
         "hole_y": (
             ("case", "disc", "hole"),
-            holes.imag[:, None],
+            holes.imag,
             {**mm, "long_name": "hole, in the frame of the disc"},
         ),
         "shaft_pin_x": (("case", "hole"), shaft_pins.real, {**mm, "long_name": "shaft pin, in the fixed frame"}),
         "shaft_pin_y": (("case", "hole"), shaft_pins.imag, {**mm, "long_name": "shaft pin, in the fixed frame"}),
         "roller_angle": (
             ("case", "disc", "crank", "roller"),
-            cages[:, None, None],
+            cages[:, :, None],
             {**rad, "long_name": "angle of the roller in the cage, which stands at cage_speed · φ_C"},
+        ),
+        "disc_phase": (
+            ("case", "disc"),
+            [analysis.drive.disc.disc_phases for analysis in analyses.values()],
+            {**rad, "long_name": "phase of the disc's eccentric against the crank angle"},
+        ),
+        "disc_plane": (
+            ("case", "disc"),
+            [analysis.drive.disc.disc_planes for analysis in analyses.values()],
+            {**mm, "long_name": "axial place of the disc's middle"},
         ),
         "cage_speed": per_case([float(place.cage_speed) for place in places], "1", "cage angle by crank angle"),
         "torque": per_case([analysis.torque for analysis in analyses.values()], "N mm", "output torque of the run"),
@@ -207,7 +234,7 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
 
 
 def check_common_shape(cases: Mapping[str, Drive]) -> None:
-    """Refuse cases with different numbers of pins, rollers or holes: they do not fit one dataset.
+    """Refuse cases with different numbers of pins, rollers, holes or discs: they do not fit one dataset.
 
     Raises
     ------
@@ -215,19 +242,28 @@ def check_common_shape(cases: Mapping[str, Drive]) -> None:
         Naming the case and the numbers.
     """
     shapes = {
-        name: (d.pin_wheel.number_of_pins, d.crank_bearing.number_of_rollers, d.pin_shaft.number_of_pins)
+        name: (
+            d.pin_wheel.number_of_pins,
+            d.crank_bearing.number_of_rollers,
+            d.pin_shaft.number_of_pins,
+            d.disc.number_of_discs,
+        )
         for name, d in cases.items()
     }
     first = next(iter(shapes))
+    things = ("wheel pins", "rollers", "shaft pins", "discs")
     problems = [
-        f"case {name}: has {shape[0]} wheel pins, {shape[1]} rollers and {shape[2]} shaft pins: must be "
-        f"{shapes[first][0]}, {shapes[first][1]} and {shapes[first][2]} as in case {first} to share one result "
-        "(run it alone with --case)"
+        f"case {name}: has {_counted(shape, things)}: must be {_counted(shapes[first], things)} as in case {first} to share "
+        "one result (run it alone with --case)"
         for name, shape in shapes.items()
         if shape != shapes[first]
     ]
     if problems:
         raise DriveError(problems)
+
+
+def _counted(numbers: tuple[int, ...], things: tuple[str, ...]) -> str:
+    return ", ".join(f"{number} {thing}" for number, thing in zip(numbers, things, strict=True))
 
 
 def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None) -> xr.Dataset:
@@ -253,7 +289,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     for name, (kind, unit, description) in (VARIABLES | WALL_VARIABLES).items():
         if name not in per_case[0]:
             continue
-        stacked = np.stack([_spread(values[name], kind) for values in per_case])
+        stacked = np.stack([values[name] for values in per_case])
         variables[name] = (("case", *DIMENSIONS[kind]), stacked, {"units": unit, "long_name": description})
     dataset = xr.Dataset(
         variables,
@@ -281,13 +317,13 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:
     """Whether coefficients of each case are its own or, on somebody's word, of bodies that differ a little; who derived them."""
-    models = [analysis.model for analysis in analyses.values()]
-    if not all(isinstance(model, CoupledCompliance) for model in models):
+    models = [[disc for disc in analysis.model.discs if isinstance(disc, CoupledCompliance)] for analysis in analyses.values()]
+    used = [[disc.coefficients for disc in model] for model in models]
+    if not all(used):
         return {}
-    used = [model.coefficients for model in models if isinstance(model, CoupledCompliance)]
     return {
-        "shared_coefficients": [int(coefficients.shared) for coefficients in used],
-        "coefficients_code_hash": [coefficients.code_hash for coefficients in used],
+        "shared_coefficients": [int(any(own.shared for own in discs)) for discs in used],
+        "coefficients_code_hash": [discs[0].code_hash for discs in used],
     }
 
 

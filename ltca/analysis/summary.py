@@ -11,7 +11,8 @@ from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, samp
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.geometry.first_contact import backlash, interference
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
+from ltca.equilibrium.reducer import geometries
+from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 
@@ -59,7 +60,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         The keys of ``summary.json``, their units in their names; None where the engine or the positions cannot say a
         value, as positions that are no full turn say nothing of it.
     """
-    geometry = ContactGeometry.of_drive(analysis.drive)
+    geometry = geometries(analysis.model)
     full, contacts = analysis.full, analysis.full.response
     angle = full.crank_angle
     radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
@@ -68,16 +69,18 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
     )
     pressures = analysis.pressures
+    play = np.mean(backlash(geometry, angle, WHEEL_ANGLE))
     roller_mid = max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))
     roller_largest = max(np.max(pressures.outer.largest), np.max(pressures.inner.largest))
     values = {
-        "backlash_disc_arcmin": np.mean(backlash(geometry, angle, DISC_ROTATION)) * ARCMIN,
-        "backlash_wheel_arcmin": np.mean(backlash(geometry, angle, WHEEL_ANGLE)) * ARCMIN,
-        "interference_mm": np.max(interference(geometry, angle)),
+        "backlash_disc_arcmin": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
+        "backlash_wheel_arcmin": play * ARCMIN,
+        "backlash_output_arcmin": play * abs(analysis.drive.output_per_wheel_angle) * ARCMIN,
+        "interference_mm": max(np.max(interference(disc, angle)) for disc in geometry),
         "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
         "mean_radial_bearing_load_N": np.mean(radial),
         "mean_tangential_bearing_load_N": np.mean(tangential),
-        "ptp_tangential_bearing_load_N": np.ptp(tangential),
+        "ptp_tangential_bearing_load_N": np.max(np.ptp(tangential, axis=0)),
         "max_pin_load_N": np.max(contacts.pin_load),
         "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
         "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
@@ -94,17 +97,20 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         "mean_loaded_pins": np.mean(pins.sum(axis=1)),
         "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
         "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)),
-        "ptp_transmission_error_arcsec": np.ptp(full.pose[:, WHEEL_ANGLE]) * ARCSEC,
-        "ptp_transmission_error_light_arcsec": np.ptp(analysis.light.pose[:, WHEEL_ANGLE]) * ARCSEC,
+        "ptp_transmission_error_arcsec": np.ptp(analysis.transmission_error) * ARCSEC,
+        "ptp_transmission_error_light_arcsec": np.ptp(analysis.transmission_error_light) * ARCSEC,
         "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
     }
-    if analysis.wall_stresses is not None:
-        walls = analysis.wall_stresses
+    share = analysis.torque_share
+    for disc in range(share.shape[1]):
         values |= {
-            "max_root_stress_MPa": _largest(walls.root),
-            "max_bore_stress_MPa": _largest(walls.bore),
-            "max_hole_stress_MPa": _largest(walls.hole),
+            f"mean_torque_share_disc_{disc}": np.mean(share[:, disc]),
+            f"max_torque_share_disc_{disc}": np.max(share[:, disc]),
         }
+    if analysis.wall_stresses:
+        for wall in ("root", "bore", "hole"):
+            largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))
+            values[f"max_{wall}_stress_MPa"] = largest
     values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)

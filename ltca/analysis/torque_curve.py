@@ -1,8 +1,8 @@
 """Torque against wind-up over both directions, and what is read from it: backlash, lost motion, torsional stiffness.
 
 The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; what remains
-between the branches at vanishing torque is the play of all clearances together. Torques are those of the whole drive:
-its discs share them alike, and turn the wheel together.
+between the branches at vanishing torque is the play of all clearances together. Torques and angles are those of the
+output, whichever member that is.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.engines import Engine
+from ltca.analysis.engines import Engine, HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
-from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.geometry.pairs import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
@@ -31,16 +31,18 @@ STIFF_FROM = 0.5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TorqueCurve:
-    """Wind-up of the wheel at held crank angles.
+    """Wind-up of the output at held crank angles.
 
     Attributes
     ----------
     crank_angle : array, shape (angles,)
         φ_C, rad.
     torque : array, shape (points,)
-        Moment on the wheel of all discs together, ccw positive, ascending through negative to positive, N·mm.
+        Torque on the output, as it turns it ccw positive, ascending through negative to positive, N·mm.
     wheel_angle : array, shape (angles, points)
         Wheel angle, rad.
+    output_angle : array, shape (angles, points)
+        Deviation of the output, rad: that of the wheel with the pin shaft held.
     backlash : array, shape (angles,)
         Between the branches at the smallest torques, rad.
     lost_motion : array, shape (angles,)
@@ -52,6 +54,7 @@ class TorqueCurve:
     crank_angle: FloatArray
     torque: FloatArray
     wheel_angle: FloatArray
+    output_angle: FloatArray
     backlash: FloatArray
     lost_motion: FloatArray
     stiffness: FloatArray
@@ -65,7 +68,7 @@ def torque_curve(
     points: int = 40,
     engine: Engine | None = None,
 ) -> TorqueCurve:
-    """Load the wheel both ways at held crank angles.
+    """Load the output both ways at held crank angles.
 
     Parameters
     ----------
@@ -88,27 +91,33 @@ def torque_curve(
         When a position does not balance.
     """
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    rated, share = drive.load.torque, drive.disc.torque_share
+    rated = drive.load.torque
     parts = np.unique(
         np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, LOST_MOTION, STIFF_FROM]])
     )
     torque = rated * np.concatenate([-parts[::-1], parts])
-    held, moment = np.repeat(angles, torque.size), np.tile(share * torque, angles.size)
-    tables = HalfSpaceCompliance.of_drive(drive)
-    found = solve_equilibrium(tables, held, moment)
+    held = np.repeat(angles, torque.size)
+    # A torque that turns the output ccw opposes a crank driving ccw with the wheel as output; the pin shaft turns the
+    # other way, and so does what opposes it.
+    opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
+    loads = np.tile(opposing * torque, angles.size)
+    tables = HalfSpace().prepare(drive).model
+    found = solve_at_output(tables, drive, held, loads)
     model = tables if engine is None else engine.prepare(drive).model
-    if not isinstance(model, HalfSpaceCompliance):
-        found = solve_equilibrium(model, held, moment, found.pose)
+    if not isinstance(model.discs[0], HalfSpaceCompliance):
+        found = solve_at_output(model, drive, held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
+    output = drive.output_per_wheel_angle * wheel
 
     def at(part: float) -> FloatArray:
-        return np.asarray(wheel[:, int(np.argmin(np.abs(torque - part * rated)))])
+        return np.asarray(output[:, int(np.argmin(np.abs(torque - part * rated)))])
 
     half = (1.0 - STIFF_FROM) * rated
     return TorqueCurve(
         crank_angle=angles,
         torque=torque,
         wheel_angle=wheel,
+        output_angle=output,
         backlash=at(SMALLEST) - at(-SMALLEST),
         lost_motion=at(LOST_MOTION) - at(-LOST_MOTION),
         stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
-from ltca.drive.nominal_shape import nominal_shape
+from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Clearance, Drive, Material
 from ltca.errors import CycloError, DamagedFileError, DriveError
-from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary, boundaries_of
+from ltca.geometry.boundary_stations import Boundary, LAGRANGE_POINTS, boundaries_of, turned_boundaries
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
@@ -108,6 +108,23 @@ class InfluenceCoefficients:
             )
         fingerprint = drive.shape_fingerprint()
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
+
+    def placed_in(self, drive: Drive) -> InfluenceCoefficients:
+        """Return the coefficients of the part as it stands in a disc whose flank is turned against its holes.
+
+        Parameters
+        ----------
+        drive : Drive
+            Of one disc; which part it is and how that stands in it is told by `ltca.drive.parts.part_turn`.
+        """
+        _, hole_pitches, tooth_pitches = drive.part_turn
+        if hole_pitches == 0 and tooth_pitches == 0:
+            return self
+        turn = 2.0 * np.pi * hole_pitches / len(self.holes)
+        tooth_turn = -2.0 * np.pi * tooth_pitches / drive.disc.number_of_teeth
+        flank, bore, *holes = turned_boundaries((self.flank, self.bore, *self.holes), turn, tooth_turn, hole_pitches)
+        stress = self.stress.placed(turn, tooth_turn, hole_pitches)
+        return replace(self, flank=flank, bore=bore, holes=tuple(holes), stress=stress)
 
     def with_roller_length(self, length: float) -> InfluenceCoefficients:
         """Return the coefficients with rollers of a length of their own, mm: in plane strain they yield like one over it."""

@@ -114,7 +114,7 @@ class CoupledCompliance:
         geometry = ContactGeometry.of_drive(drive)
         place = geometry.placement
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
-        body = coefficients.with_roller_length(drive.crank_bearing.roller_length)
+        body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
         spring = SpringLaw(stiffness=drive.pin_shaft.stiffness)
         return cls(
             geometry=geometry,
@@ -126,6 +126,11 @@ class CoupledCompliance:
             hole_radius=place.hole_effective_radii,
             own=OwnParts.of_drive(drive, geometry, body, near_field, laws.datum),
         )
+
+    @property
+    def discs(self) -> tuple[CoupledCompliance, ...]:
+        """The model itself: it is that of one disc."""
+        return (self,)
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.

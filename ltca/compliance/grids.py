@@ -123,6 +123,11 @@ class GridCompliance:
             hole_stiffness=drive.pin_shaft.stiffness,
         )
 
+    @property
+    def discs(self) -> tuple[GridCompliance, ...]:
+        """The model itself: it is that of one disc."""
+        return (self,)
+
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`."""
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)

@@ -143,6 +143,11 @@ class HalfSpaceCompliance:
             kinds=self.kinds,
         )
 
+    @property
+    def discs(self) -> tuple[HalfSpaceCompliance, ...]:
+        """The model itself: it is that of one disc."""
+        return (self,)
+
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions.
 

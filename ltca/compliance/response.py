@@ -25,7 +25,7 @@ class Response:
     Attributes
     ----------
     force : array, shape (positions, 4)
-        Generalised contact force Σ F ∂δ/∂q: N, N, N·mm, N·mm.
+        Generalised contact force Σ F ∂δ/∂q: N, N, N·mm, N·mm; three more coordinates for each further disc.
     tangent : array, shape (positions, 4, 4)
         Its derivative by the pose.
     flank : FlankMotion
@@ -98,11 +98,11 @@ class ContactPressures:
 
 
 class ComplianceModel(Protocol):
-    """What `ltca.equilibrium.balance` needs of a compliance model."""
+    """What `ltca.equilibrium.balance` needs of the compliance of one or several discs."""
 
     @property
-    def geometry(self) -> ContactGeometry:
-        """The contact geometry of the drive."""
+    def discs(self) -> tuple[DiscModel, ...]:
+        """The compliance of each disc."""
         ...
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
@@ -111,6 +111,15 @@ class ComplianceModel(Protocol):
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures behind a response of this model."""
+        ...
+
+
+class DiscModel(ComplianceModel, Protocol):
+    """The compliance of one disc: it is its own only one."""
+
+    @property
+    def geometry(self) -> ContactGeometry:
+        """The contact geometry of the disc in its drive."""
         ...
 
 

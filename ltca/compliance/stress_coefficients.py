@@ -8,13 +8,13 @@ is not in the coefficients, so what they give varies smoothly along the wall and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.geometry.boundary_stations import Boundary, boundaries_of
+from ltca.geometry.boundary_stations import Boundary, boundaries_of, turned_boundaries
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,6 +39,14 @@ class StressCoefficients:
     walls: tuple[Boundary, ...]
     loaded: tuple[Boundary, ...]
     stress: FloatArray
+
+    def placed(self, turn: float, tooth_turn: float, hole_pitches: int) -> StressCoefficients:
+        """Return the coefficients of the part as it stands in a disc, see `InfluenceCoefficients.placed_in`."""
+        walls, loaded = (
+            turned_boundaries(boundaries, turn, tooth_turn, hole_pitches) if boundaries else ()
+            for boundaries in (self.walls, self.loaded)
+        )
+        return replace(self, walls=walls, loaded=loaded)
 
     @property
     def available(self) -> bool:

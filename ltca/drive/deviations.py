@@ -14,6 +14,7 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.units import COUNT, quantity
 
 SignedLength = Annotated[float, quantity("mm")]
+NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
 Angle = Annotated[float, quantity("rad")]
 Errors = tuple[SignedLength, ...]
 
@@ -114,3 +115,58 @@ class ProfileErrors:
     def is_zero(self) -> bool:
         """Whether the flank is as designed."""
         return not (any(self.cosine) or any(self.sine) or any(self.deviation))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class DiscClearance:
+    """Clearances of one disc; what is left out is that of the drive's ``clearance``.
+
+    Attributes
+    ----------
+    bearing, pin_hole : float or None
+        As in `ltca.drive.parts.Clearance`, mm.
+    """
+
+    bearing: NonNegativeLength | None = None
+    pin_hole: NonNegativeLength | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class OneDisc:
+    """An entry of ``[[disc.of]]``: one disc with its crank bearing.
+
+    Attributes
+    ----------
+    runout : Runout or None
+        In the place of ``disc.runout``.
+    profile_errors : ProfileErrors or None
+        In the place of ``disc.profile_errors``.
+    hole_errors : PlacementErrors or None
+        In the place of ``disc.hole_errors``.
+    clearance : DiscClearance or None
+        Its clearances.
+    roller_errors : RollerErrors or None
+        In the place of ``crank_bearing.roller_errors``.
+    """
+
+    runout: Runout | None = None
+    profile_errors: ProfileErrors | None = None
+    hole_errors: PlacementErrors | None = None
+    clearance: DiscClearance | None = None
+    roller_errors: RollerErrors | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class OneEccentric:
+    """An entry of ``[[crank.of]]``: the eccentric of one disc.
+
+    Attributes
+    ----------
+    eccentricity_error : float or None
+        In the place of ``crank.eccentricity_error``, mm.
+    phase_error : float
+        Actual less nominal phase of the eccentric, counter-clockwise, rad.
+    """
+
+    eccentricity_error: SignedLength | None = None
+    phase_error: Angle = 0.0

@@ -1,15 +1,22 @@
-"""Fields of a drive by dotted path: read, count, unit."""
+"""Fields of a drive by dotted path: read, count, unit.
+
+What differs per disc stands in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where
+nothing is said of it, it reads as the field of all discs that it takes the place of.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, is_dataclass
 from functools import cache
-from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_hints
 
 from pydantic.functional_validators import BeforeValidator
 
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.drive.units import QuantityCheck
 from ltca.errors import DriveError, did_you_mean
 
@@ -30,25 +37,79 @@ class FieldKind:
     is_array: bool
 
 
+ANY = "N"
+"""Stands for the number of a disc in the paths of `field_kinds`."""
+OWN = {
+    "disc.runout": "disc.of.N.runout",
+    "disc.profile_errors": "disc.of.N.profile_errors",
+    "disc.hole_errors": "disc.of.N.hole_errors",
+    "clearance": "disc.of.N.clearance",
+    "crank_bearing.roller_errors": "disc.of.N.roller_errors",
+    "crank.eccentricity_error": "crank.of.N.eccentricity_error",
+}
+"""What each disc may have of its own, in the place of what all have."""
+_NUMBERED = re.compile(r"^((?:disc|crank)\.of)\.([0-9]{1,6})\.")
+
+
 @cache
 def field_kinds() -> dict[str, FieldKind]:
-    """Return every field of a drive by its dotted path.
+    """Return every field of a drive by its dotted path, those of one disc with ``N`` for its number.
 
     Examples
     --------
     >>> field_kinds()["disc.thickness"]
     FieldKind(unit='mm', is_array=False)
+    >>> field_kinds()["crank.of.N.phase_error"]
+    FieldKind(unit='rad', is_array=False)
     """
     return dict(_kinds(Drive, ""))
+
+
+def field_kind(path: str) -> FieldKind | None:
+    """Return what is known of a field, also of one of a numbered disc; None where there is none.
+
+    Examples
+    --------
+    >>> field_kind("disc.of.0.runout.amount")
+    FieldKind(unit='mm', is_array=False)
+    """
+    if f".of.{ANY}." in path:
+        return None
+    return field_kinds().get(_NUMBERED.sub(rf"\1.{ANY}.", path))
+
+
+def own_path(path: str, disc: int) -> str | None:
+    """Return the path of what a disc has in the place of a field of all discs; None where it has none of its own.
+
+    Examples
+    --------
+    >>> own_path("clearance.bearing", 1), own_path("disc.thickness", 1)
+    ('disc.of.1.clearance.bearing', None)
+    """
+    for common, own in OWN.items():
+        if path == common or path.startswith(f"{common}."):
+            return own.replace(ANY, str(disc)) + path[len(common) :]
+    return None
+
+
+def numbered(path: str) -> tuple[str, int, str] | None:
+    """Return table, disc and name of a field of one disc: ``("disc.of", 0, "runout.amount")``; None for others."""
+    found = _NUMBERED.match(path)
+    return None if found is None else (found.group(1), int(found.group(2)), path[found.end() :])
 
 
 def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path = f"{prefix}{name}"
+        if get_origin(hint) in (Union, UnionType):  # what may be left out
+            (hint,) = (part for part in get_args(hint) if part is not NoneType)
         if is_dataclass(hint):
             yield from _kinds(cast(type, hint), f"{path}.")
             continue
         is_array = get_origin(hint) is tuple
+        if is_array and is_dataclass(get_args(hint)[0]):
+            yield from _kinds(cast(type, get_args(hint)[0]), f"{path}.{ANY}.")
+            continue
         yield path, FieldKind(unit=_unit(get_args(hint)[0] if is_array else hint), is_array=is_array)
 
 
@@ -66,22 +127,40 @@ def element_count(drive: Drive, path: str) -> int | None:
     Raises
     ------
     DriveError
-        When there is no such field.
+        When there is no such field, or no such disc.
     """
-    kind = field_kinds().get(path)
+    kind = field_kind(path)
     if kind is None:
         raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
+    drive, path = _of_disc(drive, path)
     if not kind.is_array:
         return None
     errors = drive.disc.profile_errors
     counts = {
         "pin_wheel.pin_errors": drive.pin_wheel.number_of_pins,
+        "disc": drive.disc.number_of_discs,
         "disc.hole_errors": drive.pin_shaft.number_of_pins,
         "pin_shaft.pin_errors": drive.pin_shaft.number_of_pins,
         "crank_bearing.roller_errors": drive.crank_bearing.number_of_rollers,
         "disc.profile_errors": len(errors.parameter) if path.endswith(".deviation") else len(errors.orders),
     }
     return counts[path.rpartition(".")[0]]
+
+
+def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
+    """A field of one disc as the field of a drive of that disc alone."""
+    found = numbered(path)
+    if found is None:
+        return drive, path
+    table, disc, name = found
+    if disc >= drive.disc.number_of_discs:
+        raise DriveError([f"{path}: there is no disc {disc}; disc.number_of_discs = {drive.disc.number_of_discs}"])
+    single = single_discs(drive)[disc]
+    if name == "phase_error":
+        return single, path
+    own = f"{table}.{ANY}.{name}"
+    common = next(known for known, mine in OWN.items() if own == mine or own.startswith(f"{mine}."))
+    return single, common + own[len(OWN[common]) :]
 
 
 def is_element(name: str) -> bool:
@@ -105,12 +184,17 @@ def read_field(drive: Drive, path: str) -> Any:
         When there is no such field or element.
     """
     parent, _, last = path.rpartition(".")
-    if is_element(last) and parent in field_kinds():
+    if is_element(last) and field_kind(parent) is not None:
         values = read_field(drive, parent)
         if not isinstance(values, tuple) or int(last) >= len(values):
             raise DriveError([f"{path}: {parent} has no element {last}"])
         return values[int(last)]
     count = element_count(drive, path)
+    drive, path = _of_disc(drive, path)
+    if path.endswith(".phase_error"):
+        return drive.crank.of[0].phase_error if drive.crank.of else 0.0
+    if path in ("disc.phases", "disc.planes"):
+        return getattr(drive.disc, path.replace("disc.", "disc_"))
     value: Any = drive
     for name in path.split("."):
         value = getattr(value, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
@@ -39,6 +40,10 @@ def describe_mistakes(
     return told
 
 
+GONE = {
+    "disc.torque_share": "is no field any more: what each disc carries is computed (disc.number_of_discs); leave it out"
+}
+"""Fields of earlier versions, and what to do without them."""
 UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
 
 
@@ -51,6 +56,8 @@ def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) 
     match detail["type"]:
         case "missing" | "missing_argument" | "missing_keyword_only_argument":
             return f"{path}: is missing"
+        case "unexpected_keyword_argument" | "extra_forbidden" if path in GONE and known is None:
+            return f"{path}: {GONE[path]}"
         case "unexpected_keyword_argument" | "extra_forbidden":
             siblings = fields_of(".".join(place[:-1])) if known is None else known
             where = "the drive definition" if known is None else "such a table"
@@ -71,9 +78,9 @@ def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) 
 
 
 def _unit_of(path: str) -> str:
-    from ltca.drive.fields import field_kinds
+    from ltca.drive.fields import field_kind
 
-    kind = field_kinds().get(path)
+    kind = field_kind(path)
     return f" in {label(kind.unit)}" if kind is not None and kind.unit else ""
 
 
@@ -88,5 +95,6 @@ def fields_of(table: str) -> tuple[str, ...]:
     """
     from ltca.drive.fields import field_kinds
 
+    table = re.sub(r"\.of\.[0-9]+\b", ".of.N", table)
     head = f"{table}." if table else ""
     return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in field_kinds() if path.startswith(head)))

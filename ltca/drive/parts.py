@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import asdict, field
+from math import pi
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -15,81 +16,30 @@ from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import (
     STRICT,
+    Angle,
     AxisOffset,
+    NonNegativeLength,
+    OneDisc,
+    OneEccentric,
     PlacementErrors as PlacementErrors,
     ProfileErrors as ProfileErrors,
     RollerErrors as RollerErrors,
     Runout as Runout,
     SignedLength,
 )
+from ltca.drive.materials import (
+    LengthProfile as LengthProfile,
+    Material as Material,
+    Materials as Materials,
+    contact_modulus as contact_modulus,
+)
 from ltca.drive.names import Name
 from ltca.drive.units import COUNT, quantity
 
+SAME_PART = 1e-9
+"""Angle between two flanks that are cut alike, rad: round-off of a phase, far below what moves a flank by a nanometre."""
+
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
-NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class Material:
-    """Linear-elastic material.
-
-    Attributes
-    ----------
-    youngs_modulus : float
-        MPa.
-    poisson_ratio : float
-        Between 0 and 0.5.
-    """
-
-    youngs_modulus: Annotated[float, quantity("MPa", gt=0.0)] = 206_000.0
-    poisson_ratio: Annotated[float, quantity("dimensionless", ge=0.0, lt=0.5)] = 0.3
-
-    @property
-    def plane_strain_compliance(self) -> float:
-        """(1 − ν²)/E in 1/MPa, the part of one body in 1/E*."""
-        return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class Materials:
-    """Material of each part."""
-
-    disc: Material = field(default_factory=Material)
-    wheel_pin: Material = field(default_factory=Material)
-    roller: Material = field(default_factory=Material)
-    inner_race: Material = field(default_factory=Material)
-    shaft_pin: Material = field(default_factory=Material)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class LengthProfile:
-    """Drop of a roller or pin generator from its cylinder toward the ends.
-
-    The terms add up; all zero is an uncrowned cylinder. With y from mid-length and L the length:
-
-    Attributes
-    ----------
-    crown_drop : float
-        Parabolic crown, drop at y = ±L/2, mm: ``crown_drop (2y/L)²``.
-    logarithmic_factor : float
-        Factor of the logarithmic profile ``factor · 0.00035 D ln(1/(1 − (2y/L)²))`` with D the diameter;
-        1 is the profile of ISO/TS 16281.
-    end_relief_length : float
-        Length of the parabolic end relief at each end, mm.
-    end_relief_depth : float
-        Its depth at y = ±L/2, mm.
-    """
-
-    crown_drop: NonNegativeLength = 0.0
-    logarithmic_factor: Annotated[float, quantity("dimensionless", ge=0.0)] = 0.0
-    end_relief_length: NonNegativeLength = 0.0
-    end_relief_depth: NonNegativeLength = 0.0
-
-    @property
-    def is_cylinder(self) -> bool:
-        """Whether the generator is straight to its ends."""
-        relieved = self.end_relief_length > 0.0 and self.end_relief_depth > 0.0
-        return self.crown_drop == 0.0 and self.logarithmic_factor == 0.0 and not relieved
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -104,11 +54,14 @@ class Crank:
         Actual less design eccentricity, mm.
     axis_offset : AxisOffset
         Crank axis against the centre of the pin shaft.
+    of : tuple of OneEccentric
+        What differs per disc, one entry each; empty where nothing does.
     """
 
     eccentricity: PositiveLength
     eccentricity_error: SignedLength = 0.0
     axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    of: tuple[OneEccentric, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -139,8 +92,11 @@ class Disc:
         Thickness of one disc, mm.
     number_of_discs : int
         Discs that share the torque.
-    torque_share : float
-        Part of the torque that the analysed disc carries; 1/number_of_discs unless given.
+    phases : tuple of float
+        Phase ζ of each disc's eccentric against that of the crank angle, rad; 2πk/n for an empty tuple.
+    planes : tuple of float
+        Axial place of each disc's middle, mm; side by side about 0 for an empty tuple. Without effect on any result
+        while pins and shafts do not bend.
     equidistant_offset : float
         Δr_P: the flank is generated with pins of radius r_P + Δr_P, mm (Eq. 1).
     shifting_offset : float
@@ -151,17 +107,33 @@ class Disc:
         Deviation of the flank along its normal.
     runout : Runout
         Centre of the flank against the bore.
+    of : tuple of OneDisc
+        What differs per disc, one entry each; empty where nothing does.
     """
 
     number_of_teeth: Annotated[int, Field(ge=3, le=1000), COUNT]
     thickness: PositiveLength
     number_of_discs: Annotated[int, Field(ge=1, le=10), COUNT] = 1
-    torque_share: Annotated[float, quantity("dimensionless", gt=0.0, le=1.0)] = 1.0
+    phases: tuple[Angle, ...] = ()
+    planes: tuple[SignedLength, ...] = ()
     equidistant_offset: SignedLength = 0.0
     shifting_offset: SignedLength = 0.0
     hole_errors: PlacementErrors = field(default_factory=PlacementErrors)
     profile_errors: ProfileErrors = field(default_factory=ProfileErrors)
     runout: Runout = field(default_factory=Runout)
+    of: tuple[OneDisc, ...] = ()
+
+    @property
+    def disc_phases(self) -> tuple[float, ...]:
+        """ζ of every disc, rad."""
+        count = self.number_of_discs
+        return self.phases or tuple(2.0 * pi * disc / count for disc in range(count))
+
+    @property
+    def disc_planes(self) -> tuple[float, ...]:
+        """Axial place of every disc, mm."""
+        count = self.number_of_discs
+        return self.planes or tuple(self.thickness * (disc - 0.5 * (count - 1)) for disc in range(count))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -240,7 +212,7 @@ class Load:
     Attributes
     ----------
     torque : float
-        Output torque T_out on the pin wheel, all discs together, N·mm.
+        Output torque T_out, on the pin wheel or, where that is held, on the pin shaft, all discs together, N·mm.
     light_torque : float
         Torque whose transmission error stands for the unloaded one, N·mm.
     direction : {"ccw", "cw"}
@@ -250,6 +222,19 @@ class Load:
     torque: Annotated[float, quantity("N*mm", gt=0.0)]
     light_torque: Annotated[float, quantity("N*mm", gt=0.0)] = 10_000.0
     direction: Literal["ccw", "cw"] = "ccw"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Installation:
+    """How the drive is built in.
+
+    Attributes
+    ----------
+    held : {"pin-shaft", "pin-wheel"}
+        The member that stands still; ``load.torque`` acts on the other one, which is the output.
+    """
+
+    held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -264,6 +249,8 @@ class Drive:
         The parts.
     load : Load
         Torque and direction.
+    installation : Installation
+        Which member is held.
     clearance : Clearance
         Bearing and pin-hole clearance.
     materials : Materials
@@ -277,6 +264,7 @@ class Drive:
     crank_bearing: CrankBearing
     pin_shaft: PinShaft
     load: Load
+    installation: Installation = field(default_factory=Installation)
     clearance: Clearance = field(default_factory=Clearance)
     materials: Materials = field(default_factory=Materials)
 
@@ -295,8 +283,32 @@ class Drive:
         """+1 for a crank driving counter-clockwise, −1 clockwise."""
         return 1 if self.load.direction == "ccw" else -1
 
+    @property
+    def wheel_is_held(self) -> bool:
+        """Whether the pin wheel stands still and the pin shaft is the output."""
+        return self.installation.held == "pin-wheel"
+
+    @property
+    def transmission_ratio(self) -> float:
+        """Turns of the crank for one of the output, negative where they turn against each other.
+
+        z_P/Δz with the pin shaft held, −z_C/Δz with the pin wheel held.
+        """
+        teeth = self.disc.number_of_teeth if self.wheel_is_held else self.pin_wheel.number_of_pins
+        return (-1.0 if self.wheel_is_held else 1.0) * teeth / self.tooth_number_difference
+
+    @property
+    def output_per_wheel_angle(self) -> float:
+        """Deviation of the output by the deviation `wheel_angle`: 1, or −z_P/z_C with the pin wheel held."""
+        if not self.wheel_is_held:
+            return 1.0
+        return -self.pin_wheel.number_of_pins / self.disc.number_of_teeth
+
     def wheel_moment(self, torque: float | None = None) -> float:
-        """Return the external moment on the wheel of the analysed disc, ccw positive, N·mm.
+        """Return the external moment on the wheel, ccw positive, in the mean over a turn, N·mm.
+
+        With the pin shaft held it is the same at every position. With the pin wheel held it is what holds the wheel, which
+        follows the crank's moment (`ltca.equilibrium.output_torque`).
 
         Parameters
         ----------
@@ -306,10 +318,10 @@ class Drive:
         Returns
         -------
         float
-            −T_out · torque_share for a crank driving counter-clockwise.
+            For a crank driving counter-clockwise −T_out, with the pin wheel held −T_out z_P/z_C.
         """
         total = self.load.torque if torque is None else torque
-        return -self.driving_sign * total * self.disc.torque_share
+        return -self.driving_sign * total * abs(self.output_per_wheel_angle)
 
     def load_words(self, torque: float | None = None) -> str:
         """Return torque and direction for the heading of a table.
@@ -321,6 +333,23 @@ class Drive:
         """
         total = self.load.torque if torque is None else torque
         return f"{total / 1000.0:.6g} N·m {self.load.direction}"
+
+    @property
+    def flank_turn(self) -> float:
+        """How far the flank of a drive of one disc is turned against its holes, −Δz ζ/z_C, rad."""
+        (phase,) = self.disc.disc_phases
+        return -self.tooth_number_difference * phase / self.disc.number_of_teeth
+
+    @property
+    def eccentric_phase(self) -> float:
+        """Actual phase of the eccentric of a drive of one disc, ζ and its error, rad."""
+        (phase,) = self.disc.disc_phases
+        return phase + (self.crank.of[0].phase_error if self.crank.of else 0.0)
+
+    @property
+    def part_turn(self) -> tuple[float, int, int]:
+        """Which part the disc of a drive of one disc is (`part_turn`)."""
+        return part_turn(self.flank_turn, self.disc.number_of_teeth, self.pin_shaft.number_of_pins)
 
     @property
     def bore_radius(self) -> float:
@@ -364,6 +393,9 @@ class Drive:
             "pin_shaft.pin_circle_radius": shaft.pin_circle_radius,
             "hole_radius": self.hole_radius,
         }
+        turn = self.part_turn[0]
+        if turn:
+            shape["flank_turn"] = turn
         for part in ("disc", "wheel_pin", "roller", "inner_race"):
             material: Material = getattr(self.materials, part)
             shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
@@ -380,6 +412,35 @@ def _hash(definition: dict[str, Any]) -> str:
     return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 
-def contact_modulus(first: Material, second: Material) -> float:
-    """Return E* of two materials, MPa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ (Johnson, Eq. 4.18)."""
-    return 1.0 / (first.plane_strain_compliance + second.plane_strain_compliance)
+def part_turn(turned: float, teeth: int, holes: int) -> tuple[float, int, int]:
+    """Return which part a disc is, and how that part stands in it.
+
+    Parameters
+    ----------
+    turned : float
+        How far the flank is turned against the holes, rad.
+    teeth, holes : int
+        z_C and z_PS.
+
+    Returns
+    -------
+    turn : float
+        Of the flank of the part, from 0 to a tooth pitch, the least that turning by hole pitches leaves, rad.
+    hole_pitches, tooth_pitches : int
+        The flank is turned by ``turn + 2π (hole_pitches/holes + tooth_pitches/teeth)``: the part stands in the disc turned
+        by that many hole pitches, and its teeth are counted from that many later.
+
+    Examples
+    --------
+    >>> part_turn(-3.141592653589793 / 13, 13, 8)  # half a tooth pitch is half a turn of 13 teeth, four hole pitches
+    (0.0, 4, -7)
+    """
+    pitch = 2.0 * pi / teeth
+
+    def left(step: int) -> float:
+        rest = (turned - 2.0 * pi * step / holes) % pitch
+        return 0.0 if min(rest, pitch - rest) < SAME_PART else rest
+
+    step = min(range(holes), key=lambda candidate: (round(left(candidate) / SAME_PART), candidate))
+    turn = left(step)
+    return turn, step, round((turned - turn - 2.0 * pi * step / holes) / pitch)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.fields import element_count, field_kinds, read_field
+from ltca.drive.fields import element_count, field_kind, field_kinds, own_path, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units import quantity
@@ -102,7 +102,7 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
     """
     found: Tolerances = {}
     for path, entry in _entries(table, "", problems):
-        kind = field_kinds().get(path)
+        kind = field_kind(path)
         if kind is None or not kind.unit:
             scattering = [name for name, known in field_kinds().items() if known.unit]
             problems.append(
@@ -148,6 +148,22 @@ def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Ma
     return entries
 
 
+def _per_disc(drive: Drive, tolerances: Tolerances) -> Tolerances:
+    """What scatters, disc by disc where each has it of its own; what is said of one disc stands before what is said of all."""
+    each: Tolerances = {}
+    several = drive.disc.number_of_discs > 1
+    for path, distribution in tolerances.items():
+        own = own_path(path, 0) if several else None
+        if own is None:
+            each[path] = distribution
+            continue
+        for disc in range(drive.disc.number_of_discs):
+            one = str(own_path(path, disc))
+            if one not in tolerances:
+                each[one] = distribution
+    return each
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Factors:
     """The scattering numbers of a drive in a row: what one sample draws.
@@ -168,7 +184,7 @@ class Factors:
 
     @classmethod
     def of_tolerances(cls, drive: Drive, tolerances: Tolerances) -> Factors:
-        """Return the factors of a drive.
+        """Return the factors of a drive; of several discs each scatters for itself.
 
         Raises
         ------
@@ -178,7 +194,8 @@ class Factors:
         found: list[tuple[str, int | None]] = []
         centres: list[float] = []
         problems = []
-        for path in tolerances:
+        each = _per_disc(drive, tolerances)
+        for path in each:
             count = element_count(drive, path)
             if count == 0:
                 problems.append(
@@ -193,7 +210,7 @@ class Factors:
             )
         if problems:
             raise DriveError(problems)
-        return cls(fields=tuple(found), centres=tuple(centres), distributions=tuple(tolerances.values()))
+        return cls(fields=tuple(found), centres=tuple(centres), distributions=tuple(each.values()))
 
     @property
     def paths(self) -> tuple[str, ...]:

@@ -45,12 +45,12 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     modulus = _modulus(drive)
     if modulus:
         return modulus  # what follows from it is no mistake of its own
-    share = used * drive.disc.torque_share
+    share = used / drive.disc.number_of_discs
     for named, value in (
         ("load.torque" if used == drive.load.torque else "torque", used),
         ("load.light_torque", drive.load.light_torque),
     ):
-        pressure = _pressure(drive, value * drive.disc.torque_share)
+        pressure = _pressure(drive, value / drive.disc.number_of_discs)
         if pressure > BORNE:
             return [
                 f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m and would press the wheel pins with some "

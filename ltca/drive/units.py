@@ -133,17 +133,6 @@ def check_count(value: Any) -> int:
     raise PydanticCustomError("quantity", "must be a whole number")
 
 
-def even_share(discs: Any) -> float:
-    """Return the part of the torque that each of some discs carries when none is given another.
-
-    Raises
-    ------
-    ValueError
-        For what is no count; the validation says so.
-    """
-    return 1.0 / max(1, check_count(discs))
-
-
 COUNT = BeforeValidator(check_count)
 """To be used in ``Annotated[int, Field(ge=4, le=1000), COUNT]``."""
 

@@ -1,14 +1,14 @@
-r"""Equilibrium of the floating disc at held crank angles (Eq. 43–44, 70–72, 85–89).
+r"""Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89).
 
 The pose q minimises Π(q) = Σ U_i(δ_i(q)) − T_load · wheel_angle. Its gradient is the residual, its Hessian the
-4×4 tangent; `ltca.equilibrium.newton` goes downhill. Under a light load a disc that starts with play wanders between
+tangent; `ltca.equilibrium.newton` goes downhill. Under a light load a disc that starts with play wanders between
 contacts that take turns. Such positions are solved under a heavier torque, which leaves no play, and followed from there
 down to their own.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from ltca.compliance.response import BatchModel, ComplianceModel, Response
 from ltca.equilibrium.newton import Search
+from ltca.equilibrium.reducer import disc_responses, geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.first_contact import turn_to_contact
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, ContactGeometry, disc_pose
 
 FloatArray = NDArray[np.float64]
 
@@ -41,8 +42,8 @@ class Equilibrium:
         φ_C, rad.
     wheel_moment : array, shape (positions,)
         External moment on the wheel, N·mm.
-    pose : array, shape (positions, 4)
-        q of `ltca.geometry.pairs`.
+    pose : array, shape (positions, 3 discs + 1)
+        q of `ltca.geometry.pairs`: x, y and rotation of disc after disc, then the wheel angle.
     response : Response
         Contacts at that pose.
     residual : array, shape (positions,)
@@ -59,12 +60,28 @@ class Equilibrium:
     iterations: NDArray[np.intp]
 
 
+def equilibrium_of_disc(found: Equilibrium, disc: int) -> Equilibrium:
+    """Return what one of several discs has of balanced positions: its pose and contacts, the moment that it carries."""
+    response = disc_responses(found.response)[disc]
+    return replace(
+        found, wheel_moment=response.force[:, WHEEL_ANGLE], pose=disc_pose(found.pose, disc), response=response
+    )
+
+
 def lever_arms(model: ComplianceModel) -> FloatArray:
-    """Return the lengths that turn the residual into forces, mm: 1, 1, e z_C, e z_P; (4,) or (positions, 4)."""
-    place = model.geometry.placement
-    wheel = place.eccentricity * place.reduction_ratio
-    one = np.ones_like(wheel)
-    return np.concatenate(np.atleast_1d(one, one, wheel - place.eccentricity, wheel), axis=-1)
+    """Return the lengths that turn the residual into forces, mm: 1, 1, e z_C for each disc, and e z_P.
+
+    Returns
+    -------
+    array, shape (coordinates,) or (positions, coordinates)
+        One row for all positions where they are of one drive.
+    """
+    arms = []
+    for geometry in geometries(model):
+        wheel = geometry.placement.eccentricity * geometry.placement.reduction_ratio
+        one = np.ones_like(wheel)
+        arms += [one, one, wheel - geometry.placement.eccentricity]
+    return np.concatenate(np.atleast_1d(*arms, wheel), axis=-1)
 
 
 def solve_equilibrium(
@@ -83,8 +100,8 @@ def solve_equilibrium(
         Held crank angles φ_C, rad.
     wheel_moment : float or array, shape (positions,)
         External moment on the wheel, ccw positive, N·mm.
-    start : array, shape (positions, 4), optional
-        Poses to start from; by default the disc on the inner-race centre and the wheel turned to first contact.
+    start : array, shape (positions, coordinates), optional
+        Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
 
     Returns
     -------
@@ -101,7 +118,7 @@ def solve_equilibrium(
     lever = lever_arms(model)
     load = np.abs(moment) / lever[..., WHEEL_ANGLE]
     if start is None:
-        start = _at_first_contact(model.geometry, angle, moment)
+        start = _at_first_contact(model, angle, moment)
     pose = np.array(start, dtype=float)
     search = Search(model, angle, moment, lever, load, pose)
     left = search.iterate(ITERATIONS)
@@ -120,26 +137,31 @@ def solve_equilibrium(
     )
 
 
-def _at_first_contact(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> FloatArray:
-    """Poses with the disc on the inner-race centre and the wheel turned until a pin touches."""
-    pose = np.zeros((angle.size, 4))
+def _at_first_contact(model: ComplianceModel, angle: FloatArray, moment: FloatArray) -> FloatArray:
+    """Poses with the discs on the inner-race centres and the wheel turned until the first pin touches one of them."""
+    pose = np.zeros((angle.size, DISC_COORDINATES * len(model.discs) + 1))
     sense = np.where(moment < 0.0, -1, 1)
     for value in np.unique(sense):
         rows = sense == value
-        pose[rows, WHEEL_ANGLE] = _take_up(geometry.take(rows), angle[rows], int(value))
+        turned = [_take_up(geometry.take(rows), angle[rows], int(value)) for geometry in geometries(model)]
+        pose[rows, WHEEL_ANGLE] = value * np.min(value * np.stack(turned), axis=0)
     return pose
+
+
+def _taken(search: Search, rows: NDArray[np.intp]) -> ComplianceModel:
+    return cast(BatchModel, search.model).take(rows) if search.batch else search.model
 
 
 def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: FloatArray) -> Search:
     """The search for some positions under other torques."""
-    model = cast(BatchModel, search.model).take(rows) if search.batch else search.model
+    model = _taken(search, rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Solve positions from heavier torques down to their own; return those that have no balance there either."""
-    pose = _at_first_contact(search.model.geometry.take(rows), search.angle[rows], search.moment[rows])
+    pose = _at_first_contact(_taken(search, rows), search.angle[rows], search.moment[rows])
     level = np.full(rows.size, np.nan)
     for power in range(1, HEAVIEST + 1):
         new = np.nonzero(np.isnan(level))[0]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance.response import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import ROTATIONS, WHEEL_ANGLE
+from ltca.geometry.pairs import WHEEL_ANGLE, rotations
 
 FloatArray = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class Search:
         Loads at a pose.
     angle, moment : array, shape (positions,)
         φ_C, rad, and external moment on the wheel, N·mm.
-    lever : array, shape (4,) or (positions, 4)
+    lever : array, shape (coordinates,) or (positions, coordinates)
         What turns the residual into forces, mm.
     load : array, shape (positions,)
         Moment by the lever of the wheel, N.
@@ -67,9 +67,12 @@ class Search:
     ) -> None:
         self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
         self.pose = pose
-        self.smallest_pin = float(np.min(model.geometry.placement.wheel_pin_radii))
-        self.batch = model.geometry.placement.is_batch
-        self.half_pitch = np.pi / model.geometry.placement.reduction_ratio
+        self.place = model.discs[0].geometry.placement
+        """The wheel's places are those of every disc."""
+        self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
+        self.batch = self.place.is_batch
+        self.half_pitch = np.pi / self.place.reduction_ratio
+        self.rotations = rotations(pose.shape[1])
         self.history: list[FloatArray] = []
         self.iterations = np.zeros(angle.size, dtype=np.intp)
         self.slipped = np.zeros(angle.size, dtype=bool)
@@ -121,7 +124,7 @@ class Search:
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
             taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
             self.pose[active] = taken
-            self.slipped[active] = np.max(np.abs(taken[:, ROTATIONS]), axis=1) > self.half_pitch
+            self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = np.max(np.abs(gradient), axis=1)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))
             bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
@@ -132,7 +135,7 @@ class Search:
 
     def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
-        size = float(np.max(np.abs(self.model.geometry.placement.wheel_pin_centres)))
+        size = float(np.max(np.abs(self.place.wheel_pin_centres)))
         round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
         load = self.load[rows]
         return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
@@ -172,13 +175,13 @@ class Search:
 def _damped_step(
     tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the step of every mode, −g/(|λ| + μ tr(H)/4) within the bound, and the slope g·step.
+    """Return the step of every mode, −g/(|λ| + μ tr(H)/n) within the bound, and the slope g·step.
 
     With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
     downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
     direction still corrects the others.
     """
-    stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / 4.0
+    stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / tangent.shape[1]
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
     stiffness = np.where(stiffness > 0.0, stiffness, 1.0)
     values, modes = np.linalg.eigh(tangent)

@@ -71,7 +71,7 @@ def pose_of_lead(
     unknowns : array, shape (positions, 4)
         δ_r, δ_t, δ_φ, δ_φC.
     """
-    place = model.geometry.placement
+    place = model.discs[0].geometry.placement
     ideal = place.reduction_ratio * wheel_position
     lead = unknowns[:, 3]
     turned = np.exp(1j * ideal)
@@ -84,7 +84,7 @@ def pose_of_lead(
 
 def lead_of_pose(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted."""
-    place = model.geometry.placement
+    place = model.discs[0].geometry.placement
     lead = -place.reduction_ratio * pose[:, WHEEL_ANGLE]
     ideal = crank_angle - lead
     race_shift = place.eccentricity * np.exp(0.5j * lead) * 2j * np.sin(0.5 * lead)
@@ -138,7 +138,7 @@ def _iterate(
     model: ComplianceModel, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
 ) -> PaperIteration:
     lever = lever_arms(model)
-    reach = model.geometry.placement.eccentricity
+    reach = model.discs[0].geometry.placement.eccentricity
     load = np.abs(wheel_moment) / lever[WHEEL_ANGLE]
     guess = np.array(unknowns, dtype=float)
     count = guess.shape[0]
@@ -224,7 +224,7 @@ def solve_paper_equilibrium(
     """
     requested = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), requested.shape)
-    ratio = model.geometry.placement.reduction_ratio
+    ratio = model.discs[0].geometry.placement.reduction_ratio
     wheel, unknowns = lead_of_pose(model, requested, start)
     steps = np.zeros(requested.size, dtype=np.intp)
     off: list[float] = []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +20,13 @@ class Boundary:
     ----------
     first, count : int
         Place of the stations in the matrix.
+    offset : float
+        Parameter of the first station, rad.
     """
 
     first: int
     count: int
+    offset: float = 0.0
 
     def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
         """Return stations and weights of local Lagrange interpolation, shapes (…, 6).
@@ -33,7 +36,7 @@ class Boundary:
         parameter : array
             Places, rad, period 2π.
         """
-        place = np.mod(parameter, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
+        place = np.mod(parameter - self.offset, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
         cell = np.floor(place)
         local = (place - cell)[..., None]
         nodes = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
@@ -62,7 +65,7 @@ class Boundary:
 
     def parameters(self, times: int = 1) -> FloatArray:
         """Return the parameters of the places of `refined`, rad."""
-        return 2.0 * np.pi * np.arange(times * self.count) / (times * self.count)
+        return self.offset + 2.0 * np.pi * np.arange(times * self.count) / (times * self.count)
 
 
 def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:
@@ -82,4 +85,31 @@ def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:
     firsts = np.cumsum(counts) - counts
     return tuple(
         Boundary(first=first, count=count) for first, count in zip(firsts.tolist(), counts.tolist(), strict=True)
+    )
+
+
+def turned_boundaries(
+    boundaries: tuple[Boundary, ...], turn: float, flank_turn: float, hole_pitches: int
+) -> tuple[Boundary, ...]:
+    """Return flank, bore and holes of a part that stands turned in its disc, as the disc counts them.
+
+    Parameters
+    ----------
+    boundaries : tuple of Boundary
+        Of flank, bore and each hole of the part.
+    turn : float
+        How far the part is turned, rad.
+    flank_turn : float
+        Parameter of the disc's flank where that of the part's begins, rad.
+    hole_pitches : int
+        The same turn in hole pitches.
+    """
+    flank, bore, *holes = boundaries
+    turned = [replace(hole, offset=hole.offset + turn) for hole in holes]
+    first = -hole_pitches % len(holes)
+    return (
+        replace(flank, offset=flank.offset + flank_turn),
+        replace(bore, offset=bore.offset + turn),
+        *turned[first:],
+        *turned[:first],
     )

@@ -6,6 +6,8 @@ what is left is the backlash between flank and pins.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,8 +34,8 @@ def first_contact(
         The drive.
     crank_angle : array, shape (positions,)
         φ_C, rad.
-    coordinate : {2, 3}
-        What turns: the disc about its centre (2) or the wheel (3).
+    coordinate : {2, −1}
+        What turns: the disc about its centre (2) or the wheel (−1).
     sense : {+1, −1}
         Counter-clockwise or clockwise.
 
@@ -193,25 +195,35 @@ def _farthest_free(
     return inside, pin, stopping > level
 
 
-def backlash(geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int) -> FloatArray:
-    """Return the backlash of disc (2) or wheel (3): rotation between first contact in both senses, rad.
+def backlash(
+    geometry: ContactGeometry | Sequence[ContactGeometry], crank_angle: FloatArray, coordinate: int
+) -> FloatArray:
+    """Return the backlash of disc (2) or wheel (−1): rotation between first contact in both senses, rad.
 
-    Parameters are those of `first_contact`.
+    Parameters
+    ----------
+    geometry : ContactGeometry or sequence of them
+        The drive; of several discs on one wheel each, which turns until the first of them touches.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    coordinate : {2, −1}
+        What turns.
     """
-    forward, _ = first_contact(geometry, crank_angle, coordinate, 1)
-    backward, _ = first_contact(geometry, crank_angle, coordinate, -1)
+    discs = [geometry] if isinstance(geometry, ContactGeometry) else geometry
+    forward = np.min([first_contact(disc, crank_angle, coordinate, 1)[0] for disc in discs], axis=0)
+    backward = np.max([first_contact(disc, crank_angle, coordinate, -1)[0] for disc in discs], axis=0)
     return np.asarray(forward - backward)
 
 
 def unloaded_transmission_error(
-    geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1
+    geometry: ContactGeometry | Sequence[ContactGeometry], crank_angle: FloatArray, driving_sign: int = 1
 ) -> FloatArray:
-    """Return the transmission error without load and without clearances, from geometry alone (Eq. 6), rad.
+    """Return the wheel angle without load and without clearances, from geometry alone (Eq. 6), rad.
 
     Parameters
     ----------
-    geometry : ContactGeometry
-        The drive.
+    geometry : ContactGeometry or sequence of them
+        The drive; of several discs on one wheel each.
     crank_angle : array, shape (positions,)
         φ_C, rad.
     driving_sign : {+1, −1}
@@ -222,8 +234,10 @@ def unloaded_transmission_error(
     array, shape (positions,)
         Wheel angle at first contact: negative when a crank driving counter-clockwise takes up the backlash.
     """
-    rotation, _ = first_contact(geometry, crank_angle, WHEEL_ANGLE, -driving_sign)
-    return rotation
+    discs = [geometry] if isinstance(geometry, ContactGeometry) else geometry
+    turned = [first_contact(disc, crank_angle, WHEEL_ANGLE, -driving_sign)[0] for disc in discs]
+    # The sense of the load is −driving_sign: the first disc that touches stops the wheel.
+    return np.asarray(-driving_sign * np.min([-driving_sign * each for each in turned], axis=0))
 
 
 def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:

@@ -72,6 +72,8 @@ class FlankProfile:
         u = z_P/Δz, the frequency of the trochoid, a whole number.
     offset : float
         r_P + Δr_P, distance of the flank from the trochoid, mm.
+    turn : complex
+        Unit vector of the root at θ = 0 in the frame of the disc: how far the flank is turned against bore and holes.
     centre : complex
         Centre of the flank in the frame of the disc, whose origin is the centre of the bore, mm.
     deviation : ProfileDeviation or None
@@ -82,6 +84,7 @@ class FlankProfile:
     eccentricity: BatchScalar
     reduction_ratio: float
     offset: BatchScalar
+    turn: complex | ComplexArray = 1.0
     centre: complex | ComplexArray = 0.0
     deviation: ProfileDeviation | None = None
 
@@ -94,6 +97,7 @@ class FlankProfile:
             eccentricity=drive.crank.eccentricity,
             reduction_ratio=drive.reduction_ratio,
             offset=drive.pin_wheel.pin_radius + drive.disc.equidistant_offset,
+            turn=complex(unit(drive.flank_turn)) if drive.flank_turn else 1.0,
             centre=runout.amount * complex(unit(runout.angle)),
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
@@ -119,17 +123,21 @@ class FlankProfile:
         centres = np.array([(runout.amount, runout.angle) for *_, runout in flanks])
         rows = np.repeat(columns, positions, axis=0)
         centre = np.repeat(centres[:, 0] * unit(centres[:, 1]), positions)
+        turns = np.array([drive.flank_turn for drive in drives])
         return cls(
             generating_radius=rows[:, 0:1],
             eccentricity=rows[:, 1:2],
             reduction_ratio=drives[0].reduction_ratio,
             offset=rows[:, 2:3],
+            turn=np.repeat(unit(turns), positions)[:, None] if np.any(turns) else 1.0,
             centre=centre[:, None],
             deviation=ProfileDeviation.stack([d.disc.profile_errors for d in drives], positions),
         )
 
     def locus(self, parameter: FloatArray) -> CurvePoints:
         """Return the design trochoid about its own centre, and its first two derivatives by the parameter θ.
+
+        A flank that is turned against the holes has its trochoid turned with it.
 
         Parameters
         ----------
@@ -147,7 +155,14 @@ class FlankProfile:
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))
+        if self.is_turned:
+            circle, crank = circle * self.turn, crank * self.turn
         return CurvePoints(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether a flank is turned against its holes."""
+        return isinstance(self.turn, np.ndarray) or self.turn != 1.0
 
     @property
     def contact_offset(self) -> BatchScalar:
@@ -172,7 +187,7 @@ class FlankProfile:
             return CurvePoints(c + self.centre, dc, ddc)
         # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
         u = self.reduction_ratio
-        circle = self.generating_radius * direction
+        circle = self.generating_radius * direction * self.turn
         dddc = 1j * (u**3 * (circle - c) - circle)
         speed = np.abs(dc)
         t = dc / speed

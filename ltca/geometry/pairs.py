@@ -22,10 +22,38 @@ from ltca.geometry.rotation import unit
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-X, Y, DISC_ROTATION, WHEEL_ANGLE = range(4)
-"""Places of the coordinates in a pose, in gradients by it and in forces on it."""
+X, Y, DISC_ROTATION, WHEEL_ANGLE = 0, 1, 2, -1
+"""Places of the coordinates in a pose, in gradients by it and in forces on it; the wheel angle is the last one."""
+DISC_COORDINATES = 3
+"""x, y and rotation: what every disc has of its own."""
 DISC_PLACE = slice(X, Y + 1)
-ROTATIONS = slice(DISC_ROTATION, WHEEL_ANGLE + 1)
+
+
+def rotations(coordinates: int) -> NDArray[np.intp]:
+    """Return the places of the rotations in the pose of one or several discs with the wheel angle as the last one.
+
+    Examples
+    --------
+    >>> rotations(4).tolist(), rotations(7).tolist()
+    ([2, 3], [2, 5, 6])
+    """
+    return np.append(np.arange(DISC_ROTATION, coordinates - 1, DISC_COORDINATES), coordinates - 1)
+
+
+def disc_pose(pose: FloatArray, disc: int) -> FloatArray:
+    """Return the pose of one of several discs: its x, y and rotation, and the wheel angle, shape (…, 4).
+
+    Parameters
+    ----------
+    pose : array, shape (…, 3 discs + 1)
+        x, y and rotation of disc after disc, then the wheel angle.
+    disc : int
+        Its number.
+    """
+    if pose.shape[-1] == DISC_COORDINATES + 1:
+        return pose
+    first = DISC_COORDINATES * disc
+    return pose[..., [first + X, first + Y, first + DISC_ROTATION, WHEEL_ANGLE]]
 
 
 def disc_displacement(pose: FloatArray) -> ComplexArray:
@@ -179,7 +207,7 @@ class ContactGeometry:
         return ContactGeometry(placement=self.placement.take(rows), profile=self.profile.take(rows))
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
-        """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, rad.
+        """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, on a flank that is not turned, rad.
 
         Parameters
         ----------
@@ -187,6 +215,8 @@ class ContactGeometry:
             φ_C, rad.
         """
         pins = np.angle(self.placement.wheel_pin_centres)
+        if self.profile.is_turned:
+            pins = pins - np.angle(self.profile.turn)
         return np.asarray(crank_angle)[:, None] / self.placement.reduction_ratio + pins
 
     def flank(self, crank_angle: FloatArray, pose: FloatArray, start: FloatArray | None = None) -> FlankMotion:

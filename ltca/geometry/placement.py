@@ -61,6 +61,8 @@ class Placement:
         r_i, and r_o with half the bearing clearance, mm.
     eccentricity : float
         Actual e, mm.
+    eccentric_phase : float
+        Actual phase of the eccentric against the crank angle, rad.
     crank_axis, wheel_axis : complex
         Places of both axes in the fixed frame, mm.
     cage_speed : float
@@ -80,6 +82,7 @@ class Placement:
     inner_race_radius: BatchScalar
     bore_radius: BatchScalar
     eccentricity: BatchScalar
+    eccentric_phase: BatchScalar
     crank_axis: complex | ComplexArray
     wheel_axis: complex | ComplexArray
     cage_speed: BatchScalar
@@ -87,11 +90,12 @@ class Placement:
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Placement:
-        """Return the places of a drive's parts."""
+        """Return the places of the parts of a drive of one disc (`ltca.drive.single_discs`)."""
         wheel, bearing, shaft = drive.pin_wheel, drive.crank_bearing, drive.pin_shaft
         holes = shaft.number_of_pins
         rollers = bearing.number_of_rollers
         pitch_radius = bearing.inner_race_radius + bearing.roller_radius
+        (phase,) = drive.disc.disc_phases
         pocket_error = _filled(bearing.roller_errors.tangential, rollers) / pitch_radius
         return cls(
             wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
@@ -100,11 +104,12 @@ class Placement:
             hole_radii=drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, holes),
             shaft_pin_centres=_circle(shaft.pin_circle_radius, holes, shaft.pin_errors),
             shaft_pin_radii=shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, holes),
-            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error,
+            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error + phase,
             roller_radii=bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers),
             inner_race_radius=bearing.inner_race_radius,
             bore_radius=drive.bore_radius,
             eccentricity=drive.crank.eccentricity + drive.crank.eccentricity_error,
+            eccentric_phase=drive.eccentric_phase,
             crank_axis=drive.crank.axis_offset.place,
             wheel_axis=wheel.axis_offset.place,
             cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
@@ -157,9 +162,13 @@ class Placement:
                 stacked[item.name] = np.repeat(rows.reshape(len(places), -1), positions, axis=0)
         return cls(**stacked)
 
+    def eccentric_direction(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return the unit vector from the crank axis to the centre of inner race and cage, in the fixed frame."""
+        return unit(np.asarray(crank_angle) + _flat(self.eccentric_phase))
+
     def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the centre of inner race and cage, e·e^{iφ_C} from the crank axis, in the fixed frame, mm (Eq. 47)."""
-        return np.asarray(_flat(self.crank_axis) + _flat(self.eccentricity) * unit(crank_angle))
+        """Return the centre of inner race and cage, e·e^{i(φ_C + ζ)} from the crank axis, in the fixed frame, mm (Eq. 47)."""
+        return np.asarray(_flat(self.crank_axis) + _flat(self.eccentricity) * self.eccentric_direction(crank_angle))
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, n_BR)."""

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.pairs import (
     DISC_PLACE,
-    ROTATIONS,
     WHEEL_ANGLE,
     ContactGeometry,
     FlankMotion,
@@ -31,6 +30,7 @@ from ltca.geometry.pairs import (
     X,
     Y,
     disc_displacement,
+    rotations,
 )
 
 FloatArray = NDArray[np.float64]
@@ -128,7 +128,7 @@ class _Programme:
         self.rays = geometry.rollers(angle)
         reach = float(place.eccentricity) * place.reduction_ratio
         self.lever = np.ones(4)
-        self.lever[ROTATIONS] = reach
+        self.lever[rotations(4)] = reach
         self.touching = TOUCHING * float(np.max(np.abs(place.wheel_pin_centres)))
         self.pitch = np.pi / place.reduction_ratio
         self.stiffness = np.full(angle.size, 1.0 / (FIRST_YIELD * reach))

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import is_dataclass, replace
 from typing import Any
 
 from pydantic import ValidationError
 
-from ltca.drive.fields import field_kinds, is_element, read_field
+from ltca.drive.deviations import DiscClearance, OneDisc, OneEccentric
+from ltca.drive.fields import field_kind, field_kinds, is_element, numbered, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.drive.units import even_share
 from ltca.errors import DriveError, did_you_mean
 from ltca.reading.physical_checks import find_contradictions
 
@@ -42,25 +41,25 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     0.01
     """
     tree: dict[str, Any] = {}
-    even = abs(drive.disc.torque_share * drive.disc.number_of_discs - 1.0) < 1e-12  # not a share of its own
-    if "disc.number_of_discs" in values and "disc.torque_share" not in values and even:  # as in a drive file
-        with suppress(ValueError):
-            values = {**values, "disc.torque_share": even_share(values["disc.number_of_discs"])}
     arrays: dict[str, list[Any]] = {}
     whole = {}
     for path, value in values.items():
         parent, _, last = path.rpartition(".")
-        if is_element(last) and parent in field_kinds():
+        if is_element(last) and field_kind(parent) is not None:
             if parent not in arrays:
                 arrays[parent] = list(values.get(parent, read_field(drive, parent)))
             if int(last) >= len(arrays[parent]):
                 raise DriveError([f"{path}: {parent} has no element {last}"])
             arrays[parent][int(last)] = value
-        elif path not in field_kinds():
+        elif field_kind(path) is None:
             raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
         else:
             whole[path] = value
+    own: dict[tuple[str, int], dict[str, Any]] = {}
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
+        if (place := numbered(path)) is not None:
+            own.setdefault(place[:2], {})[place[2]] = value
+            continue
         branch = tree
         *above, name = path.split(".")
         for step in above:
@@ -68,11 +67,52 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
         branch[name] = value
     problems: list[str] = []
     changed: Drive = _replaced(drive, tree, "", problems)
+    if own and not problems:
+        changed = _with_own(changed, own, problems)
     if not problems and check:
         problems += find_contradictions(changed)
     if problems:
         raise DriveError(problems)
     return changed
+
+
+def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], problems: list[str]) -> Drive:
+    """Replace fields of single discs; what one has not of its own begins as that of all."""
+    discs = drive.disc.number_of_discs
+    rows: dict[str, list[Any]] = {
+        "disc": [*(drive.disc.of or (OneDisc(),) * discs)],
+        "crank": [*(drive.crank.of or (OneEccentric(),) * discs)],
+    }
+    for (table, number), values in own.items():
+        part = table.partition(".")[0]
+        if number >= len(rows[part]):
+            problems.append(f"{table}.{number}: there is no disc {number}; disc.number_of_discs = {discs}")
+            continue
+        tree: dict[str, Any] = {}
+        for name, value in values.items():
+            first, _, rest = name.partition(".")
+            tree.setdefault(first, {})[rest] = value
+        entry = rows[part][number]
+        filled = {name: _begun(drive, entry, name) for name, below in tree.items() if "" not in below}
+        changes = {name: below[""] if "" in below else below for name, below in tree.items()}
+        rows[part][number] = _replaced(replace(entry, **filled), changes, f"{table}.{number}.", problems)
+    return replace(
+        drive,
+        disc=replace(drive.disc, of=tuple(rows["disc"]) if any(key[0] == "disc.of" for key in own) else drive.disc.of),
+        crank=replace(
+            drive.crank, of=tuple(rows["crank"]) if any(key[0] == "crank.of" for key in own) else drive.crank.of
+        ),
+    )
+
+
+def _begun(drive: Drive, entry: Any, name: str) -> Any:
+    """A table of one disc, or what it takes the place of."""
+    mine = getattr(entry, name)
+    if mine is not None:
+        return mine
+    if name == "clearance":
+        return DiscClearance()
+    return drive.crank_bearing.roller_errors if name == "roller_errors" else getattr(drive.disc, name)
 
 
 def _replaced(part: Any, tree: dict[str, Any], prefix: str, problems: list[str]) -> Any:

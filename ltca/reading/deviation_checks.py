@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.drive.fields import ANY, OWN
 from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.rotation import unit
@@ -22,6 +25,45 @@ POINTS_PER_WAVE = 24
 def deviation_bound(drive: Drive) -> float:
     """Return the largest deviation accepted, mm: beyond a tenth of the smallest radius it is a different design."""
     return 0.1 * min(drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius, drive.pin_shaft.pin_radius)
+
+
+def find_disc_problems(drive: Drive) -> Iterator[str]:
+    """Yield what is wrong with what is said of single discs: an entry for each of them, or none at all."""
+    discs = drive.disc.number_of_discs
+    for path, entries in (
+        ("disc.phases", drive.disc.phases),
+        ("disc.planes", drive.disc.planes),
+        ("disc.of", drive.disc.of),
+        ("crank.of", drive.crank.of),
+    ):
+        if entries and len(entries) != discs:
+            yield f"{path} has {len(entries)} entries: must have {discs}, one for each disc (disc.number_of_discs)"
+    planes, thickness = sorted(drive.disc.planes), drive.disc.thickness
+    for before, after in pairwise(planes):
+        if after - before < thickness * (1.0 - 1e-9):
+            yield (
+                f"disc.planes holds {before:g} and {after:g} mm: must be at least {thickness:g} mm apart, the thickness of "
+                "a disc"
+            )
+    if planes and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
+        yield f"disc.planes has the mean {sum(planes) / len(planes):g} mm: must be 0 mm, planes are centred on 0"
+    bound = min(deviation_bound(drive), 0.5 * drive.crank.eccentricity) / drive.crank.eccentricity
+    for number, entry in enumerate(drive.crank.of):
+        if abs(entry.phase_error) > bound:
+            yield (
+                f"crank.of.{number}.phase_error = {entry.phase_error:g} rad: must be at most {bound:.4g} rad in size: the "
+                "eccentric's centre moves by a tenth of the smallest pin or roller radius, or by half the eccentricity"
+            )
+
+
+def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
+    """Return a problem of a drive of one disc alone as that of the whole drive: by the fields the disc has of its own."""
+    for common, own in OWN.items():
+        table, _, name = own.replace(ANY, "").replace("..", ".").partition(".of.")
+        entries = drive.disc.of if table == "disc" else drive.crank.of
+        if entries and getattr(entries[disc], name) is not None:
+            problem = re.sub(rf"\b{re.escape(common)}\b", own.replace(ANY, str(disc)), problem)
+    return problem
 
 
 def find_deviation_problems(drive: Drive) -> Iterator[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass, fields
 from importlib import resources
 from pathlib import Path
@@ -15,7 +14,6 @@ from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, parse_tolerances
-from ltca.drive.units import even_share
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.physical_checks import find_contradictions
@@ -247,10 +245,6 @@ def build_drive(table: dict[str, Any]) -> Drive:
 
 
 def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
-    disc = table.get("disc")
-    if isinstance(disc, dict) and "torque_share" not in disc:
-        with suppress(ValueError):
-            table = {**table, "disc": {**disc, "torque_share": even_share(disc.get("number_of_discs", 1))}}
     try:
         return _ADAPTER.validate_python(table)
     except ValidationError as error:

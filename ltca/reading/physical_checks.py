@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 from math import pi, sin
 
@@ -10,7 +11,13 @@ import numpy as np
 
 from ltca.drive.parts import Drive, LengthProfile
 from ltca.geometry.flank import FlankProfile
-from ltca.reading.deviation_checks import find_deviation_problems, find_flank_problems
+from ltca.drive.single_discs import single_discs, without_own
+from ltca.reading.deviation_checks import (
+    find_deviation_problems,
+    find_disc_problems,
+    find_flank_problems,
+    named_in_disc,
+)
 
 # Fits that are exact in the definition (r_i + 2 r_BR = r_o) must survive the rounding of their sum.
 ROUNDING = 1e-9
@@ -29,6 +36,21 @@ def find_contradictions(drive: Drive) -> list[str]:
     list of str
         One sentence each, with field, value, bound and unit; empty for a sound drive.
     """
+    problems = list(find_disc_problems(drive))
+    if problems:
+        return problems
+    common = single_discs(without_own(drive))[0]
+    problems = _find_in_disc(common)
+    for number, single in enumerate(single_discs(drive)):
+        alike = replace(single, disc=replace(single.disc, phases=common.disc.phases, planes=common.disc.planes))
+        if alike != common:
+            own = [named_in_disc(drive, problem, number) for problem in _find_in_disc(single)]
+            problems += [problem for problem in own if problem not in problems]
+    return problems
+
+
+def _find_in_disc(drive: Drive) -> list[str]:
+    """Contradictions of a drive of one disc."""
     problems = [problem for check in FIRST for problem in check(drive)]
     if problems:
         return problems  # the geometry below needs them
@@ -41,15 +63,10 @@ def find_contradictions(drive: Drive) -> list[str]:
 def is_sound(drive: Drive) -> bool:
     """Tell whether a drive is without contradictions; quicker than naming them, for what is cheap comes first."""
     checks = (*FIRST, *BESIDE, _flank, find_flank_problems)
-    return all(next(iter(check(drive)), None) is None for check in checks)
-
-
-def _torque_share(drive: Drive) -> Iterator[str]:
-    if drive.disc.number_of_discs == 1 and drive.disc.torque_share != 1.0:
-        yield (
-            f"disc.torque_share = {drive.disc.torque_share:g}: must be 1, a single disc (disc.number_of_discs = 1) carries "
-            "the whole torque"
-        )
+    if next(find_disc_problems(drive), None) is not None:
+        return False
+    singles = {replace(each, disc=replace(each.disc, phases=(), planes=())): each for each in single_discs(drive)}
+    return all(next(iter(check(single)), None) is None for single in singles.values() for check in checks)
 
 
 def _tooth_numbers(drive: Drive) -> Iterator[str]:
@@ -254,7 +271,7 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
             yield f"{path}.logarithmic_factor = {profile.logarithmic_factor:g}: must be at most 100"
 
 
-FIRST = (find_deviation_problems, _torque_share, _tooth_numbers)
+FIRST = (find_deviation_problems, _tooth_numbers)
 """What the geometry needs."""
 BESIDE = (_pins, _bearing, _holes, _length_profiles)
 """What is looked at whatever the flank is."""

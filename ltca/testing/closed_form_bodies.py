@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.hertz import cylinder_approach, half_plane_approach
-from ltca.drive.nominal_shape import nominal_shape
+from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement

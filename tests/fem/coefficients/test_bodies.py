@@ -19,7 +19,7 @@ from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleShape, DriveShapes, RingShape
-from ltca.drive.nominal_shape import nominal_shape
+from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Material
 from ltca.reading.changes import with_fields
 from ltca.reading.coefficient_laws import compressed_cylinder, project_rigid_motions

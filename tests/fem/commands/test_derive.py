@@ -20,7 +20,7 @@ from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficient_files import find_case_coefficients
 from ltca.compliance.coefficients import load_coefficients
-from ltca.drive.nominal_shape import nominal_shape
+from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, FaultError
 from ltca.reading.coefficient_file import read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import check_coefficients

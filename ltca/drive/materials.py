@@ -1,0 +1,79 @@
+"""What parts are made of, linear-elastic, and the profile they are ground to along their length."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import Annotated
+
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import STRICT, NonNegativeLength
+from ltca.drive.units import quantity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Material:
+    """Linear-elastic material.
+
+    Attributes
+    ----------
+    youngs_modulus : float
+        MPa.
+    poisson_ratio : float
+        Between 0 and 0.5.
+    """
+
+    youngs_modulus: Annotated[float, quantity("MPa", gt=0.0)] = 206_000.0
+    poisson_ratio: Annotated[float, quantity("dimensionless", ge=0.0, lt=0.5)] = 0.3
+
+    @property
+    def plane_strain_compliance(self) -> float:
+        """(1 − ν²)/E in 1/MPa, the part of one body in 1/E*."""
+        return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Materials:
+    """Material of each part."""
+
+    disc: Material = field(default_factory=Material)
+    wheel_pin: Material = field(default_factory=Material)
+    roller: Material = field(default_factory=Material)
+    inner_race: Material = field(default_factory=Material)
+    shaft_pin: Material = field(default_factory=Material)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class LengthProfile:
+    """Drop of a roller or pin generator from its cylinder toward the ends.
+
+    The terms add up; all zero is an uncrowned cylinder. With y from mid-length and L the length:
+
+    Attributes
+    ----------
+    crown_drop : float
+        Parabolic crown, drop at y = ±L/2, mm: ``crown_drop (2y/L)²``.
+    logarithmic_factor : float
+        Factor of the logarithmic profile ``factor · 0.00035 D ln(1/(1 − (2y/L)²))`` with D the diameter;
+        1 is the profile of ISO/TS 16281.
+    end_relief_length : float
+        Length of the parabolic end relief at each end, mm.
+    end_relief_depth : float
+        Its depth at y = ±L/2, mm.
+    """
+
+    crown_drop: NonNegativeLength = 0.0
+    logarithmic_factor: Annotated[float, quantity("dimensionless", ge=0.0)] = 0.0
+    end_relief_length: NonNegativeLength = 0.0
+    end_relief_depth: NonNegativeLength = 0.0
+
+    @property
+    def is_cylinder(self) -> bool:
+        """Whether the generator is straight to its ends."""
+        relieved = self.end_relief_length > 0.0 and self.end_relief_depth > 0.0
+        return self.crown_drop == 0.0 and self.logarithmic_factor == 0.0 and not relieved
+
+
+def contact_modulus(first: Material, second: Material) -> float:
+    """Return E* of two materials, MPa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ (Johnson, Eq. 4.18)."""
+    return 1.0 / (first.plane_strain_compliance + second.plane_strain_compliance)

@@ -1,0 +1,125 @@
+"""A drive of several discs as drives of one disc each, and how far each flank is turned against its holes.
+
+Disc k stands at the phase ζ_k of the crank. Its flank is turned by −Δz ζ_k/z_C against holes and bore, so that it meshes
+with the wheel as the others do. Turned by some hole pitches, such a disc may be the same part as another.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ltca.drive.deviations import OneDisc, OneEccentric
+from ltca.drive.parts import (
+    SAME_PART,
+    Clearance,
+    Disc,
+    Drive,
+    PlacementErrors,
+    ProfileErrors,
+    RollerErrors,
+    Runout,
+)
+
+
+def single_discs(drive: Drive) -> tuple[Drive, ...]:
+    """Return the drives that each disc makes with wheel, crank and pin shaft: what is one disc's own is the drive's there.
+
+    Parameters
+    ----------
+    drive : Drive
+        Of any number of discs.
+
+    Returns
+    -------
+    tuple of Drive
+        The drive itself where it has one disc of which nothing is said apart.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from ltca.reading.drive_file import load_drive
+    >>> drive = load_drive("paper").cases["CS-1"]
+    >>> twice = replace(drive, disc=replace(drive.disc, number_of_discs=2))
+    >>> [single.disc.phases for single in single_discs(twice)]
+    [(0.0,), (3.141592653589793,)]
+    """
+    if is_single(drive):
+        return (drive,)
+    return tuple(_single(drive, number) for number in range(drive.disc.number_of_discs))
+
+
+def is_single(drive: Drive) -> bool:
+    """Tell whether a drive has one disc and nothing is said of it apart but the phase of its eccentric."""
+    apart = any(entry.eccentricity_error is not None for entry in drive.crank.of)
+    return drive.disc.number_of_discs == 1 and not drive.disc.of and not apart
+
+
+def without_own(drive: Drive) -> Drive:
+    """Return the drive with discs that have nothing of their own."""
+    return replace(drive, disc=replace(drive.disc, of=()), crank=replace(drive.crank, of=()))
+
+
+def _single(drive: Drive, number: int) -> Drive:
+    disc, crank = drive.disc, drive.crank
+    own = disc.of[number] if disc.of else OneDisc()
+    eccentric = crank.of[number] if crank.of else OneEccentric()
+    common = drive.clearance
+    clearance = common
+    if own.clearance is not None:
+        bearing, hole = own.clearance.bearing, own.clearance.pin_hole
+        clearance = Clearance(
+            bearing=common.bearing if bearing is None else bearing, pin_hole=common.pin_hole if hole is None else hole
+        )
+    error = crank.eccentricity_error if eccentric.eccentricity_error is None else eccentric.eccentricity_error
+    phase_error = (OneEccentric(phase_error=eccentric.phase_error),) if eccentric.phase_error else ()
+    rollers = drive.crank_bearing
+    return replace(
+        drive,
+        crank=replace(crank, eccentricity_error=error, of=phase_error),
+        disc=_alone(disc, own, number),
+        crank_bearing=rollers if own.roller_errors is None else replace(rollers, roller_errors=own.roller_errors),
+        clearance=clearance,
+    )
+
+
+def _alone(disc: Disc, own: OneDisc, number: int) -> Disc:
+    return replace(
+        disc,
+        number_of_discs=1,
+        phases=(disc.disc_phases[number],),
+        planes=(disc.disc_planes[number],),
+        of=(),
+        runout=disc.runout if own.runout is None else own.runout,
+        profile_errors=disc.profile_errors if own.profile_errors is None else own.profile_errors,
+        hole_errors=disc.hole_errors if own.hole_errors is None else own.hole_errors,
+    )
+
+
+def equal_parts(drive: Drive) -> bool:
+    """Tell whether all discs of a drive can be cut alike, turned against each other by hole pitches."""
+    turns = [single.part_turn[0] for single in single_discs(drive)]
+    return max(turns) - min(turns) < SAME_PART
+
+
+def nominal_shape(drive: Drive, *, keep_clearance: bool = True) -> Drive:
+    """Return the shape that influence coefficients know of a drive of one disc.
+
+    Errors of single parts are left out, clearances too if asked; the disc is the part that it is (`Drive.part_turn`), not
+    as it stands in the drive.
+    """
+    phase = -drive.part_turn[0] * drive.disc.number_of_teeth / drive.tooth_number_difference
+    return replace(
+        drive,
+        crank=replace(drive.crank, of=()),
+        clearance=drive.clearance if keep_clearance else Clearance(),
+        pin_wheel=replace(drive.pin_wheel, pin_errors=PlacementErrors()),
+        disc=replace(
+            drive.disc,
+            phases=(phase,) if phase else (),
+            hole_errors=PlacementErrors(),
+            profile_errors=ProfileErrors(),
+            runout=Runout(),
+        ),
+        pin_shaft=replace(drive.pin_shaft, pin_errors=PlacementErrors()),
+        crank_bearing=replace(drive.crank_bearing, roller_errors=RollerErrors()),
+    )

@@ -1,0 +1,200 @@
+r"""Equilibrium at a given torque of the output, whichever member is held.
+
+With the pin shaft held the output is the wheel, and its moment is the torque. With the wheel held the output is the pin
+shaft: what holds the wheel then follows from the sum of all moments, :math:`T_W + T_C + T_{out} = 0`, with the crank's
+moment of every position. Contacts do not care who is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import BatchModel, ComplianceModel, Response
+from ltca.drive.parts import Drive
+from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.reducer import disc_responses
+from ltca.errors import ConvergenceError
+from ltca.geometry.pairs import disc_displacement, disc_pose
+
+FloatArray = NDArray[np.float64]
+Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
+"""What balances positions: crank angles, moments on the wheel and poses to start from."""
+
+ROUNDS = 30
+CLOSED = 1e-10
+"""Moment left over as a part of the output torque: below what the balance of the forces leaves."""
+
+
+def crank_moment(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+    r"""Return the external moment on the crank that holds it, ccw positive, N·mm.
+
+    It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, and that of its cage, which
+    turns by the part `cage_speed` of the crank's angle: cage and inner race are concentric, so the cage's moment is that of
+    the bearing's force at the displaced disc centre.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        What answered.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, 3 discs + 1)
+        q.
+    response : Response
+        Contacts there.
+    """
+    total = np.zeros(crank_angle.size)
+    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+        place = disc.geometry.placement
+        push = (part.rollers.outer_load * part.rollers.outer_direction).sum(axis=1)
+        lever = place.race_centre(crank_angle) - np.ravel(place.crank_axis)
+        total += (lever.conjugate() * push).imag
+        total += np.ravel(place.cage_speed) * (disc_displacement(disc_pose(pose, number)).conjugate() * push).imag
+    return total
+
+
+def solve_at_output(
+    model: ComplianceModel,
+    drives: Drive | Sequence[Drive],
+    crank_angle: FloatArray,
+    torque: FloatArray | float,
+    start: FloatArray | None = None,
+) -> Equilibrium:
+    """Balance positions at output torques.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        Loads at a pose, of one drive or of a batch.
+    drives : Drive or sequence of Drive
+        The drive, or the drives of a batch that have equal numbers of positions each, drive by drive.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    torque : float or array, shape (positions,)
+        On the output, N·mm, positive as `load.direction` says; a negative one loads the other way.
+    start : array, shape (positions, coordinates), optional
+        Poses to start from, first contact by default.
+
+    Returns
+    -------
+    Equilibrium
+
+    Raises
+    ------
+    ConvergenceError
+        When a position does not balance.
+    """
+    each = [drives] if isinstance(drives, Drive) else list(drives)
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
+    repeats = angle.size // len(each)
+    mean = np.repeat([drive.wheel_moment(1.0) for drive in each], repeats) * loads
+    held = np.repeat([drive.wheel_is_held for drive in each], repeats)
+    signed = np.repeat([drive.driving_sign for drive in each], repeats) * loads
+
+    def balance(rows: NDArray[np.intp], moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
+        part = model if rows.size == angle.size else _taken(model, rows)
+        return solve_equilibrium(part, angle[rows], moment, begin)
+
+    return _at_output(model, balance, angle, mean, signed, held, start)
+
+
+def balance_at_output(
+    model: ComplianceModel,
+    balance: Balance,
+    drive: Drive,
+    crank_angle: FloatArray,
+    torque: float,
+    start: FloatArray | None = None,
+) -> Equilibrium:
+    """Balance positions of one drive at an output torque by any method that takes moments on the wheel.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        Whose loads balance.
+    balance : callable
+        Crank angles, moments on the wheel and starting poses to balanced positions.
+    drive : Drive
+        The drive.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    torque : float
+        On the output, N·mm.
+    start : array, shape (positions, coordinates), optional
+        Poses to start from.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    mean = np.full(angle.size, drive.wheel_moment(torque))
+    held = np.full(angle.size, drive.wheel_is_held)
+
+    def at(rows: NDArray[np.intp], moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
+        return balance(angle[rows], moment, begin)
+
+    return _at_output(model, at, angle, mean, np.full(angle.size, drive.driving_sign * torque), held, start)
+
+
+def _at_output(
+    model: ComplianceModel,
+    balance: Callable[[NDArray[np.intp], FloatArray, FloatArray | None], Equilibrium],
+    angle: FloatArray,
+    mean: FloatArray,
+    signed: FloatArray,
+    held: NDArray[np.bool_],
+    start: FloatArray | None,
+) -> Equilibrium:
+    """Find the moments on held wheels by secants, from their mean over a turn."""
+    everything = np.arange(angle.size)
+    found = balance(everything, mean, start)
+    if not np.any(held):
+        return found
+    moment, pose = mean.copy(), found.pose.copy()
+    iterations = found.iterations.copy()
+    left = moment + crank_moment(model, angle, pose, found.response) + signed
+    # The crank carries 1/u of the wheel's moment in the mean: what is left grows with the moment by 1 − 1/u.
+    slope = -signed / mean
+    history = []
+    for _ in range(ROUNDS):
+        history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
+        open_rows = np.nonzero(held & (np.abs(left) > CLOSED * np.abs(signed)))[0]
+        if open_rows.size == 0:
+            break
+        step = -left[open_rows] / slope[open_rows]
+        moment[open_rows] += step
+        part = balance(open_rows, moment[open_rows], pose[open_rows])
+        before = left[open_rows]
+        pose[open_rows] = part.pose
+        iterations[open_rows] += part.iterations
+        model_part = model if open_rows.size == angle.size else _taken(model, open_rows)
+        left[open_rows] = (
+            moment[open_rows] + crank_moment(model_part, angle[open_rows], part.pose, part.response) + signed[open_rows]
+        )
+        secant = (left[open_rows] - before) / step
+        # Round-off of both ends makes no slope any more; a wrong one would only cost rounds.
+        slope[open_rows] = np.where(np.abs(secant / slope[open_rows] - 1.0) < 0.5, secant, slope[open_rows])
+    else:
+        worst = int(np.argmax(np.abs(np.where(held, left, 0.0))))
+        raise ConvergenceError(
+            f"the moment that holds the wheel is not found at crank angle {angle[worst]:.6g} rad; moments left over in N·mm",
+            history,
+        )
+    final = balance(everything, moment, pose)
+    return Equilibrium(
+        crank_angle=final.crank_angle,
+        wheel_moment=final.wheel_moment,
+        pose=final.pose,
+        response=final.response,
+        residual=final.residual,
+        iterations=iterations + final.iterations,
+    )
+
+
+def _taken(model: ComplianceModel, rows: NDArray[np.intp]) -> ComplianceModel:
+    """The model at some positions: rows of a batch, itself where all are of one drive."""
+    if not model.discs[0].geometry.placement.is_batch:
+        return model
+    return cast(BatchModel, model).take(rows)

@@ -1,0 +1,203 @@
+"""A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel for all.
+
+The coordinates are x, y and rotation of disc after disc and the wheel angle. A pair touches the columns of its disc and
+of the wheel only, so force and tangent of the reducer are those of its discs, put in their places and summed at the wheel.
+Pairs are numbered disc after disc: of n discs array axes for pairs are n times as long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import (
+    BatchModel,
+    ComplianceModel,
+    ContactPressures,
+    DiscModel,
+    KindPressures,
+    Response,
+    Start,
+)
+from ltca.compliance.rollers import RollerState
+from ltca.geometry.pairs import (
+    DISC_COORDINATES,
+    WHEEL_ANGLE,
+    ContactGeometry,
+    FlankMotion,
+    PairMotion,
+    disc_pose,
+)
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReducerResponse(Response):
+    """Contacts of several discs, disc after disc.
+
+    Attributes
+    ----------
+    parts : tuple of Response
+        Of each disc alone, by its own pose.
+    """
+
+    parts: tuple[Response, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reducer:
+    """Several discs that share wheel, crank and pin shaft.
+
+    Attributes
+    ----------
+    discs : tuple of DiscModel
+        How the contacts of each disc yield, all by the same model.
+    """
+
+    discs: tuple[DiscModel, ...]
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
+        """Return the model of some positions of a batch."""
+        return Reducer(discs=tuple(take_rows(disc, rows) for disc in self.discs))
+
+    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
+        """Return the contact forces of all discs.
+
+        Parameters
+        ----------
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        pose : array, shape (positions, 3 discs + 1)
+            x, y and rotation of disc after disc, then the wheel angle.
+        start : Start, optional
+            Inner unknowns of a neighbouring pose.
+        """
+        count = len(self.discs)
+        starts = [None] * count if start is None else _split_start(start, count)
+        parts = tuple(
+            disc.respond(crank_angle, disc_pose(pose, number), begin)
+            for number, (disc, begin) in enumerate(zip(self.discs, starts, strict=True))
+        )
+        size = DISC_COORDINATES * count + 1
+        force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
+        for number, part in enumerate(parts):
+            own = [*range(DISC_COORDINATES * number, DISC_COORDINATES * (number + 1)), size - 1]
+            force[:, own] += part.force
+            tangent[:, np.array(own)[:, None], own] += part.tangent
+        warm = np.empty(crank_angle.size, dtype=object)
+        for row in range(crank_angle.size):
+            warm[row] = tuple(part.warm_start[row] for part in parts)
+        return ReducerResponse(
+            force=force,
+            tangent=tangent,
+            flank=_beside([part.flank for part in parts]),
+            holes=_beside([part.holes for part in parts]),
+            rollers=_beside([part.rollers for part in parts]),
+            pin_load=_beside([part.pin_load for part in parts]),
+            hole_load=_beside([part.hole_load for part in parts]),
+            warm_start=warm,
+            parts=parts,
+        )
+
+    def pressures(self, response: Response) -> ContactPressures:
+        """Return the pressures of all discs behind a response of this model."""
+        parts = disc_responses(response)
+        found = [disc.pressures(part) for disc, part in zip(self.discs, parts, strict=True)]
+        kinds = ("pins", "outer", "inner", "holes")
+        joined: dict[str, Any] = {kind: _beside_kinds([getattr(each, kind) for each in found]) for kind in kinds}
+        return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
+
+
+def reducer_of(discs: Sequence[DiscModel]) -> ComplianceModel:
+    """Return the model of a drive from those of its discs: of one disc its own."""
+    return discs[0] if len(discs) == 1 else Reducer(discs=tuple(discs))
+
+
+def disc_responses(response: Response) -> tuple[Response, ...]:
+    """Return the response of each disc."""
+    return response.parts if isinstance(response, ReducerResponse) else (response,)
+
+
+def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:
+    """Return the pressures of each of several discs from those of all."""
+    if discs == 1:
+        return (pressures,)
+
+    def part(kind: KindPressures, number: int) -> KindPressures:
+        each = kind.mid.shape[1] // discs
+        own = slice(number * each, (number + 1) * each)
+        return KindPressures(
+            mid=kind.mid[:, own],
+            largest=kind.largest[:, own],
+            half_width=kind.half_width[:, own],
+            end_cell=kind.end_cell,
+        )
+
+    return tuple(
+        ContactPressures(
+            pins=part(pressures.pins, number),
+            outer=part(pressures.outer, number),
+            inner=part(pressures.inner, number),
+            holes=part(pressures.holes, number),
+            rigid_shaft_pins=pressures.rigid_shaft_pins,
+        )
+        for number in range(discs)
+    )
+
+
+def bearing_forces(response: Response) -> NDArray[np.complex128]:
+    """Return the force of each crank bearing on its disc in the fixed frame, shape (positions, discs), N."""
+    pushes = [
+        (part.rollers.outer_load * part.rollers.outer_direction).sum(axis=1) for part in disc_responses(response)
+    ]
+    return np.stack(pushes, axis=1)
+
+
+def disc_torques(response: Response) -> FloatArray:
+    """Return the part of the external moment on the wheel that each disc carries, shape (positions, discs), N·mm."""
+    return np.stack([part.force[:, WHEEL_ANGLE] for part in disc_responses(response)], axis=1)
+
+
+def geometries(model: ComplianceModel) -> tuple[ContactGeometry, ...]:
+    """Return the contact geometry of every disc."""
+    return tuple(disc.geometry for disc in model.discs)
+
+
+def take_rows(model: DiscModel, rows: NDArray[np.intp] | NDArray[np.bool_]) -> DiscModel:
+    """Return the model of a disc at some positions: these rows of a batch, itself where all are of one drive."""
+    if not model.geometry.placement.is_batch:
+        return model
+    return cast(DiscModel, cast(BatchModel, model).take(rows))
+
+
+def _split_start(start: Start, count: int) -> list[Start]:
+    parameters, shares = np.split(start.parameter, count, axis=1), np.split(start.share, count, axis=1)
+    starts = []
+    for number, (parameter, share) in enumerate(zip(parameters, shares, strict=True)):
+        warm = np.empty(start.warm_start.size, dtype=object)
+        for row, kept in enumerate(start.warm_start):
+            warm[row] = None if kept is None else kept[number]
+        starts.append(Start(parameter=parameter, share=share, warm_start=warm))
+    return starts
+
+
+def _beside(values: Sequence[Any]) -> Any:
+    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side."""
+    if not is_dataclass(values[0]):
+        return np.concatenate(values, axis=1)
+    kind: type[FlankMotion] | type[PairMotion] | type[RollerState] = type(values[0])
+    return kind(**{item.name: _beside([getattr(value, item.name) for value in values]) for item in fields(kind)})
+
+
+def _beside_kinds(kinds: Sequence[KindPressures]) -> KindPressures:
+    return KindPressures(
+        mid=_beside([kind.mid for kind in kinds]),
+        largest=_beside([kind.largest for kind in kinds]),
+        half_width=_beside([kind.half_width for kind in kinds]),
+        end_cell=kinds[0].end_cell,
+    )
