@@ -34,7 +34,8 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
         With the numbers.
     """
     pairs = sum(
-        drive.pin_wheel.number_of_pins + drive.crank_bearing.number_of_rollers + drive.pin_shaft.number_of_pins
+        drive.disc.number_of_discs
+        * (drive.pin_wheel.number_of_pins + drive.crank_bearing.number_of_rollers + drive.pin_shaft.number_of_pins)
         for drive in drives
     )
     require_room(

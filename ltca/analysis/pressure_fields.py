@@ -107,7 +107,7 @@ def _unfolded(solved: PatchSolution) -> tuple[FloatArray, FloatArray, FloatArray
 
 
 def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS) -> dict[int, PressureField]:
-    """Return the pressure fields of the loaded wheel pins of one position, by pin."""
+    """Return the pressure fields of the loaded wheel pins of one position of a drive of one disc, by pin."""
     kind = ContactKinds.of_drive(analysis.drive, cells).pins
     contacts, geometry = analysis.full.response, analysis.model.discs[0].geometry
     fields = {}
@@ -136,7 +136,7 @@ def roller_fields(
     Parameters
     ----------
     analysis : LoadedAnalysis
-        The analysis.
+        Of a drive of one disc (`LoadedAnalysis.discs`).
     position : int
         Its position.
     side : {"outer", "inner"}
@@ -199,14 +199,15 @@ def build_pressure_dataset(
         Text of the drive file; by default the drive of the first case written as one.
     """
     first = next(iter(analyses.values()))
-    placement = first.model.geometry.placement
+    placement = first.model.discs[0].geometry.placement
     positions = range(first.full.crank_angle.size)
     variables: dict[str, Any] = {}
-    pins = [[pin_fields(analysis, position, cells) for position in positions] for analysis in analyses.values()]
+    discs = [analysis.discs for analysis in analyses.values()]
+    pins = [[[pin_fields(disc, position, cells) for position in positions] for disc in case] for case in discs]
     _store(variables, "pin", "", pins, placement.wheel_pin_radii.size)
     for side in ("outer", "inner"):
         rollers = [
-            [roller_fields(analysis, position, side, cells) for position in positions] for analysis in analyses.values()
+            [[roller_fields(disc, position, side, cells) for position in positions] for disc in case] for case in discs
         ]
         _store(variables, "roller", f"_{side}", rollers, placement.roller_radii.size)
     dataset = xr.Dataset(
@@ -230,25 +231,23 @@ def build_pressure_dataset(
 
 
 def _store(
-    variables: dict[str, Any], name: str, side: str, fields: list[list[dict[int, PressureField]]], count: int
+    variables: dict[str, Any], name: str, side: str, fields: list[list[list[dict[int, PressureField]]]], count: int
 ) -> None:
-    """Put the fields of one kind on one side, by case, position and pair, into arrays of full size."""
-    flat = [field for case in fields for position in case for field in position.values()]
+    """Put the fields of one kind on one side, by case, disc, position and pair, into arrays of full size."""
+    flat = [field for case in fields for disc in case for position in disc for field in position.values()]
     nx, ny = flat[0].pressure.shape if flat else (1, 1)
-    shape = (len(fields), len(fields[0]), count)
+    shape = (len(fields), len(fields[0]), len(fields[0][0]), count)
     pressure, x, y = np.zeros((*shape, nx, ny)), np.zeros((*shape, nx + 1)), np.zeros((*shape, ny + 1))
     scalars = {key: np.zeros(shape) for key in SCALARS}
-    for c, case in enumerate(fields):
-        for p, position in enumerate(case):
-            for pair, field in position.items():
-                place = (c, p, pair)
-                pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
-                for key, (attribute, _, _) in SCALARS.items():
-                    scalars[key][place] = getattr(field, attribute)
+    for case, disc, position in np.ndindex(shape[:3]):
+        for pair, field in fields[case][disc][position].items():
+            place = (case, disc, position, pair)
+            pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
+            for key, (attribute, _, _) in SCALARS.items():
+                scalars[key][place] = getattr(field, attribute)
 
     def put(key: str, values: FloatArray, extra: tuple[str, ...], unit: str, text: str) -> None:
-        missing = len(DIMENSIONS[name]) - 2
-        stored = values.reshape(shape[0], *(1,) * missing, *values.shape[1:])
+        stored = values[:, :, None] if "crank" in DIMENSIONS[name] else values
         variables[f"{name}_{key}{side}"] = (
             ("case", *DIMENSIONS[name], *extra),
             stored,

@@ -297,6 +297,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         attrs={
             **provenance(drive_name, first.drive, drive_file),
             **first.engine.options,
+            "held": first.drive.installation.held,
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
             **_bodies(analyses),
         },

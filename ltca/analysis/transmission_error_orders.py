@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 
 FloatArray = NDArray[np.float64]
@@ -72,7 +73,7 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
     """
     flank, pins = drive.disc.number_of_teeth, drive.pin_wheel.number_of_pins
     holes, rollers = drive.pin_shaft.number_of_pins, drive.crank_bearing.number_of_rollers
-    cage = 1.0 - float(Placement.of_drive(drive).cage_speed)
+    cage = 1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
     names: list[Order] = []
     for multiple in range(1, harmonics + 1):
         names += [

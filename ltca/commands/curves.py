@@ -98,7 +98,9 @@ class CaseCurves(NamedTuple):
     spectrum : Spectrum
         Orders of the transmission error.
     life : RatingLife
-        Of a crank bearing.
+        Of the crank bearing with the shortest one.
+    disc : int
+        Its disc.
     hours : float or None
         At the speed, where there is one.
     pressure : array, shape (positions, pins)
@@ -112,6 +114,7 @@ class CaseCurves(NamedTuple):
     crank_angle: FloatArray
     spectrum: Spectrum
     life: RatingLife
+    disc: int
     hours: float | None
     pressure: FloatArray
     safety: PressureSafety
@@ -194,7 +197,6 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders, known_orders
     from ltca.errors import DriveError
-    from ltca.geometry.pairs import WHEEL_ANGLE
 
     engine = engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
@@ -202,30 +204,38 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
     angle = 2.0 * np.pi * np.arange(turns * POSITIONS_PER_TURN) / POSITIONS_PER_TURN
     analysis = loaded_analysis.analyse(drive, angle, engine=engine)
     try:
-        spectrum = fit_orders(angle, analysis.full.pose[:, WHEEL_ANGLE], known_orders(drive, harmonics=HARMONICS))
+        spectrum = fit_orders(angle, analysis.transmission_error, known_orders(drive, harmonics=HARMONICS))
     except ValueError as error:
         raise DriveError([f"--turns = {turns}: {error}"]) from error
-    part, rollers = drive.crank_bearing, analysis.full.response.rollers
-    life = rating_life(
-        RollerBearing(
-            rollers=part.number_of_rollers,
-            roller_diameter=2.0 * part.roller_radius,
-            roller_length=part.roller_length,
-            pitch_diameter=part.inner_race_radius + part.outer_race_radius,
-        ),
-        rollers.inner_load,
-        rollers.outer_load,
-        relieved=not part.roller_profile.is_cylinder,
-        dynamic_load_rating=limits.load_rating,
+    part = drive.crank_bearing
+    bearing = RollerBearing(
+        rollers=part.number_of_rollers,
+        roller_diameter=2.0 * part.roller_radius,
+        roller_length=part.roller_length,
+        pitch_diameter=part.inner_race_radius + part.outer_race_radius,
     )
+    lives = [
+        rating_life(
+            bearing,
+            rollers.inner_load,
+            rollers.outer_load,
+            relieved=not part.roller_profile.is_cylinder,
+            dynamic_load_rating=limits.load_rating,
+        )
+        for rollers in (disc.full.response.rollers for disc in analysis.discs)
+    ]
+    shortest = min(range(len(lives)), key=lambda disc: lives[disc].life)
+    life = lives[shortest]
+    # The disc does not turn against the pin shaft: a bearing turns as the crank does against that one.
+    turning = abs(drive.output_per_wheel_angle)
     return CaseCurves(
         curve=curve,
         turns=turns,
         crank_angle=angle,
         spectrum=spectrum,
         life=life,
-        # The crank turns against the disc, which does not turn: every turn of the crank is one of the bearing.
-        hours=None if limits.speed is None else life.life * 1e6 / (60.0 * limits.speed),
+        disc=shortest,
+        hours=None if limits.speed is None else life.life * 1e6 / (60.0 * limits.speed * turning),
         pressure=analysis.pressures.pins.mid,
         safety=pressure_safety(analysis.pressures.pins.mid, limits.pressure),
     )
@@ -238,12 +248,12 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     from ltca.drive.units import ARCMIN, ARCSEC
 
     curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
-    discs = "" if drive.disc.torque_share == 1.0 else f", a disc carries {drive.disc.torque_share:g} of the torque"
+    discs, output = drive.disc.number_of_discs, "output" if drive.wheel_is_held else "wheel"
     over = f"over {found.turns} turns, {found.crank_angle.size} positions"
     print(
-        f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh{discs}"
+        f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh"
     )
-    print(f"  backlash at the wheel, disc floating      {_range(curve.backlash * ARCMIN)}′")
+    print(f"  backlash at the {output}, disc{'s' * (discs > 1)} floating{' ' * (11 - len(output) - (discs > 1))}{_range(curve.backlash * ARCMIN)}′")
     print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
     print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
     print(f"orders of the transmission error {over}")
@@ -251,7 +261,8 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
         entry = spectrum.orders[number]
         print(f"  {entry.value:>9.4f}  {entry.name:<32}{spectrum.amplitude[number] * ARCSEC:>9.4f}″")
     print(f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″")
-    print("rating life of the crank bearing (load stands still to the inner race)")
+    which = "" if discs == 1 else f" of disc {found.disc}, the shortest"
+    print(f"rating life of the crank bearing{which} (load stands still to the inner race)")
     print(f"  C {life.dynamic_load_rating:.0f} N, P {life.equivalent_load:.0f} N, L10r {life.life:.1f} million turns")
     if found.hours is not None:
         print(f"  {found.hours:.0f} h at {limits.speed:g} turns a minute")
@@ -286,10 +297,12 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
     curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
     return {
         "torque_curve": {
-            "torque_share": drive.disc.torque_share,
+            "number_of_discs": drive.disc.number_of_discs,
+            "held": drive.installation.held,
             "crank_angle_rad": curve.crank_angle.tolist(),
             "torque_N_mm": curve.torque.tolist(),
             "wheel_angle_rad": curve.wheel_angle.tolist(),
+            "output_angle_rad": curve.output_angle.tolist(),
             "backlash_rad": curve.backlash.tolist(),
             "lost_motion_rad": curve.lost_motion.tolist(),
             "stiffness_N_mm_per_rad": curve.stiffness.tolist(),
@@ -305,6 +318,7 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
         },
         "bearing_life": {
             "million_turns": life.life,
+            "disc": found.disc,
             "hours": found.hours,
             "dynamic_load_rating_N": life.dynamic_load_rating,
             "equivalent_load_N": life.equivalent_load,
@@ -316,6 +330,7 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
             "largest_MPa": safety.largest,
             "safety": safety.safety,
             "load_factor": safety.load_factor,
-            "pin": safety.pin,
+            "pin": safety.pin % drive.pin_wheel.number_of_pins,
+            "disc": safety.pin // drive.pin_wheel.number_of_pins,
         },
     }

@@ -9,12 +9,18 @@ from pathlib import Path
 
 from ltca.reading.arguments import path_argument
 
-SUMMARY = "write a commented copy of the paper's drive to start from"
+SUMMARY = "write a commented drive file to start from: the paper's drive, or a robot joint's"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("file", metavar="FILE", type=path_argument("FILE"), help="TOML file to write, e.g. my.toml")
+    parser.add_argument(
+        "--like",
+        choices=("paper", "robot-joint"),
+        default="paper",
+        help="the paper's drive: one disc, pin shaft held (default); or a made-up robot joint's: two discs, housing held",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
 
 
@@ -30,7 +36,8 @@ def execute(arguments: argparse.Namespace) -> int:
         raise DriveError([f"{shortened(str(path))}: the drive is named after the file, and its name {NAMING}"])
     if path.exists() and not arguments.force:
         raise CycloError(f"{path}: exists already; --force overwrites it")
-    text = shipped_drive().replace('name = "paper"', f"name = {json.dumps(path.stem, ensure_ascii=False)}", 1)
+    own = f"name = {json.dumps(path.stem, ensure_ascii=False)}"
+    text = shipped_drive(arguments.like).replace(f'name = "{arguments.like}"', own, 1)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")
     word = shlex.quote(str(path))

@@ -73,64 +73,106 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
 def _properties(drive: Drive) -> list[tuple[str, str]]:
     import numpy as np
 
+    from ltca.drive.single_discs import single_discs
     from ltca.drive.units import ARCMIN
     from ltca.geometry.first_contact import backlash
     from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
     from ltca.geometry.placement import position_angles
 
-    geometry = ContactGeometry.of_drive(drive)
-    profile, place = geometry.profile, geometry.placement
+    singles = single_discs(drive)
+    geometries = [ContactGeometry.of_drive(single) for single in singles]
+    first, single = geometries[0], singles[0]
+    profile, place = first.profile, first.placement
     parameter = np.linspace(0.0, 2.0 * np.pi / drive.reduction_ratio, 2001)
     curvature = profile.curvature(parameter)
     locus = profile.locus_curvature(parameter)
-    gap = -geometry.flank(position_angles(90), np.zeros((90, 4))).approach
-    disc, wheel = (backlash(geometry, position_angles(360), c) * ARCMIN for c in (DISC_ROTATION, WHEEL_ANGLE))
+    gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
+    disc = backlash(first, position_angles(360), DISC_ROTATION) * ARCMIN
+    wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
     e = place.eccentricity
     bearing = drive.crank_bearing
     pitch = bearing.inner_race_radius + bearing.roller_radius
     between_rollers = 2.0 * (pitch * np.sin(np.pi / bearing.number_of_rollers) - bearing.roller_radius)
-    roller_play = drive.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius
-    tangential = drive.load.torque * drive.disc.torque_share / (drive.reduction_ratio * e)
-    hole_wall = profile.root_radius - drive.pin_shaft.pin_circle_radius - drive.hole_radius
-    bore_wall = drive.pin_shaft.pin_circle_radius - drive.hole_radius - drive.bore_radius
+    roller_play = single.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius
+    tangential = abs(drive.wheel_moment()) / (len(singles) * drive.reduction_ratio * e)
+    hole_wall = profile.root_radius - drive.pin_shaft.pin_circle_radius - single.hole_radius
+    bore_wall = drive.pin_shaft.pin_circle_radius - single.hole_radius - single.bore_radius
+    of = "" if len(singles) == 1 else " of disc 0"
     return [
-        ("reduction ratio u (pin shaft fixed)", f"{drive.reduction_ratio:g}"),
+        *_installation(drive),
         ("e z_P/R_C", f"{e * drive.reduction_ratio / drive.pin_wheel.pin_circle_radius:.4f} (must be below 1)"),
         ("disc radius at root, tip", f"{profile.root_radius:.4f}, {profile.tip_radius:.4f} mm"),
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
         ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
         ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
-        ("backlash at the disc, wheel held", f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)"),
+        (f"backlash at the disc{of}, wheel held", f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)"),
         ("backlash at the wheel, disc held", f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)"),
-        ("bore radius with clearance", f"{drive.bore_radius:.4f} mm"),
-        ("play of a roller between the races", f"{roller_play:.4f} mm"),
+        (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
+        (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{between_rollers:.4f} mm"),
-        ("hole radius with clearance", f"{drive.hole_radius:.4f} mm"),
+        (f"hole radius{of} with clearance", f"{single.hole_radius:.4f} mm"),
         ("wall between hole and root circle, bore", f"{hole_wall:.4f}, {bore_wall:.4f} mm"),
-        ("mean tangential bearing load T/(u e)", f"{tangential:.1f} N"),
+        ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
+
+
+def _installation(drive: Drive) -> list[tuple[str, str]]:
+    """Who is held and turned, and how the discs stand."""
+    from math import degrees
+
+    from ltca.drive.single_discs import equal_parts, single_discs
+
+    held = "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
+    rows = [("installation", held), ("turns of the crank for one of the output", f"{drive.transmission_ratio:g}")]
+    discs = drive.disc.number_of_discs
+    if discs == 1:
+        return rows
+    alike = "can be equal parts, turned against each other by hole pitches"
+    if not equal_parts(drive):
+        turns = ", ".join(f"{degrees(single.part_turn[0]):.4f}°" for single in single_discs(drive))
+        alike = f"cannot be equal parts: flanks are cut at {turns} against their holes"
+    return [
+        *rows,
+        ("discs, phases of their eccentrics", ", ".join(f"{degrees(phase):.6g}°" for phase in drive.disc.disc_phases)),
+        ("axial places of the discs", ", ".join(f"{plane:.6g}" for plane in drive.disc.disc_planes) + " mm"),
+        ("the discs", alike),
+    ]
 
 
 def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     import numpy as np
 
     from ltca.drive.units import ARCMIN
-
-    contacts = analysis.full.response
-    x, y, rotation, wheel_angle = analysis.full.pose[0]
-    radial, tangential = analysis.bearing_radial[0], analysis.bearing_tangential[0]
+    from ltca.geometry.pairs import WHEEL_ANGLE
 
     def loaded(load: FloatArray) -> str:
         values = load[0]
         numbers = np.nonzero(values > 1e-3 * values.max())[0]
         return ", ".join(f"{n}: {values[n]:.0f} N" for n in numbers)
 
-    return [
-        ("wheel pins", loaded(contacts.pin_load)),
-        ("rollers, on the bore", loaded(contacts.rollers.outer_load)),
-        ("shaft pins", loaded(contacts.hole_load)),
-        ("bearing load on the disc, radial, tangential", f"{radial:.1f}, {tangential:.1f} N"),
-        ("disc displacement x, y", f"{1e3 * x:.2f}, {1e3 * y:.2f} µm"),
-        ("disc rotation, wheel angle", f"{rotation * ARCMIN:.4f}′, {wheel_angle * ARCMIN:.4f}′"),
-    ]  # fmt: skip
+    rows = []
+    share = analysis.torque_share[0]
+    for number, disc in enumerate(analysis.discs):
+        contacts = disc.full.response
+        x, y, rotation, _ = disc.full.pose[0]
+        radial, tangential = disc.bearing_radial[0, 0], disc.bearing_tangential[0, 0]
+        of = "" if share.size == 1 else f"disc {number}: "
+        rows += [(f"{of}part of the torque", f"{share[number]:.4f}")] if of else []
+        rows += [
+            (f"{of}wheel pins", loaded(contacts.pin_load)),
+            (f"{of}rollers, on the bore", loaded(contacts.rollers.outer_load)),
+            (f"{of}shaft pins", loaded(contacts.hole_load)),
+            (f"{of}bearing load on it, radial, tangential" if of else "bearing load on the disc, radial, tangential",
+             f"{radial:.1f}, {tangential:.1f} N"),
+            (f"{of}displacement x, y" if of else "disc displacement x, y", f"{1e3 * x:.2f}, {1e3 * y:.2f} µm"),
+            (f"{of}rotation" if of else "disc rotation", f"{rotation * ARCMIN:.4f}′"),
+        ]  # fmt: skip
+    wheel = analysis.full.pose[0, WHEEL_ANGLE]
+    rows += [("wheel angle", f"{wheel * ARCMIN:.4f}′")]
+    if analysis.drive.wheel_is_held:
+        rows += [
+            ("moment that holds the wheel", f"{analysis.full.wheel_moment[0] / 1000.0:.6g} N·m"),
+            ("deviation of the output", f"{analysis.transmission_error[0] * ARCMIN:.4f}′"),
+        ]
+    return rows

@@ -22,6 +22,7 @@ from typing import Any
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
@@ -146,7 +147,7 @@ def find_case_coefficients(
     Parameters
     ----------
     cases : mapping of str to Drive
-        By name.
+        By name; of several discs each counts for itself.
     files : sequence of Path
         Files of ``cyclo derive``: each must serve a case, and each case must be served by one. Without any, those that
         are not in the cache are derived and kept there.
@@ -158,7 +159,7 @@ def find_case_coefficients(
     Returns
     -------
     dict of str to InfluenceCoefficients
-        By case.
+        By case, of several discs by case and disc.
 
     Raises
     ------
@@ -168,11 +169,18 @@ def find_case_coefficients(
     if near_field == "plane-strain":
         for drive in cases.values():
             require_plane_strain(drive, "compliance fe")
+    cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files)
     kept = {name: _kept(drive, plane) for name, drive in cases.items()}
     _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None}, plane)
     return {name: own or load_coefficients(cached_file(cases[name], plane), cases[name]) for name, own in kept.items()}
+
+
+def _discs(name: str, drive: Drive) -> list[tuple[str, Drive]]:
+    """The drives of each disc with labels of their own."""
+    singles = single_discs(drive)
+    return [(name if len(singles) == 1 else f"{name}, disc {number}", single) for number, single in enumerate(singles)]
 
 
 def _load_each(cases: Mapping[str, Drive], files: Sequence[Path]) -> dict[str, InfluenceCoefficients]:

@@ -23,13 +23,10 @@ from ltca.compliance.response import (
     Response,
     Start,
 )
-from ltca.compliance.rollers import RollerState
 from ltca.geometry.pairs import (
     DISC_COORDINATES,
     WHEEL_ANGLE,
     ContactGeometry,
-    FlankMotion,
-    PairMotion,
     disc_pose,
 )
 
@@ -190,7 +187,7 @@ def _beside(values: Sequence[Any]) -> Any:
     """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side."""
     if not is_dataclass(values[0]):
         return np.concatenate(values, axis=1)
-    kind: type[FlankMotion] | type[PairMotion] | type[RollerState] = type(values[0])
+    kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState
     return kind(**{item.name: _beside([getattr(value, item.name) for value in values]) for item in fields(kind)})
 
 

@@ -39,11 +39,11 @@ def draw_torque_curve(curve: TorqueCurve, title: str, stem: Path) -> Path:
         for number, angle in enumerate(curve.crank_angle):
             colour = COLOURS[number % len(COLOURS)]
             for axis in (axes, close):
-                axis.plot(curve.wheel_angle[number] * ARCMIN, torque, color=colour, label=f"{np.degrees(angle):.0f}°")
+                axis.plot(curve.output_angle[number] * ARCMIN, torque, color=colour, label=f"{np.degrees(angle):.0f}°")
         for axis in (axes, close):
             axis.axhline(0.0, color="#7a7a7a", linewidth=0.6)
-            axis.set_xlabel("wheel angle [′]")
-        axes.set_ylabel("torque on the wheel [N m]")
+            axis.set_xlabel("angle of the output [′]")
+        axes.set_ylabel("torque on the output [N m]")
         axes.legend(title="crank angle", frameon=False, fontsize=8.0)
         part = LOST_MOTION * float(np.max(torque))
         close.set_ylim(-2.0 * part, 2.0 * part)

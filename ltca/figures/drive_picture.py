@@ -14,7 +14,6 @@ from matplotlib.patches import Circle, Polygon
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive
 from ltca.figures.run_figures import STYLE
-from ltca.geometry.pairs import ContactGeometry
 from ltca.output.files import whole_file
 
 STEEL, PIN, ROLLER, RACE, SHAFT = "#e9edf2", "#cfd6de", "#d9dde3", "#bfc8d2", "#c9cfd8"
@@ -27,7 +26,7 @@ def _circles(axes: Any, centres: Any, radii: Any, colour: str, zorder: int) -> N
 
 
 def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path) -> None:
-    """Write a picture of the drive at one analysed position.
+    """Write a picture of the drive at one analysed position, of several discs each beside the other.
 
     Parameters
     ----------
@@ -40,37 +39,47 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
     path : Path
         Picture file; the suffix chooses the format.
     """
+    discs = analysis.discs
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(8.0, 8.6))
-        axes = figure.subplots()
-        shown = _Position(ContactGeometry.of_drive(drive), analysis, position)
-        _draw_parts(axes, shown)
-        _draw_loads(axes, shown)
-        race = shown.race
-        axes.plot([0.0, race.real], [0.0, race.imag], color="black", linewidth=1.2, zorder=6)
-        axes.plot([0.0], [0.0], marker="+", color="black", markersize=9, zorder=6)
-        axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
-        reach = 1.06 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
-        axes.set_xlim(-reach, reach)
-        axes.set_ylim(-reach, reach)
-        axes.set_aspect("equal")
-        axes.grid(visible=False)
-        axes.set_xlabel("x [mm]")
-        axes.set_ylabel("y [mm]")
-        axes.set_title(
-            f"{drive.name}: forces on the disc at φ_C = {shown.crank_angle:.4g} rad, "
-            f"torque {analysis.torque / 1000.0:g} N·m\n"
-            "blue: contact normals; + crank axis, • inner-race centre (eccentricity)",
-            fontsize=9.0,
-        )
+        figure = Figure(figsize=(8.0 * len(discs), 8.6))
+        panels = np.atleast_1d(figure.subplots(1, len(discs), sharey=True))
+        largest = max(_Position(disc, position).largest for disc in discs)
+        for number, (axes, disc) in enumerate(zip(panels, discs, strict=True)):
+            shown = _Position(disc, position)
+            _draw_disc(axes, shown, largest)
+            held = "wheel held, " if drive.wheel_is_held else ""
+            name = drive.name if len(discs) == 1 else f"{drive.name}, disc {number}"
+            axes.set_title(
+                f"{name}: forces on the disc at φ_C = {shown.crank_angle:.4g} rad, {held}"
+                f"torque {analysis.torque / 1000.0:g} N·m\n"
+                "blue: contact normals; + crank axis, • inner-race centre (eccentricity)",
+                fontsize=9.0,
+            )
         with whole_file(path) as part:
             figure.savefig(part, dpi=130)
 
 
-class _Position:
-    """Where all parts of a drive stand at one analysed position, as complex numbers in the fixed frame."""
+def _draw_disc(axes: Any, shown: _Position, largest: float) -> None:
+    _draw_parts(axes, shown)
+    _draw_loads(axes, shown, largest)
+    race = shown.race
+    axes.plot([0.0, race.real], [0.0, race.imag], color="black", linewidth=1.2, zorder=6)
+    axes.plot([0.0], [0.0], marker="+", color="black", markersize=9, zorder=6)
+    axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
+    reach = 1.06 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    axes.set_xlabel("x [mm]")
+    axes.set_ylabel("y [mm]")
 
-    def __init__(self, geometry: ContactGeometry, analysis: LoadedAnalysis, position: int) -> None:
+
+class _Position:
+    """Where the parts of a drive of one disc stand at one analysed position, as complex numbers in the fixed frame."""
+
+    def __init__(self, analysis: LoadedAnalysis, position: int) -> None:
+        geometry = analysis.model.discs[0].geometry
         self.profile, self.place = geometry.profile, geometry.placement
         full, place = analysis.full, geometry.placement
         self.crank_angle = float(full.crank_angle[position])
@@ -93,6 +102,11 @@ class _Position:
             (place.shaft_pin_centres, contacts.hole_load[position], place.shaft_pin_radii, play / np.abs(play)),
         ]
 
+    @property
+    def largest(self) -> float:
+        """Largest load, N."""
+        return max(float(np.max(load)) for _, load, _, _ in self.loads)
+
 
 def _draw_parts(axes: Any, shown: _Position) -> None:
     place = shown.place
@@ -108,8 +122,7 @@ def _draw_parts(axes: Any, shown: _Position) -> None:
     _circles(axes, shown.pins, place.wheel_pin_radii, PIN, 4)
 
 
-def _draw_loads(axes: Any, shown: _Position) -> None:
-    largest = max(float(np.max(load)) for _, load, _, _ in shown.loads)
+def _draw_loads(axes: Any, shown: _Position, largest: float) -> None:
     longest = 0.2 * shown.place.eccentricity * shown.place.reduction_ratio + 12.0
     for centres, load, radii, towards in shown.loads:
         for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):

@@ -119,7 +119,8 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
     light, full = (data[name].values * ARCSEC for name in ("transmission_error_light", "transmission_error"))
     draw_curves(figure, upper, _degrees(data), light - light.mean(axis=1, keepdims=True), names, "", "light torque [″]")
     draw_curves(figure, lower, _degrees(data), full - full.mean(axis=1, keepdims=True), names, CRANK, "full torque [″]")
-    figure.suptitle("Transmission error at the wheel, deviation from its mean (Fig. 23)")
+    member = "output (pin shaft)" if data.attrs.get("held") == "pin-wheel" else "wheel"
+    figure.suptitle(f"Transmission error at the {member}, deviation from its mean (Fig. 23)")
 
 
 def _one_quantity(
@@ -234,6 +235,10 @@ FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
 }
 
 
+OF_THE_DRIVE = ("fig23_transmission_error",)
+"""What is no disc's own."""
+
+
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     """Return one figure.
 
@@ -242,12 +247,30 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     name : str
         Key of `FIGURES`.
     dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`; its first disc and crank are drawn.
+        Of `ltca.analysis.results.build_dataset`; of several discs each has a curve of its own.
     """
+    shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else _disc_by_disc(dataset)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
-        FIGURES[name](figure, dataset.isel(disc=0, crank=0))
+        FIGURES[name](figure, shown)
     return figure
+
+
+def _disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
+    """Every disc of every case as a case of its own, as far as there are colours."""
+    discs = dataset.sizes["disc"]
+    if discs == 1:
+        return dataset.isel(disc=0, crank=0)
+    cases = [
+        (case, disc, f"{dataset['case'].values[case]}, disc {disc}" if dataset.sizes["case"] > 1 else f"disc {disc}")
+        for case in range(dataset.sizes["case"])
+        for disc in range(discs)
+    ][: len(COLOURS)]
+    index = {
+        "case": xr.DataArray([case for case, _, _ in cases], dims="case"),
+        "disc": xr.DataArray([disc for _, disc, _ in cases], dims="case"),
+    }
+    return dataset.isel(crank=0).isel(index).assign_coords(case=[name for _, _, name in cases])
 
 
 def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:

@@ -12,8 +12,11 @@ from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import geometries
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import WHEEL_ANGLE
@@ -29,7 +32,7 @@ class Nominal:
 
     Attributes
     ----------
-    full, light : array, shape (positions, 4)
+    full, light : array, shape (positions, coordinates)
         Poses at its torque and its light torque.
     """
 
@@ -122,8 +125,7 @@ class _Batch:
         """Balance the drives at their torques."""
         if self.prepared is not None:
             return self.prepared.balance(self.angle, torques[0], start)
-        moments = [drive.wheel_moment(torque) for drive, torque in zip(self.drives, torques, strict=True)]
-        return solve_equilibrium(self.model, self.angle, np.repeat(moments, self.positions), start)
+        return solve_at_output(self.model, self.drives, self.angle, np.repeat(torques, self.positions), start)
 
 
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
@@ -143,7 +145,8 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     messages = [""] * len(drives)
     groups: dict[tuple[object, ...], list[int]] = {}
     for number, drive in enumerate(drives):
-        key = batch_signature(drive) if settings.engine.batches else (number,)
+        discs = tuple(batch_signature(single) for single in single_discs(drive))
+        key: tuple[object, ...] = discs if settings.engine.batches else (number,)
         groups.setdefault(key, []).append(number)
     for members in groups.values():
         _solve_group(drives, members, settings, values, messages)
@@ -206,5 +209,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
         start = full.pose if nominal is None else np.tile(nominal.light, (samples, 1))
         light = solved.balance([drive.load.light_torque for drive in drives], start)
     if "backlash" in stages:
-        play = backlash(solved.model.geometry, solved.angle, WHEEL_ANGLE)
-    return SampleBatch(samples=samples, full=full, pressures=pressures, light=light, backlash=play)
+        play = backlash(geometries(solved.model), solved.angle, WHEEL_ANGLE)
+    return SampleBatch(
+        drives=tuple(drives), model=solved.model, full=full, pressures=pressures, light=light, backlash=play
+    )

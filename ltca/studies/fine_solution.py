@@ -13,6 +13,7 @@ from ltca.analysis.extremes import refine_extremes
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import Drive
 from ltca.drive.units import ARCSEC
+from ltca.equilibrium.reducer import geometries
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
@@ -73,12 +74,16 @@ def solve_finely(
     5.4 arcsec
     """
     analysis = analyse(drive, position_angles(positions), engine=with_kept_coefficients(engine, drive))
-    geometry = analysis.model.geometry
     play = None
     if any(QUANTITIES[name].stage == "backlash" for name in quantities):
-        play = backlash(geometry, position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
+        play = backlash(geometries(analysis.model), position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
     batch = SampleBatch(
-        samples=1, full=analysis.full, pressures=analysis.pressures, light=analysis.light, backlash=play
+        drives=(drive,),
+        model=analysis.model,
+        full=analysis.full,
+        pressures=analysis.pressures,
+        light=analysis.light,
+        backlash=play,
     )
     values = {name: float(QUANTITIES[name].evaluate(batch)[0]) for name in quantities}
     refined = asdict(refine_extremes(analysis))

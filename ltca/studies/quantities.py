@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.summary import LOADED_FRACTION
-from ltca.compliance.response import ContactPressures
+from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.drive.parts import Drive
 from ltca.drive.units import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.reducer import bearing_forces, geometries
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
 from ltca.geometry.pairs import WHEEL_ANGLE
 
@@ -27,8 +29,10 @@ class SampleBatch:
 
     Attributes
     ----------
-    samples : int
-        How many.
+    drives : tuple of Drive
+        Of the samples.
+    model : ComplianceModel
+        How their bodies yield.
     full : Equilibrium
         At the torque of each drive.
     pressures : ContactPressures
@@ -39,11 +43,17 @@ class SampleBatch:
         Of the wheel, rad, when a quantity needs it.
     """
 
-    samples: int
+    drives: tuple[Drive, ...]
+    model: ComplianceModel
     full: Equilibrium
     pressures: ContactPressures
     light: Equilibrium | None
     backlash: FloatArray | None
+
+    @property
+    def samples(self) -> int:
+        """How many."""
+        return len(self.drives)
 
     def by_sample(self, values: FloatArray) -> FloatArray:
         """Return values of all rows with the sample on axis 0 and everything else behind it in one row."""
@@ -51,21 +61,26 @@ class SampleBatch:
 
     @property
     def bearing(self) -> tuple[FloatArray, FloatArray]:
-        """Radial and tangential bearing force, N, shape (samples, positions)."""
-        rollers = self.full.response.rollers
-        push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
-        push = push * np.exp(-1j * self.full.crank_angle)
-        return self.by_sample(push.real), self.by_sample(push.imag)
+        """Radial and tangential bearing force on each disc, N, shape (samples, positions, discs)."""
+        ahead = [disc.placement.eccentric_direction(self.full.crank_angle) for disc in geometries(self.model)]
+        push = bearing_forces(self.full.response) * np.stack(ahead, axis=1).conjugate()
+        shape = (self.samples, -1, len(ahead))
+        return push.real.reshape(shape), push.imag.reshape(shape)
+
+    def _at_output(self, pose: FloatArray) -> FloatArray:
+        """Deviation of the output, arcsec."""
+        output = np.array([drive.output_per_wheel_angle for drive in self.drives])
+        return np.asarray(output[:, None] * self.by_sample(pose[:, WHEEL_ANGLE]) * ARCSEC)
 
     def transmission_error(self) -> FloatArray:
         """Transmission error at the torque of each drive, arcsec."""
-        return self.by_sample(self.full.pose[:, WHEEL_ANGLE]) * ARCSEC
+        return self._at_output(self.full.pose)
 
     def light_transmission_error(self) -> FloatArray:
         """Transmission error at the light torque, arcsec."""
         if self.light is None:
             raise ValueError("the light torque was not solved")
-        return self.by_sample(self.light.pose[:, WHEEL_ANGLE]) * ARCSEC
+        return self._at_output(self.light.pose)
 
     def backlashes(self) -> FloatArray:
         """Backlash of the wheel, disc held, arcmin."""
@@ -147,14 +162,14 @@ QUANTITIES: dict[str, Quantity] = {
     "max_pin_shaft_pressure_mid": _quantity(
         "MPa", "largest pressure of a shaft pin at mid-width", lambda b: b.by_sample(b.pressures.holes.mid).max(axis=1)
     ),
-    "mean_bearing_load": _quantity("N", "bearing load, mean", lambda b: np.hypot(*b.bearing).mean(axis=1)),
-    "max_bearing_load": _quantity("N", "bearing load, largest", lambda b: np.hypot(*b.bearing).max(axis=1)),
-    "mean_radial_bearing_load": _quantity("N", "radial bearing load, mean", lambda b: b.bearing[0].mean(axis=1)),
+    "mean_bearing_load": _quantity("N", "bearing load, mean", lambda b: np.hypot(*b.bearing).mean(axis=(1, 2))),
+    "max_bearing_load": _quantity("N", "bearing load, largest", lambda b: np.hypot(*b.bearing).max(axis=(1, 2))),
+    "mean_radial_bearing_load": _quantity("N", "radial bearing load, mean", lambda b: b.bearing[0].mean(axis=(1, 2))),
     "mean_tangential_bearing_load": _quantity(
-        "N", "tangential bearing load, mean", lambda b: b.bearing[1].mean(axis=1)
+        "N", "tangential bearing load, mean", lambda b: b.bearing[1].mean(axis=(1, 2))
     ),
     "ptp_tangential_bearing_load": _quantity(
-        "N", "tangential bearing load, peak to peak", lambda b: np.ptp(b.bearing[1], axis=1)
+        "N", "tangential bearing load, peak to peak", lambda b: np.ptp(b.bearing[1], axis=1).max(axis=1)
     ),
     "mean_loaded_pins": _quantity("1", "loaded wheel pins, mean", lambda b: b.loaded(b.full.response.pin_load)),
     "mean_loaded_rollers": _quantity(

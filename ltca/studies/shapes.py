@@ -28,6 +28,7 @@ from ltca.compliance.coefficient_files import (
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
 from ltca.output.provenance import code_hash
 from ltca.output.run_folder import held
@@ -56,12 +57,14 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         When there are none and none can be derived.
     """
     given = _given(engine)
-    if engine.batches or isinstance(given, InfluenceCoefficients):
+    if engine.batches or _are_coefficients(given):
         return engine
-    key = (*engine.options.values(), repr(given), drive.shape_fingerprint())
+    singles = single_discs(drive)
+    shapes = [single.shape_fingerprint() for single in singles]
+    key = (*engine.options.values(), repr(given), *shapes)
     if key not in _ENGINES:
-        there = given is not None or cached_file(drive).exists()
-        with nullcontext() if there else _one_process(drive.shape_fingerprint()):
+        there = given is not None or all(cached_file(single).exists() for single in singles)
+        with nullcontext() if there else _one_process(shapes[0]):
             _ENGINES[key] = engine.with_coefficients(drive)
         if len(_ENGINES) > KEPT:
             _ENGINES.popitem(last=False)
@@ -74,6 +77,12 @@ def _given(engine: Engine) -> Any:
     return getattr(engine, "coefficients", None)
 
 
+def _are_coefficients(given: Any) -> bool:
+    """Whether that is the coefficients themselves, of all discs alike or of each."""
+    each = given if isinstance(given, tuple) and given else (given,)
+    return all(isinstance(own, InfluenceCoefficients) for own in each)
+
+
 @contextmanager
 def _one_process(shape: str) -> Iterator[None]:
     """Let one process of a machine at a time look for a shape: the others find what it has derived."""
@@ -84,10 +93,11 @@ def _one_process(shape: str) -> Iterator[None]:
 
 
 def shapes_of(drives: Iterable[Drive]) -> dict[str, Drive]:
-    """Return the first drive of every distinct shape, by fingerprint."""
+    """Return the first drive of one disc of every distinct shape, by fingerprint."""
     found: dict[str, Drive] = {}
     for drive in drives:
-        found.setdefault(drive.shape_fingerprint(), drive)
+        for single in single_discs(drive):
+            found.setdefault(single.shape_fingerprint(), single)
     return found
 
 
@@ -110,7 +120,7 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         derived is left to its samples, which say why.
     """
     given = _given(engine)
-    if engine.batches or isinstance(given, InfluenceCoefficients) or not shapes:
+    if engine.batches or _are_coefficients(given) or not shapes:
         return
     wanted = list(shapes.values())
     if given is None:
@@ -141,11 +151,12 @@ def coefficients_identity(engine: Engine) -> str:
     given = _given(engine)
     if engine.batches:
         return "none"
-    if isinstance(given, InfluenceCoefficients):
+    if _are_coefficients(given):
         digest = hashlib.sha256()
-        for item in fields(given):
-            value = getattr(given, item.name)
-            digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
+        for own in given if isinstance(given, tuple) else (given,):
+            for item in fields(own):
+                value = getattr(own, item.name)
+                digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
         return f"given {digest.hexdigest()[:16]}"
     if given is not None:
         files = [given] if isinstance(given, Path) else list(given)
