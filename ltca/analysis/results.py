@@ -263,7 +263,8 @@ def check_common_shape(cases: Mapping[str, Drive]) -> None:
 
 
 def _counted(numbers: tuple[int, ...], things: tuple[str, ...]) -> str:
-    return ", ".join(f"{number} {thing}" for number, thing in zip(numbers, things, strict=True))
+    each = zip(numbers, things, strict=True)
+    return ", ".join(f"{number} {thing if number != 1 else thing.removesuffix('s')}" for number, thing in each)
 
 
 def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None) -> xr.Dataset:
