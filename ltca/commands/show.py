@@ -123,7 +123,9 @@ def _installation(drive: Drive) -> list[tuple[str, str]]:
 
     from ltca.drive.single_discs import equal_parts, single_discs
 
-    held = "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
+    held = (
+        "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
+    )
     rows = [("installation", held), ("reduction ratio (crank turns by output turns)", f"{drive.transmission_ratio:g}")]
     discs = drive.disc.number_of_discs
     if discs == 1:

@@ -47,9 +47,7 @@ _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
 ROUND_OFF = 1e-6
 """An answer moves when a number of it changes by more than this part: a thousand times the tolerance of equilibrium."""
 
-DIAMETERS = tuple(
-    path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split(".")
-)
+DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split("."))
 _NAME = {
     "name": "names a drive and its files, nothing else",
     "disc.planes": "axial places have no effect before pins and shafts bend",
@@ -161,7 +159,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     parent, _, name = path.rpartition(".")
     if parent.endswith(("pin_profile", "roller_profile")):
         # Tables of profiled parts are dear where radii differ: diameters are as drawn.
-        drive = with_fields(drive, {field: () for field in DIAMETERS})
+        drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
     if name in _RELIEF:
         other = next(field for field in _RELIEF if field != name)
         return with_fields(drive, {f"{parent}.{other}": _RELIEF[other]}), {path: _RELIEF[name]}

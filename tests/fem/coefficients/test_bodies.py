@@ -19,8 +19,8 @@ from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleShape, DriveShapes, RingShape
-from ltca.drive.single_discs import nominal_shape, single_discs
 from ltca.drive.parts import Material
+from ltca.drive.single_discs import nominal_shape, single_discs
 from ltca.reading.changes import with_fields
 from ltca.reading.coefficient_laws import compressed_cylinder, project_rigid_motions
 from ltca.testing.field_changes import leaf_fields, sensible_change

@@ -126,6 +126,10 @@ def test_stagnation_is_an_error_with_its_history(models):
         geometry = models["CS-1"].geometry
         looks = 0
 
+        @property
+        def discs(self):
+            return (self,)
+
         def respond(self, crank_angle, pose, start=None):
             response = models["CS-1"].respond(crank_angle, pose, start)
             self.looks += 1
