@@ -18,8 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.equilibrium.balance import solve_equilibrium
+from ltca.analysis.engines import HalfSpace
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.practical_drives import practical_drive
@@ -33,11 +33,11 @@ def try_drive(seed: int, practical: bool) -> tuple[str, str, int]:
         return "no drive fits", "", 0
     drive, angle = drawn
     try:
-        model = HalfSpaceCompliance.of_drive(drive)
-        balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
+        model = HalfSpace().prepare(drive).model
+        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
     except ConvergenceError as error:
         return ("convergence error" if error.history else "error without history"), str(error), 0
-    problems = find_imbalance(drive, model, balanced)
+    problems = find_imbalance(drive, model, balanced, torque=drive.load.torque)
     return ("wrong" if problems else "balanced"), "; ".join(problems), int(balanced.iterations[0])
 
 

@@ -6,12 +6,14 @@ no clearance, equal radii, full and hundredth torque.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.random import Generator
 
-from ltca.drive.parts import Drive
+from ltca.drive.deviations import OneDisc, OneEccentric, Runout
+from ltca.drive.parts import Drive, Installation
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
@@ -66,7 +68,7 @@ def practical_drive(seed: int) -> tuple[Drive, float]:
     Returns
     -------
     Drive
-        With its rated torque or a hundredth of it.
+        With its rated torque or a hundredth of it, one to three discs, either member held.
     float
         φ_C, rad; one in four is zero.
     """
@@ -75,7 +77,22 @@ def practical_drive(seed: int) -> tuple[Drive, float]:
         drawn = _draw(random)
         if drawn is not None:
             break
-    return drawn, float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+    return _built_in(random, drawn), float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+
+
+def _built_in(random: Generator, drive: Drive) -> Drive:
+    """One to three discs under so much more torque, small errors of one of them, either member held."""
+    discs = int(random.choice([1, 1, 2, 2, 3]))
+    load = replace(drive.load, torque=discs * drive.load.torque, light_torque=discs * drive.load.light_torque)
+    disc, crank = replace(drive.disc, number_of_discs=discs), drive.crank
+    if discs > 1 and random.uniform() < 0.5:
+        size = float(random.choice([0.002, 0.005, 0.01])) * min(1.0, drive.crank.eccentricity)
+        own = [OneDisc(runout=Runout(amount=size, angle=float(random.choice([0.0, 1.0]))))]
+        disc = replace(disc, of=(*own, *[OneDisc()] * (discs - 1)))
+        if random.uniform() < 0.5:
+            crank = replace(crank, of=(*[OneEccentric()] * (discs - 1), OneEccentric(eccentricity_error=size)))
+    held: Any = str(random.choice(["pin-shaft", "pin-wheel"]))
+    return replace(drive, disc=disc, crank=crank, load=load, installation=Installation(held=held))
 
 
 def _draw(random: Generator) -> Drive | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.equilibrium.balance import solve_equilibrium
+from ltca.analysis.engines import HalfSpace
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.practical_drives import practical_drive
 
@@ -14,9 +14,9 @@ from ltca.testing.practical_drives import practical_drive
 def check_seeds(first, count):
     for seed in range(first, first + count):
         drive, angle = practical_drive(seed)
-        model = HalfSpaceCompliance.of_drive(drive)
-        balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
-        assert find_imbalance(drive, model, balanced) == [], seed
+        model = HalfSpace().prepare(drive).model
+        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+        assert find_imbalance(drive, model, balanced, torque=drive.load.torque) == [], seed
 
 
 def test_practical_drives_quick():
@@ -38,6 +38,9 @@ def test_zeros_and_equalities_are_drawn():
     assert any(drive.clearance.bearing == drive.clearance.pin_hole == 0.0 for drive in drives)
     assert any(drive.crank_bearing.roller_length == drive.disc.thickness for drive in drives)
     assert {drive.load.direction for drive in drives} == {"ccw", "cw"}
+    assert {drive.disc.number_of_discs for drive in drives} == {1, 2, 3}
+    assert {drive.installation.held for drive in drives} == {"pin-shaft", "pin-wheel"}
+    assert any(drive.disc.of for drive in drives)
     assert {drive.materials.disc.youngs_modulus for drive in drives} == {206e3, 70e3, 2.6e3}
     assert min(drive.pin_wheel.number_of_pins for drive in drives) <= 8
     assert max(drive.pin_wheel.number_of_pins for drive in drives) >= 100
