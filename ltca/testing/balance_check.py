@@ -213,7 +213,8 @@ def find_imbalance(
     # How far the least stiff contact yields under the load sets the scale of the displacements.
     scale = max(1e-6, float(np.max(contacts.flank.approach[position])), float(np.max(rollers.outer_approach[position])))
     # Contacts that just open or close bend the slope: of several steps the best tells; a wrong pose fails with all.
-    steps = scale * np.array([1e-3, 1e-4, 1e-5, 1e-6])
+    # A disc that carries nothing rests on kinks of stiff holes: there the step itself is the slope.
+    steps = scale * np.array([1e-3, 1e-4, 1e-5, 1e-6, 1e-7])
     offsets = (steps[:, None, None] * np.concatenate([np.eye(size), -np.eye(size)])).reshape(-1, size)
     directions = np.random.default_rng(seed).normal(size=(12, size))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
@@ -221,7 +222,7 @@ def find_imbalance(
     moves = np.concatenate([np.zeros((1, size)), offsets, sizes[:, None] * directions])
     value = potential.at(pose + moves / lever)
     behind = 1 + offsets.shape[0]
-    pairs = value[1:behind].reshape(4, 2, size)
+    pairs = value[1:behind].reshape(steps.size, 2, size)
     slope = np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps)
     # Round-off of Π: of the stored energy and of T·angle, of the search along the rays, and of approaches (parts of
     # the pin circle radius) under the forces of preloaded pins.
