@@ -18,7 +18,7 @@ from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 
 if TYPE_CHECKING:
@@ -215,7 +215,7 @@ def analyse(
     DriveError
         When a name, a number or their combination makes no sense, or the torque cannot be carried.
     ConvergenceError
-        When a position does not balance.
+        When a position does not balance; ``partial`` is the result of those that do, their numbers alone.
 
     Examples
     --------
@@ -238,4 +238,9 @@ def analyse(
     engine = engine_named(
         compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
     )
-    return AnalysisResult(case=case, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
+    try:
+        return AnalysisResult(case=case, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
+    except ConvergenceError as error:
+        if isinstance(error.partial, LoadedAnalysis):
+            error.partial = AnalysisResult(case=case, loaded=error.partial)
+        raise

@@ -32,7 +32,7 @@ ANGLES = 4
 HARMONICS = 7
 """Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST`)."""
 HIGHEST = 320
-SEEN = 2.1
+SEEN = 2.05
 """Positions for each period of the highest order, beyond the two that tell it from others."""
 FIGURES = ("torque_curve", "transmission_error_orders", "flank_pressure")
 

@@ -249,11 +249,19 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     dataset : xarray.Dataset
         Of `ltca.analysis.results.build_dataset`; of several discs each has a curve of its own.
     """
+    dataset = _answered(dataset)
     shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else _disc_by_disc(dataset)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         FIGURES[name](figure, shown)
     return figure
+
+
+def _answered(dataset: xr.Dataset) -> xr.Dataset:
+    """The positions at which every case has an answer."""
+    states = [dataset[name].values for name in ("status", "status_light") if name in dataset]
+    known = np.all([state == 0 for state in states], axis=(0, 1)) if states else np.zeros(0, dtype=bool)
+    return dataset.isel(position=known) if np.any(known) and not np.all(known) else dataset
 
 
 def _disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:

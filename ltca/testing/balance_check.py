@@ -222,8 +222,12 @@ def find_imbalance(
     moves = np.concatenate([np.zeros((1, size)), offsets, sizes[:, None] * directions])
     value = potential.at(pose + moves / lever)
     behind = 1 + offsets.shape[0]
-    pairs = value[1:behind].reshape(steps.size, 2, size)
-    slope = np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps)
+
+    def slopes(ends: FloatArray) -> FloatArray:
+        pairs = ends.reshape(steps.size, 2, size)
+        return np.asarray(np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps))
+
+    slope = slopes(value[1:behind])
     # Round-off of Π: of the stored energy and of T·angle, of the search along the rays, and of approaches (parts of
     # the pin circle radius) under the forces of preloaded pins.
     rounding = 4.0 * np.finfo(float).eps * drive.pin_wheel.pin_circle_radius
@@ -232,6 +236,10 @@ def find_imbalance(
     )
     noise = 1e-11 * (abs(moment * pose[-1]) + abs(value[0]) + load * scale) + rounding * forces
     best = int(np.argmin(slope - noise / steps))
+    if slope[best] > 1e-3 * load + noise / steps[best]:
+        # Apart from the long displacements, which the flank next to the contacts has to be stretched for.
+        slope = slopes(potential.at(pose + moves[:behind] / lever)[1:])
+        best = int(np.argmin(slope - noise / steps))
     if slope[best] > 1e-3 * load + noise / steps[best]:
         problems.append(f"slope of the potential {slope[best]:.3g} N against a load of {load:.3g} N")
     rise = value[behind:] - value[0]
