@@ -13,11 +13,12 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
-from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.unit_table import range_of
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import DriveError, shortened
 from ltca.frozen_arrays import freeze
+from ltca.geometry.interference import preload_warning
 from ltca.geometry.pairs import DISC_ROTATION
 
 FloatArray = NDArray[np.float64]
@@ -57,6 +58,12 @@ class LoadedAnalysis:
     bearing_radial: FloatArray
     bearing_tangential: FloatArray
     wall_stresses: WallStresses | None
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know of drive and answer before they are used, one sentence each."""
+        found = (stiffness_warning(self.drive), preload_warning(self.drive))
+        return [warning for warning in found if warning is not None]
 
 
 @names_unit_mistakes
