@@ -97,8 +97,8 @@ def _flank(drive: Drive) -> Iterator[str]:
     if overlap > bound + ROUNDING:
         yield (
             f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
-            f"{disc.equidistant_offset + overlap - bound:.6g} mm with this shifting offset, or disc and pins overlap by more than "
-            f"{bound:g} mm, {ELASTIC}"
+            f"{disc.equidistant_offset + overlap - bound:.6g} mm with this shifting offset, or disc and pins overlap by "
+            f"more than {bound:g} mm, {ELASTIC}"
         )
 
 
@@ -170,12 +170,12 @@ def _holes(drive: Drive) -> Iterator[str]:
     shaft, e = drive.pin_shaft, drive.crank.eccentricity
     play = shaft.hole_radius - shaft.pin_radius
     # Pins in tight holes push the disc along the eccentricity: by half of it they would lead it no more.
-    bound = min(deviation_bound(drive), 0.5 * e)
-    smallest = shaft.pin_radius + e - drive.clearance.pin_hole - bound
+    most = min(deviation_bound(drive), 0.5 * e)
+    smallest = shaft.pin_radius + e - drive.clearance.pin_hole - most
     if shaft.hole_radius < smallest - ROUNDING:
         yield (
             f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, pin radius plus "
-            f"eccentricity less {bound:g} mm, {ELASTIC}, or half the eccentricity"
+            f"eccentricity less {most:g} mm, {ELASTIC}, or half the eccentricity"
         )
     elif play > 1.5 * e:
         yield (

@@ -36,6 +36,8 @@ SAMPLES = 48
 """Points of the flank for each wave of its highest order: a search is safe from the nearest of them."""
 FINER = 12
 """How much finer the next search is."""
+FARTHEST = 0.01
+"""Largest displacement tried, as a part of the pin radius."""
 NODES = 7
 """Points of the flank through which a polynomial stands for it next to a contact."""
 _NODES = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
@@ -387,10 +389,14 @@ def find_imbalance(
     offsets = (steps[:, None, None] * np.concatenate([np.eye(4), -np.eye(4)])).reshape(-1, 4)
     directions = np.random.default_rng(seed).normal(size=(12, 4))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
-    sizes = scale * np.repeat([1e-2, 1e-1, 1.0], 4)
-    moves = np.concatenate([np.zeros((1, 4)), offsets, sizes[:, None] * directions])
-    value = potential.at(pose + moves / lever)
-    pairs = value[1:33].reshape(4, 2, 4)
+    # Preloaded pins yield by more than the pieces of the flank hold on which they are followed.
+    farthest = min(scale, FARTHEST * drive.pin_wheel.pin_radius)
+    sizes = farthest * np.repeat([1e-2, 1e-1, 1.0], 4)
+    here = np.zeros((1, 4))
+    # Apart, since the farthest pose sets how wide the pieces are.
+    value = potential.at(pose + np.concatenate([here, offsets]) / lever)
+    moved = potential.at(pose + np.concatenate([here, sizes[:, None] * directions]) / lever)
+    pairs = value[1:].reshape(4, 2, 4)
     slope = np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps)
     # Round-off of Π: of the stored energy and of T·angle, of the search along the rays, and of approaches (parts of
     # the pin circle radius) under the forces of preloaded pins.
@@ -402,7 +408,7 @@ def find_imbalance(
     best = int(np.argmin(slope - noise / steps))
     if slope[best] > 1e-3 * load + noise / steps[best]:
         problems.append(f"slope of the potential {slope[best]:.3g} N against a load of {load:.3g} N")
-    rise = value[33:] - value[0]
+    rise = moved[1:] - moved[0]
     if np.any(rise < -noise - 1e-4 * load * sizes):
         problems.append(f"a displacement lowers the potential by {-np.min(rise):.3g} N·mm")
     return problems
