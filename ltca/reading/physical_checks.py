@@ -137,10 +137,10 @@ def _bearing(drive: Drive) -> Iterator[str]:
             f"crank_bearing.inner_race_radius = {bearing.inner_race_radius:g} mm: must be {bound}, or the rollers have no "
             f"room below the outer race (outer_race_radius = {bearing.outer_race_radius:g} mm)"
         )
-    elif (overlap := drawn_interference(drive).rollers) > (bound := deviation_bound(drive)) + ROUNDING:
+    elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
         yield (
             f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most "
-            f"{bearing.roller_radius - 0.5 * (overlap - bound):.6g} mm, or it overlaps the races by more than {bound:g} mm, "
+            f"{bearing.roller_radius - 0.5 * (overlap - elastic):.6g} mm, or it overlaps the races by more than {elastic:g} mm, "
             f"{ELASTIC}"
         )
     elif 2.0 * bearing.roller_radius < 0.9 * space:
