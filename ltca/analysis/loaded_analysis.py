@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.analysis.half_width_guard import check_half_widths
+from ltca.analysis.half_width_guard import check_half_widths, separation_warning
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
@@ -62,7 +63,9 @@ class LoadedAnalysis:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
-        found = (stiffness_warning(self.drive), preload_warning(self.drive))
+        found = [stiffness_warning(self.drive), preload_warning(self.drive)]
+        if isinstance(self.model, HalfSpaceCompliance):
+            found.append(separation_warning(self.model, self.drive, self.full, self.pressures))
         return [warning for warning in found if warning is not None]
 
 
