@@ -13,6 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ltca.analysis.engines import Engine, engine_named
+from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse as analyse_positions
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
@@ -83,6 +84,12 @@ class AnalysisResult:
     def summary(self) -> dict[str, float | None]:
         """Scalars as in ``summary.json``, units in the keys."""
         return dict(self._summary)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
+        sampled = sampling_warning(self.drive, self.loaded.full.crank_angle)
+        return [*self.loaded.warnings, *([] if sampled is None else [sampled])]
 
     @property
     def plot(self) -> Plots:

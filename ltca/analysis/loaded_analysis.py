@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.analysis.half_width_guard import check_half_widths
+from ltca.analysis.half_width_guard import check_half_widths, separation_warning
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.unit_table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.partial_balance import balance_what_can_be
@@ -27,6 +28,7 @@ from ltca.equilibrium.reducer import (
 )
 from ltca.errors import DriveError, shortened
 from ltca.frozen_arrays import freeze
+from ltca.geometry.interference import preload_warning
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_pose
 
 FloatArray = NDArray[np.float64]
@@ -120,6 +122,18 @@ class LoadedAnalysis:
     def transmission_error_light(self) -> FloatArray:
         """The same at the light torque, rad."""
         return np.asarray(self.drive.output_per_wheel_angle * self.light.pose[:, WHEEL_ANGLE])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know of drive and answer before they are used, one sentence each."""
+        found = [stiffness_warning(self.drive), preload_warning(self.drive)]
+        discs = self.discs if np.all(self.balanced) else ()
+        for number, disc in enumerate(discs):
+            if isinstance(disc.model, HalfSpaceCompliance):
+                of = "" if len(discs) == 1 else f"disc {number}: "
+                told = separation_warning(disc.model, disc.drive, disc.full, disc.pressures)
+                found.append(None if told is None else of + told)
+        return [warning for warning in found if warning is not None]
 
 
 @names_unit_mistakes

@@ -164,7 +164,7 @@ def _solve_and_write(
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
     if any(analysis.pressures.rigid_shaft_pins for analysis in analyses.values()):
         print(RIGID_SHAFT_PINS)
-    print(_sampling(cases, angles))
+    print(_sampling(analyses, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         count = sum(int((~known).sum()) for known in (failure.partial.balanced, failure.partial.balanced_light))
@@ -302,16 +302,17 @@ def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
 
-def _sampling(cases: dict[str, Drive], angles: FloatArray) -> str:
-    """What the values stand for: which positions, and whether they see the mesh."""
+def _sampling(analyses: dict[str, LoadedAnalysis], angles: FloatArray) -> str:
+    """What the values stand for: which positions, whether they see the mesh, and what to know of drive and answer."""
     from ltca.analysis.extremes import is_full_turn, sampling_warning
-    from ltca.drive.unit_mistakes import stiffness_warning
 
     many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
     warnings = {
-        warn for drive in cases.values() for warn in (sampling_warning(drive, angles), stiffness_warning(drive))
+        warning
+        for analysis in analyses.values()
+        for warning in (sampling_warning(analysis.drive, angles), *analysis.warnings)
+        if warning is not None
     }
-    warnings -= {None}
-    return "\n".join([*lines, *(f"warning: {text}" for text in sorted(map(str, warnings)))])
+    return "\n".join([*lines, *(f"warning: {text}" for text in sorted(warnings))])

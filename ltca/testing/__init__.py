@@ -10,6 +10,8 @@ balance_check       Whether a pose balances, found without the code that balance
 field_changes       One sensible change for every leaf field of a drive: what the contract is walked with
 malformed           Malformed drive and study files by a seeded generator: values, texts, structures and bytes nobody
                     should write
+elastic_cylinder    An elastic cylinder between two rigid planes, solved with its true boundary: what half-spaces are
+                    measured by
 closed_form_bodies  Influence coefficients of bodies in closed form: a coefficient file without finite elements
 ==================  ============================================================
 """

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.random import Generator
 
 from ltca.drive.deviations import OneDisc, OneEccentric, Runout
-from ltca.drive.parts import Drive, Installation
+from ltca.drive.parts import Clearance, Drive, Installation
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
+from ltca.reading.physical_checks import is_sound
 
 MATERIALS = {
     "steel": (206e3, 0.3, 1200.0),
@@ -93,6 +94,43 @@ def _built_in(random: Generator, drive: Drive) -> Drive:
             crank = replace(crank, of=(*[OneEccentric()] * (discs - 1), OneEccentric(eccentricity_error=size)))
     held: Any = str(random.choice(["pin-shaft", "pin-wheel"]))
     return replace(drive, disc=disc, crank=crank, load=load, installation=Installation(held=held))
+
+
+def preloaded_drive(seed: int) -> tuple[Drive, float]:
+    """Return a drive as `practical_drive` does whose parts overlap as drawn, and a crank angle in rad.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative; the same seed gives the same drive.
+
+    Returns
+    -------
+    Drive
+        Pins and flank, rollers and races, shaft pins and holes overlap, or some of them: by micrometres to a fortieth of the
+        smallest pin or roller radius.
+    float
+        φ_C, rad.
+    """
+    random = np.random.default_rng((seed, 1))
+    while True:
+        drive, angle = practical_drive(int(random.integers(2**32)))
+        wheel, disc, bearing, shaft = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.pin_shaft
+        largest = min(
+            0.025 * min(wheel.pin_radius, bearing.roller_radius, shaft.pin_radius), 0.5 * drive.crank.eccentricity
+        )
+        size = min(float(random.choice([0.001, 0.005, 0.01, 0.02, 0.05])), largest)
+        which = int(random.integers(1, 8))
+        if which & 1:
+            shift = float(random.choice([0.0, 0.5 * size, -0.5 * size]))
+            disc = replace(disc, equidistant_offset=-size, shifting_offset=shift)
+        if which & 2:
+            bearing = replace(bearing, roller_radius=bearing.roller_radius + 0.5 * size)
+        if which & 4:
+            shaft = replace(shaft, hole_radius=shaft.hole_radius - size)
+        drive = replace(drive, disc=disc, crank_bearing=bearing, pin_shaft=shaft, clearance=Clearance())
+        if is_sound(drive):
+            return drive, angle
 
 
 def _draw(random: Generator) -> Drive | None:

@@ -7,13 +7,14 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.geometry.interference import drawn_interference
 from ltca.testing.balance_check import find_imbalance
-from ltca.testing.practical_drives import practical_drive
+from ltca.testing.practical_drives import practical_drive, preloaded_drive
 
 
-def check_seeds(first, count):
+def check_seeds(first, count, draw=practical_drive):
     for seed in range(first, first + count):
-        drive, angle = practical_drive(seed)
+        drive, angle = draw(seed)
         model = HalfSpace().prepare(drive).model
         balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
         assert find_imbalance(drive, model, balanced, torque=drive.load.torque) == [], seed
@@ -27,6 +28,23 @@ def test_practical_drives_quick():
 def test_five_hundred_practical_drives():
     """``benchmarks/random_drives.py --practical`` runs 10,000."""
     check_seeds(20, 480)
+
+
+def test_preloaded_drives_quick():
+    check_seeds(0, 8, preloaded_drive)
+
+
+@pytest.mark.slow
+def test_a_hundred_preloaded_drives():
+    """``benchmarks/random_drives.py --preloaded`` runs thousands."""
+    check_seeds(8, 92, preloaded_drive)
+
+
+def test_preload_of_every_kind_is_drawn():
+    found = [drawn_interference(preloaded_drive(seed)[0]) for seed in range(40)]
+    for kind in ("pins", "rollers", "holes"):
+        assert any(getattr(overlaps, kind) > 5e-4 for overlaps in found)
+    assert all(max(overlaps.pins, overlaps.rollers, overlaps.holes) > 0.0 for overlaps in found)
 
 
 def test_zeros_and_equalities_are_drawn():
