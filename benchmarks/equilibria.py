@@ -3,7 +3,7 @@
     python benchmarks/equilibria.py [--coefficients FILE] [--positions 360] [--rounds 3]
 
 ``fe`` and ``hybrid`` start from the solution on tables as the engines do (their time includes it). Without a file of
-``cyclo derive paper --case CS-1`` the bodies are those in closed form (`ltca.testing.closed_form_bodies`), whose matrices are as large.
+``cyclo derive paper --case CS-1`` the bodies are those in closed form (`ltca.testing.closed_form_bodies`), on fewer stations.
 Each figure is the best of the rounds; compare ratios of one run.
 """
 
@@ -26,7 +26,7 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
-from ltca.compliance.response import ComplianceModel
+from ltca.compliance.response import ComplianceModel, Start
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
@@ -43,10 +43,8 @@ def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium,
     return answer, seconds
 
 
-def counted(model: ComplianceModel, angles: np.ndarray, pose: np.ndarray) -> float:
+def one_evaluation(model: ComplianceModel, angles: np.ndarray, pose: np.ndarray) -> float:
     """Return processor seconds of one evaluation at poses, from its neighbour's start."""
-    from ltca.compliance.response import Start
-
     start = Start.after(model.respond(angles, pose))
     began = time.process_time()
     model.respond(angles, pose + 1e-6, start)
@@ -77,9 +75,11 @@ def main() -> None:
     for name, model in models.items():
         found, seconds = near, base
         if name != "half-space":
-            found, seconds = best(arguments.rounds, lambda model=model: solve_equilibrium(model, angles, moment, near.pose))
+            found, seconds = best(
+                arguments.rounds, lambda model=model: solve_equilibrium(model, angles, moment, near.pose)
+            )
             seconds += base
-        each = min(counted(model, angles, found.pose) for _ in range(arguments.rounds)) / angles.size
+        each = min(one_evaluation(model, angles, found.pose) for _ in range(arguments.rounds)) / angles.size
         print(
             f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{1e3 * each:>15.3f}"
             f"{seconds / base:>20.1f}"

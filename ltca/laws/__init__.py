@@ -1,4 +1,4 @@
-"""Load–approach laws of single contacts: tables of the half-space, plane strain, springs, laws in series.
+"""Load–approach laws of single contacts: tables of the half-space, plane strain, springs.
 
 Modules in the order data passes:
 
@@ -12,6 +12,6 @@ shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
 generator_law          The tabulated law of a roller or pin with the generator that the drive gives it
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
-series                 Laws made of laws: springs, laws in series, and the approach at a given load
+series                 Springs, and the approach at a given load
 =====================  ============================================================
 """
