@@ -106,13 +106,26 @@ class LineContactLaw:
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load and its exact derivative by the approach, N and N/mm."""
-        pressed, place, closed = self._place(approach, effective_radius)
+        delta, radius = np.broadcast_arrays(
+            np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
+        )
+        closed = delta > 0.0
+        if closed.all():
+            return self._closed(delta, radius)
+        # Most pins of a drive are open: they cost nothing.
+        load, stiffness = np.zeros(delta.shape), np.zeros(delta.shape)
+        load[closed], stiffness[closed] = self._closed(delta[closed], radius[closed])
+        return load, stiffness
+
+    def _closed(self, pressed: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Load and stiffness of contacts that are all closed."""
+        place = np.log(pressed * radius / (self.length * self.length))
         w, first, second = self.table.inverse_energy.value_and_derivatives(place)
         inverse = 1.0 / w
         scale = (self.contact_modulus * self.length) * inverse
         slope = first * inverse
         load = scale * pressed * (2.0 - slope)
-        stiffness = scale * (2.0 - slope * (3.0 - 2.0 * slope) - second * inverse) * closed
+        stiffness = scale * (2.0 - slope * (3.0 - 2.0 * slope) - second * inverse)
         return load, stiffness
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
