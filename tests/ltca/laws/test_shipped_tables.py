@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import tomllib
 from fnmatch import fnmatch
 from pathlib import Path
@@ -56,3 +58,15 @@ def test_the_wheel_has_the_tables():
     data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["package-data"]
     for table in (line_contact.TABLE, end_pressure.TABLE):
         assert any(fnmatch(table.relative_to(ROOT / "ltca").as_posix(), pattern) for pattern in data["ltca"])
+
+
+def test_an_analysis_on_tables_needs_no_scipy():
+    """A second of a cold start was spent on its import and on tables that are data."""
+    words = (
+        "import sys, numpy; from ltca.analysis.loaded_analysis import analyse; "
+        "from ltca.reading.drive_file import load_drive; "
+        "analyse(load_drive('paper').cases['CS-1'], numpy.array([0.5])); "
+        "print([name for name in sys.modules if name.partition('.')[0] == 'scipy'])"
+    )
+    found = subprocess.run([sys.executable, "-c", words], check=True, capture_output=True, text=True)
+    assert found.stdout.strip() == "[]"
