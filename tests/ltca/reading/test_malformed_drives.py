@@ -61,7 +61,7 @@ MALFORMED = [
     (STEEL, "disc = { youngs_modulus = -1.0 }", ["materials.disc.youngs_modulus = -1.0", "greater than 0 MPa"]),
     (STEEL, "disc = { poisson_ratio = 0.5 }", ["materials.disc.poisson_ratio = 0.5", "less than 0.5"]),
     # geometry that cannot be
-    ("eccentricity = 4.0", "eccentricity = 7.0", ["crank.eccentricity = 7 mm", "at most 4 mm", "loops"]),
+    ("eccentricity = 4.0", "eccentricity = 7.0", ["crank.eccentricity = 7 mm", "at most 4.5 mm", "loops"]),
     ("pin_radius = 6.5", "pin_radius = 25.0", ["pin_wheel.pin_radius = 25 mm", "at most 13.86 mm", "undercut"]),
     ("equidistant_offset = 0.15", "equidistant_offset = -0.15", ["equidistant_offset = -0.15 mm", "at least 0.09 mm"]),
     ("equidistant_offset = 0.15", "equidistant_offset = -7.0", ["equidistant_offset = -7 mm", "than -6.5 mm"]),
