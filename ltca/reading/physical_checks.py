@@ -192,8 +192,8 @@ def _holes(drive: Drive) -> Iterator[str]:
     smallest = shaft.pin_radius + e - drive.clearance.pin_hole - most
     if shaft.hole_radius < smallest - ROUNDING:
         yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, pin radius plus "
-            f"eccentricity less {most:g} mm, {ELASTIC}, or half the eccentricity"
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, or it overlaps its pin by more "
+            f"than {most:g} mm, {ELASTIC} (and half the eccentricity at most)"
         )
     elif play > 1.5 * e:
         yield (

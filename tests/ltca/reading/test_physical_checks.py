@@ -86,7 +86,7 @@ WRONG = {
     ),
     "hole too small for the eccentricity": (
         {"pin_shaft": {"hole_radius": 13.57}},
-        r"pin_shaft\.hole_radius = 13\.57 mm: must be at least 13\.575 mm, pin radius plus eccentricity less 0\.5 mm",
+        r"pin_shaft\.hole_radius = 13\.57 mm: must be at least 13\.575 mm, or it overlaps its pin by more than 0\.5 mm",
     ),
     "hole too large to lead the disc": (
         {"pin_shaft": {"pin_radius": 8.0}},
