@@ -32,7 +32,16 @@ MALFORMED = [
     ("pin_hole = 0.0", "pin_hole = -0.01", ["clearance.pin_hole = -0.01", "at least 0 mm"]),
     ("# phases = [", "torque_share = 0.55 # [", ["disc.torque_share", "computed"]),
     ("# phases = [", "phases = [0.0, 3.14] # [", ["disc.phases has 2 entries", "must have 1"]),
-    ("# planes = [", "planes = [1.0] # [", ["disc.planes has the mean 1 mm", "must be 0 mm"]),
+    (
+        "number_of_discs = 1",
+        "number_of_discs = 2\nplanes = [0.0, 20.0]",
+        ["disc.planes has the mean 10 mm", "must be 0 mm"],
+    ),
+    (
+        "number_of_discs = 1 ",
+        "number_of_discs = 2\nplanes = [-5, 5] # ",
+        ["disc.planes holds -5 and 5 mm", "at least 11.8 mm"],
+    ),
     # wrong units
     ("eccentricity = 4.0", 'eccentricity = "4 N"', ["crank.eccentricity = '4 N'", "unit mm"]),
     ("pin_circle_radius = 88.0", 'pin_circle_radius = "88 MPa"', ["pin_circle_radius = '88 MPa'", "unit mm"]),

@@ -216,7 +216,7 @@ def test_damaged_and_foreign_batches_are_solved_again(paper, tmp_path):
 
 
 def bad_sweep(paper):
-    """Thickness so small that the torque cannot be carried, and a flank that overlaps its pins beyond what yields, among sound samples."""
+    """Thickness so small that the torque cannot be carried, and a flank that overlaps its pins too far, among sound samples."""
     factors = (
         SweepFactor(path="disc.equidistant_offset", levels=(0.15, -0.6, 0.15, 0.16)),
         SweepFactor(path="load.torque", levels=(3e5, 3e5, 1e8, 3e5)),
