@@ -26,12 +26,7 @@ from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
-from ltca.testing.random_drives import COORDINATES, random_drive
-
-
-def drive_at_random(seed: int) -> tuple[Drive, float] | None:
-    """Return the drive and crank angle that a seed draws, None where no drive fits."""
-    return random_drive(np.random.default_rng(seed).random(COORDINATES))
+from ltca.testing.random_drives import random_reducer
 
 
 def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> tuple[str, str, int]:
@@ -60,7 +55,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
     answered = arguments.practical or arguments.preloaded
-    draw = practical_drive if arguments.practical else preloaded_drive if arguments.preloaded else drive_at_random
+    draw = practical_drive if arguments.practical else preloaded_drive if arguments.preloaded else random_reducer
     outcomes: Counter[str] = Counter()
     remarks: list[str] = []
     iterations: Counter[int] = Counter()
