@@ -82,7 +82,7 @@ class LoadedAnalysis:
     def discs(self) -> tuple[LoadedAnalysis, ...]:
         """What each disc takes part in, as the analysis of a drive of that disc alone: itself where there is one.
 
-        The torque of each is that of the whole drive; what the disc carries of it is in `disc_torques`.
+        What each carries of the torque is in `disc_torques`.
         """
         singles = single_discs(self.drive)
         if len(singles) == 1:

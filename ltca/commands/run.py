@@ -273,6 +273,7 @@ RIGID_SHAFT_PINS = (
     "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
     "--no-hole-near-field"
 )
+HELD_ROWS = (("backlash at the output", "backlash_output_arcmin", "′", "{:z.2f}"),)
 INTERFERENCE_ROWS = (("  pins and flank overlap at rest by", "interference_mm", "mm", "{:.4f}"),)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
@@ -291,7 +292,15 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str])
     ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
     pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
-    for title, key, unit, form in (*ROWS, *pressed, *walls):
+    keys = next(iter(summaries.values()))
+    shares = [
+        (f"part of the torque on disc {disc}, {name}", f"{key}_torque_share_disc_{disc}", "", "{:.4f}")
+        for disc in range(sum(key.startswith("mean_torque_share") for key in keys))
+        for name, key in (("mean", "mean"), ("largest", "max"))
+    ]
+    shared = shares if len(shares) > 2 else []
+    output = any(case["backlash_output_arcmin"] != case["backlash_wheel_arcmin"] for case in summaries.values())
+    for title, key, unit, form in (*ROWS, *(HELD_ROWS if output else ()), *shared, *pressed, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) for case in summaries.values()]
         lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))

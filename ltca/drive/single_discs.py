@@ -24,6 +24,8 @@ from ltca.drive.parts import (
 def single_discs(drive: Drive) -> tuple[Drive, ...]:
     """Return the drives that each disc makes with wheel, crank and pin shaft: what is one disc's own is the drive's there.
 
+    Torques are divided by the number of discs, which is what each carries where all are alike.
+
     Parameters
     ----------
     drive : Drive
@@ -60,7 +62,7 @@ def without_own(drive: Drive) -> Drive:
 
 
 def _single(drive: Drive, number: int) -> Drive:
-    disc, crank = drive.disc, drive.crank
+    disc, crank, load, discs = drive.disc, drive.crank, drive.load, drive.disc.number_of_discs
     own = disc.of[number] if disc.of else OneDisc()
     eccentric = crank.of[number] if crank.of else OneEccentric()
     common = drive.clearance
@@ -79,6 +81,7 @@ def _single(drive: Drive, number: int) -> Drive:
         disc=_alone(disc, own, number),
         crank_bearing=rollers if own.roller_errors is None else replace(rollers, roller_errors=own.roller_errors),
         clearance=clearance,
+        load=replace(load, torque=load.torque / discs, light_torque=load.light_torque / discs),
     )
 
 

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
-from ltca.figures.run_figures import COLOURS, STYLE, draw_curves
+from ltca.drive.single_discs import single_discs
+from ltca.figures.run_figures import COLOURS, STYLE, disc_by_disc, draw_curves
 from ltca.geometry.flank import FlankProfile
 from ltca.output.files import whole_file
 
@@ -101,7 +102,8 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     drive : Drive
         Any of the cases, for the flank.
     """
-    profile = FlankProfile.of_drive(drive)
+    profile = FlankProfile.of_drive(single_discs(drive)[0])
+    results = disc_by_disc(results)
     theta, arc = flank_arc_length(profile)
     half = theta.size // 2
     tip = float(arc[half])
@@ -116,7 +118,7 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     tooth = theta[-1]
     for number, name in enumerate(names):
         colour = COLOURS[number % len(COLOURS)]
-        data = results.isel(case=number, disc=0, crank=0)
+        data = results.isel(case=number)
         load = data["pin_load"].values
         loaded = load > LOADED_FRACTION * load.max()
         place = np.interp(np.mod(data["pin_contact_parameter"].values[loaded], tooth), theta, arc)

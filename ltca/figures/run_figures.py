@@ -245,7 +245,7 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
         Of `ltca.analysis.results.build_dataset`; of several discs each has a curve of its own.
     """
     dataset = _answered(dataset)
-    shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else _disc_by_disc(dataset)
+    shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else disc_by_disc(dataset)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         FIGURES[name](figure, shown)
@@ -259,8 +259,14 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.isel(position=known) if np.any(known) and not np.all(known) else dataset
 
 
-def _disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
-    """Every disc of every case as a case of its own, as far as there are colours."""
+def disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
+    """Return every disc of every case as a case of its own, as far as there are colours; without disc and crank.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of `ltca.analysis.results.build_dataset`.
+    """
     discs = dataset.sizes["disc"]
     if discs == 1:
         return dataset.isel(disc=0, crank=0)
