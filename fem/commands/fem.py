@@ -12,7 +12,7 @@ from ltca.reading.arguments import add_out_argument, default_folder, torque_argu
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem.drive.solution import FullSolution
+    from fem.drive.full_solution import FullSolution
     from ltca.drive.parts import Drive
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"

@@ -12,7 +12,7 @@ from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.fields import BodyField
 from fem.drive.model import ContactPair, DriveModel
-from fem.drive.solution import FullSolution
+from fem.drive.full_solution import FullSolution
 from fem.pictures.scene import Lines, Panel, Triangles, render
 
 FloatArray = NDArray[np.float64]

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drive.solution import FullSolution
+from fem.drive.full_solution import FullSolution
 from fem.referee.calculix_deck import pair_name, slave_faces, write_deck
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
