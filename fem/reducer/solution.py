@@ -8,7 +8,7 @@ and the crank's moment, which follows from the bearing forces found.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,20 @@ class ReducerSolution:
     left_over: tuple[float, ...]
     seconds: dict[str, float]
 
+    @classmethod
+    def of_disc(cls, disc: FullSolution) -> ReducerSolution:
+        """Return the solution of a drive of one disc with the pin shaft held, which shares nothing."""
+        drive, moment = disc.model.drive, disc.state.wheel_moment
+        return cls(
+            drive=drive,
+            crank_angle=disc.model.crank_angle,
+            torque=moment / drive.wheel_moment(1.0),
+            discs=(disc,),
+            spread=(),
+            left_over=(),
+            seconds=disc.seconds,
+        )
+
     @property
     def wheel_angle(self) -> float:
         """Deviation of the wheel from φ_C/u, rad."""
@@ -83,6 +97,11 @@ class ReducerSolution:
     def torque_share(self) -> FloatArray:
         """Part of the wheel's moment that each disc carries, shape (discs,)."""
         return np.asarray(self.disc_torques / self.wheel_moment)
+
+    @property
+    def transmission_error(self) -> float:
+        """Deviation of the output, ccw positive, rad."""
+        return self.drive.output_per_wheel_angle * self.wheel_angle
 
     @property
     def equilibrium_residual(self) -> float:
@@ -211,7 +230,7 @@ def solve_reducer(
         say=progress or _silent,
     )
     if len(singles) == 1 and not drive.wheel_is_held:
-        return _solution(task, [task.start(0, drive.wheel_moment(torque))])
+        return replace(ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque))), drive=drive, torque=task.torque)
     if len(singles) > 1:
         require_solution_memory(drive, crank_angle, scale)
     moment, slope = expect_shares(drive, crank_angle, drive.wheel_moment(torque))
@@ -227,19 +246,13 @@ def solve_reducer(
 
     rise = 1.0 / abs(drive.output_per_wheel_angle)
     shares = share_moment(answer, moment, slope, rise=rise)
-    return _solution(task, [disc for disc in discs if disc is not None], shares.spread, shares.left_over)
-
-
-def _solution(
-    task: _Task, discs: list[FullSolution], spread: tuple[float, ...] = (), left_over: tuple[float, ...] = ()
-) -> ReducerSolution:
     return ReducerSolution(
-        drive=task.drive,
+        drive=drive,
         crank_angle=task.crank_angle,
         torque=task.torque,
-        discs=tuple(discs),
-        spread=spread,
-        left_over=left_over,
+        discs=tuple(disc for disc in discs if disc is not None),
+        spread=shares.spread,
+        left_over=shares.left_over,
         seconds=task.seconds,
     )
 
