@@ -29,8 +29,8 @@ from fem.coefficients.bodies import (
 from fem.coefficients.stations import DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
-from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Drive, Materials
+from ltca.drive.single_discs import nominal_shape
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.coefficient_laws import project_rigid_motions
 from ltca.reading.coefficient_schema import elastic_constants

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem.shapes import DriveShapes
-from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError
 from ltca.reading.coefficient_laws import Check
 from ltca.reading.coefficient_schema import shape_of

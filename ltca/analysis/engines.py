@@ -264,7 +264,7 @@ class _Coupled:
         files: Any = self.coefficients
         near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
         found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
-        return replace(self, coefficients=found)
+        return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
     def model(self, drive: Drive) -> ComplianceModel:
         """Return the coupled compliance of a drive.

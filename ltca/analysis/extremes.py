@@ -229,12 +229,8 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
 def _stages(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
     passages = passages_per_turn(analysis.drive)
     return (
-        _Stage.of(
-            analysis.full, analysis.torque, _full_signals(analysis, analysis.full, analysis.pressures), passages
-        ),
-        _Stage.of(
-            analysis.light, analysis.drive.load.light_torque, _wheel_signals(analysis, analysis.light), passages
-        ),
+        _Stage.of(analysis.full, analysis.torque, _full_signals(analysis, analysis.full, analysis.pressures), passages),
+        _Stage.of(analysis.light, analysis.drive.load.light_torque, _wheel_signals(analysis, analysis.light), passages),
     )
 
 
@@ -253,7 +249,9 @@ def _searched(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
 
 def passages_per_turn(drive: Drive) -> int:
     """Return how many teeth, holes or rollers, whichever are most, pass the load in a turn of the crank."""
-    rollers = drive.crank_bearing.number_of_rollers * (1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed))
+    rollers = drive.crank_bearing.number_of_rollers * (
+        1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
+    )
     return max(drive.disc.number_of_teeth, drive.pin_shaft.number_of_pins, ceil(rollers))
 
 
@@ -417,9 +415,7 @@ def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, Fl
     return {"wheel_angle": output, "wheel_angle_negative": -output}
 
 
-def _full_signals(
-    analysis: LoadedAnalysis, found: Equilibrium, pressures: ContactPressures
-) -> dict[str, FloatArray]:
+def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: ContactPressures) -> dict[str, FloatArray]:
     rollers, outer, inner = found.response.rollers, pressures.outer, pressures.inner
     push = bearing_forces(found.response)
     ahead = [disc.placement.eccentric_direction(found.crank_angle) for disc in geometries(analysis.model)]

@@ -156,7 +156,8 @@ def analyse(
     full = prepared.balance(angle, torque)
     light = prepared.balance(angle, drive.load.light_torque, full.pose)
     push = bearing_forces(full.response) * np.stack(
-        [disc.placement.eccentric_direction(full.crank_angle).conjugate() for disc in geometries(prepared.model)], axis=1
+        [disc.placement.eccentric_direction(full.crank_angle).conjugate() for disc in geometries(prepared.model)],
+        axis=1,
     )
     pressures = prepared.model.pressures(full.response)
     check_half_widths(drive, full.response, pressures, torque)

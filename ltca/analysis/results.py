@@ -263,7 +263,8 @@ def check_common_shape(cases: Mapping[str, Drive]) -> None:
 
 
 def _counted(numbers: tuple[int, ...], things: tuple[str, ...]) -> str:
-    return ", ".join(f"{number} {thing}" for number, thing in zip(numbers, things, strict=True))
+    each = zip(numbers, things, strict=True)
+    return ", ".join(f"{number} {thing if number != 1 else thing.removesuffix('s')}" for number, thing in each)
 
 
 def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive_file: str | None = None) -> xr.Dataset:
@@ -318,7 +319,9 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:
     """Whether coefficients of each case are its own or, on somebody's word, of bodies that differ a little; who derived them."""
-    models = [[disc for disc in analysis.model.discs if isinstance(disc, CoupledCompliance)] for analysis in analyses.values()]
+    models = [
+        [disc for disc in analysis.model.discs if isinstance(disc, CoupledCompliance)] for analysis in analyses.values()
+    ]
     used = [[disc.coefficients for disc in model] for model in models]
     if not all(used):
         return {}

@@ -253,7 +253,9 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     print(
         f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh"
     )
-    print(f"  backlash at the {output}, disc{'s' * (discs > 1)} floating{' ' * (11 - len(output) - (discs > 1))}{_range(curve.backlash * ARCMIN)}′")
+    print(
+        f"  backlash at the {output}, disc{'s' * (discs > 1)} floating{' ' * (11 - len(output) - (discs > 1))}{_range(curve.backlash * ARCMIN)}′"
+    )
     print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
     print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
     print(f"orders of the transmission error {over}")

@@ -60,11 +60,11 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         if warning := stiffness_warning(drive):
             print(f"  warning: {warning}")
         for title, value in _properties(drive):
-            print(f"  {title:<48}{value}")
+            print(f"  {title:<47} {value}")
         analysis = analyse(drive, angle)
         print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
-            print(f"    {title:<46}{value}")
+            print(f"    {title:<45} {value}")
         path = out / f"drive_{name}.png"
         draw_drive(drive, analysis, 0, path)
         print(f"  picture: {path}")
@@ -123,8 +123,10 @@ def _installation(drive: Drive) -> list[tuple[str, str]]:
 
     from ltca.drive.single_discs import equal_parts, single_discs
 
-    held = "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
-    rows = [("installation", held), ("turns of the crank for one of the output", f"{drive.transmission_ratio:g}")]
+    held = (
+        "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
+    )
+    rows = [("installation", held), ("reduction ratio (crank turns by output turns)", f"{drive.transmission_ratio:g}")]
     discs = drive.disc.number_of_discs
     if discs == 1:
         return rows

@@ -22,8 +22,8 @@ from typing import Any
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
-from ltca.drive.single_discs import single_discs
 from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
-from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Clearance, Drive, Material
+from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
-from ltca.geometry.boundary_stations import Boundary, LAGRANGE_POINTS, boundaries_of, turned_boundaries
+from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary, boundaries_of, turned_boundaries
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients

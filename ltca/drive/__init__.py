@@ -8,9 +8,10 @@ units          Quantities of the drive file: plain numbers are mm, N, MPa, N·mm
 names          Names of drives and cases: files and folders are called after them, and they are printed, drawn and put on
                pages
 deviations     Deviations of real parts from their drawing: part of the drive's definition, all zero unless given
+materials      What parts are made of, linear-elastic, and the profile they are ground to along their length
 parts          The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
+single_discs   A drive of several discs as drives of one disc each, and how far each flank is turned against its holes
 plane_strain   What two dimensions cannot say about a drive: whatever varies along the length of its rollers and pins
-nominal_shape  The shape that influence coefficients know: a drive without the errors of its single parts
 unit_mistakes  Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never
                before
 fields         Fields of a drive by dotted path: read, count, unit

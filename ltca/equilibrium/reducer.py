@@ -149,9 +149,7 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
 
 def bearing_forces(response: Response) -> NDArray[np.complex128]:
     """Return the force of each crank bearing on its disc in the fixed frame, shape (positions, discs), N."""
-    pushes = [
-        (part.rollers.outer_load * part.rollers.outer_direction).sum(axis=1) for part in disc_responses(response)
-    ]
+    pushes = [(part.rollers.outer_load * part.rollers.outer_direction).sum(axis=1) for part in disc_responses(response)]
     return np.stack(pushes, axis=1)
 
 

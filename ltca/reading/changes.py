@@ -94,7 +94,7 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
             tree.setdefault(first, {})[rest] = value
         entry = rows[part][number]
         filled = {name: _begun(drive, entry, name) for name, below in tree.items() if "" not in below}
-        changes = {name: below[""] if "" in below else below for name, below in tree.items()}
+        changes = {name: below.get("", below) for name, below in tree.items()}
         rows[part][number] = _replaced(replace(entry, **filled), changes, f"{table}.{number}.", problems)
     return replace(
         drive,

@@ -10,8 +10,8 @@ from math import pi, sin
 import numpy as np
 
 from ltca.drive.parts import Drive, LengthProfile
-from ltca.geometry.flank import FlankProfile
 from ltca.drive.single_discs import single_discs, without_own
+from ltca.geometry.flank import FlankProfile
 from ltca.reading.deviation_checks import (
     find_deviation_problems,
     find_disc_problems,

@@ -40,6 +40,10 @@ def _write_table(part: Any, path: str, lines: list[str]) -> None:
 def _literal(value: Any) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_literal(item) for item in value) + "]"
+    if is_dataclass(value):
+        given = {item.name: getattr(value, item.name) for item in fields(value)}
+        entries = [f"{name} = {_literal(own)}" for name, own in given.items() if own is not None and own != ()]
+        return "{ " + ", ".join(entries) + " }" if entries else "{}"
     if isinstance(value, str):
         escaped = value.replace("\\", "\\\\").replace('"', '\\"')
         return f'"{escaped}"'

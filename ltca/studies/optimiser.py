@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.fields import ANY, field_kind, field_kinds, read_field
 from ltca.drive.parts import Drive
 from ltca.drive.units import label, parse_quantity
 from ltca.errors import CycloError, DriveError, did_you_mean, shortened
@@ -64,10 +64,12 @@ def parse_variable(text: str, drive: Drive) -> Variable:
         When the name is none or several fields, or the range is missing or wrong.
     """
     name, _, span = text.partition("=")
-    kinds = field_kinds()
+    # A name alone is that of all discs; of one disc the whole path says it.
+    kinds = {path: kind for path, kind in field_kinds().items() if f".{ANY}." not in path}
     parent = name.rpartition(".")[0]
-    element = parent in kinds and kinds[parent].is_array
-    found = [name] if name in kinds or element else [path for path in kinds if path.rpartition(".")[2] == name]
+    of_parent, own = field_kind(parent), field_kind(name)
+    element = own is None and of_parent is not None and of_parent.is_array
+    found = [name] if own or element else [path for path in kinds if path.rpartition(".")[2] == name]
     if len(found) != 1:
         last = [path.rpartition(".")[2] for path in kinds]
         meant = did_you_mean(name, [*kinds, *last])
@@ -78,8 +80,9 @@ def parse_variable(text: str, drive: Drive) -> Variable:
         )
         raise DriveError([f"--vary {shortened(name)[1:-1]}: {hint}"])
     path = found[0]
-    unit = kinds[parent if element else path].unit
-    if not unit or (kinds.get(path) is not None and kinds[path].is_array):
+    kind = of_parent if element else field_kind(path)
+    unit = "" if kind is None else kind.unit
+    if kind is None or not unit or (kind.is_array and not element):
         raise DriveError([f"--vary {path}: is not a single quantity"])
     if span:
         ends = span.split(":")

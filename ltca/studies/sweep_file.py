@@ -31,7 +31,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.fields import field_kind, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units import quantity
@@ -150,7 +150,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
 
 def _is_whole(path: str) -> bool:
     """Tell whether a field takes no fractions; elements of arrays all have a unit."""
-    kind = field_kinds().get(path)
+    kind = field_kind(path)
     return kind is not None and not kind.unit
 
 
@@ -215,10 +215,11 @@ def _flat(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
 
 
 def _factor(path: str, entry: Any, reader: _Reader) -> SweepFactor | None:
-    parent = path.rpartition(".")[0]
-    kinds = field_kinds()
-    kind = kinds.get(path) or kinds[parent]
-    if kind.is_array and path in kinds:
+    own = field_kind(path)
+    kind = own or field_kind(path.rpartition(".")[0])
+    if kind is None:
+        raise ValueError(f"{path} is no field")  # looked up before
+    if own is not None and own.is_array:
         reader.problems.append(f"factors.{path}: is an array; vary one element of it, as {path}.0")
         return None
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.hertz import cylinder_approach, half_plane_approach
-from ltca.drive.single_discs import nominal_shape
 from ltca.drive.parts import Drive, Material
+from ltca.drive.single_discs import nominal_shape
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_schema import elastic_constants

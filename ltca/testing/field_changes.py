@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.drive.fields import element_count, field_kinds, read_field
+from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, read_field
 from ltca.drive.parts import Drive
 from ltca.reading.changes import with_fields
 
@@ -39,12 +39,19 @@ _COUNTS = {
     "pin_shaft.number_of_pins": 1,
 }
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
-_OTHER_WORD = {"load.direction": {"ccw": "cw", "cw": "ccw"}}
+_OTHER_WORD = {
+    "load.direction": {"ccw": "cw", "cw": "ccw"},
+    "installation.held": {"pin-shaft": "pin-wheel", "pin-wheel": "pin-shaft"},
+}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
 ROUND_OFF = 1e-6
 """An answer moves when a number of it changes by more than this part: a thousand times the tolerance of equilibrium."""
 
-_NAME = {"name": "names a drive and its files, nothing else"}
+DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split("."))
+_NAME = {
+    "name": "names a drive and its files, nothing else",
+    "disc.planes": "axial places have no effect before pins and shafts bend",
+}
 _EVERYWHERE: Mapping[str, str] = _NAME
 _RIGID_PIN = {
     f"materials.shaft_pin.{name}": "the shaft pin is rigid on its spring where the hole's wall yields by itself"
@@ -66,8 +73,8 @@ EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
 
 
 def leaf_fields() -> tuple[str, ...]:
-    """Return the dotted paths of all leaf fields of a drive."""
-    return tuple(field_kinds())
+    """Return the dotted paths of all leaf fields of a drive, those of single discs for disc 0."""
+    return tuple(path.replace(f".{ANY}.", ".0.") for path in field_kinds())
 
 
 def sensible_change(drive: Drive, path: str) -> Any:
@@ -94,7 +101,11 @@ def sensible_change(drive: Drive, path: str) -> Any:
     >>> sensible_change(drive, "crank.axis_offset.x")
     0.001
     """
-    value, kind = read_field(drive, path), field_kinds()[path]
+    value, kind = read_field(drive, path), field_kind(path)
+    if kind is None:
+        raise KeyError(path)
+    if path == "disc.planes":
+        return value  # of one disc there is no other, and none has an effect yet
     if path == "name":
         return f"{value} too"
     if path in _OTHER_WORD:
@@ -107,15 +118,17 @@ def sensible_change(drive: Drive, path: str) -> Any:
         return value * _CLOSE[path]
     if path.endswith("roller_length"):
         return 0.8 * value
+    if path.endswith("phase_error"):
+        return 1e-3
     if value == 0.0:
         return _FROM_ZERO.get(kind.unit, 1.0)
     return 0.9 * value
 
 
 def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...]:
-    if path == "disc.profile_errors.orders":
+    if path.endswith("profile_errors.orders"):
         return (values[0] + 1, *values[1:]) if values else (2,)
-    if path == "disc.profile_errors.parameter":
+    if path.endswith("profile_errors.parameter"):
         return (*values[:-1], values[-1] + 0.1) if values else ()
     count = element_count(drive, path)
     # Of each part another amount: a circle that shifts or grows as a whole could hide in a free motion.
@@ -146,7 +159,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     parent, _, name = path.rpartition(".")
     if parent.endswith(("pin_profile", "roller_profile")):
         # Tables of profiled parts are dear where radii differ: diameters are as drawn.
-        drive = with_fields(drive, {field: () for field in field_kinds() if field.endswith("_errors.diameter")})
+        drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
     if name in _RELIEF:
         other = next(field for field in _RELIEF if field != name)
         return with_fields(drive, {f"{parent}.{other}": _RELIEF[other]}), {path: _RELIEF[name]}
@@ -156,7 +169,9 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         )
     if path in _COUNTS:
         cleared = {
-            field: () for field, kind in field_kinds().items() if kind.is_array and "profile_errors" not in field
+            field: ()
+            for field, kind in field_kinds().items()
+            if kind.is_array and "profile_errors" not in field and ANY not in field.split(".")
         }
         base = with_fields(drive, cleared)
         change = {path: sensible_change(base, path)}

@@ -13,13 +13,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ltca.analysis.engines import Hybrid, PlaneStrain
+from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.equilibrium.balance import solve_equilibrium
-from ltca.equilibrium.paper_method import solve_paper_equilibrium
+from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import reducer_of
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -49,9 +50,11 @@ def tables(drive):
 
 def direct(drive):
     """Grids inside every iteration; few cells, for the sake of time: which fields count does not depend on them."""
-    near = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), ANGLES[:1], drive.wheel_moment())
-    model = GridCompliance.of_drive(drive, cells=4)
-    found = solve_equilibrium(model, ANGLES[:1], drive.wheel_moment(), near.pose)
+    singles = single_discs(drive)
+    tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles])
+    near = solve_at_output(tables, drive, ANGLES[:1], drive.load.torque)
+    model = reducer_of([GridCompliance.of_drive(single, cells=4) for single in singles])
+    found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque, near.pose)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
     return np.concatenate(
@@ -60,9 +63,8 @@ def direct(drive):
 
 
 def paper(drive):
-    model = HalfSpaceCompliance.of_drive(drive)
-    near = solve_equilibrium(model, ANGLES, 0.95 * drive.wheel_moment())
-    found = solve_paper_equilibrium(model, ANGLES, drive.wheel_moment(), near.pose)
+    prepared = HalfSpace(method="paper").prepare(drive)
+    model, found = prepared.model, prepared.balance(ANGLES, drive.load.torque)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
     return np.concatenate(
@@ -76,12 +78,15 @@ def coefficients(tmp_path_factory):
     folder, known = tmp_path_factory.mktemp("coefficients"), {}
 
     def of(drive):
-        shape = drive.shape_fingerprint()
-        if shape not in known:
-            path = folder / f"{shape}.nc"
-            closed_form_coefficients(drive, half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")
-            known[shape] = load_coefficients(path, drive)
-        return known[shape]
+        found = []
+        for single in single_discs(drive):
+            shape = single.shape_fingerprint()
+            if shape not in known:
+                path = folder / f"{shape}.nc"
+                closed_form_coefficients(single, half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")
+                known[shape] = load_coefficients(path, single)
+            found.append(known[shape])
+        return found
 
     return of
 

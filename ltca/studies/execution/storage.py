@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.drive.fields import field_kinds
+from ltca.drive.fields import field_kind
 from ltca.errors import CycloError, DamagedFileError, one_line
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import DiscStream, netcdf_stream
@@ -328,9 +328,9 @@ def quantity_column(name: str) -> dict[str, str]:
 
 def field_column(path: str) -> dict[str, str]:
     """Return the metadata of the column of a field of the drive in a table."""
-    kinds = field_kinds()
-    kind = kinds.get(path) or kinds[path.rpartition(".")[0]]
-    unit = {"": "1", "dimensionless": "1"}.get(kind.unit, kind.unit.replace("*", " "))
+    kind = field_kind(path) or field_kind(path.rpartition(".")[0])
+    plain = "" if kind is None else kind.unit
+    unit = {"": "1", "dimensionless": "1"}.get(plain, plain.replace("*", " "))
     return {"units": unit, "description": f"drive field {path}"}
 
 

@@ -245,7 +245,8 @@ def test_light_torque_is_that_of_the_drive(vary):
 def test_cases_of_different_shape_are_refused(vary):
     other = vary(pin_shaft={"number_of_pins": 6})
     with pytest.raises(
-        DriveError, match=r"case B: has 14 wheel pins, 11 rollers and 6 shaft pins: must be 14, 11 and 8"
+        DriveError,
+        match=r"rollers, 6 shaft pins, 1 disc: must be 14 wheel pins, 11 rollers, 8 shaft pins, 1 disc as",
     ):
         check_common_shape({"A": vary(), "B": other})
     check_common_shape({"A": vary(), "C": vary()})

@@ -172,7 +172,7 @@ def test_a_case_overrides_parts_and_keeps_the_rest():
         BASE + '[[case]]\nname = "A"\ndisc = { number_of_discs = 2 }\nmaterials = { disc = { poisson_ratio = 0.25 } }\n'
     )
     base, changed = parse_drive(BASE).cases["nominal"], parse_drive(text).cases["A"]
-    assert changed.disc.torque_share == 0.5
+    assert changed.disc.number_of_discs == 2
     assert changed.disc.thickness == base.disc.thickness
     assert changed.materials.disc.poisson_ratio == 0.25
     assert changed.materials.disc.youngs_modulus == base.materials.disc.youngs_modulus
@@ -220,7 +220,5 @@ def test_no_count_is_no_count(value):
     """True was one disc."""
     with pytest.raises(DriveError, match=r"disc.number_of_discs = .*: must be a whole number"):
         parse_drive(BASE.replace("number_of_discs = 1", f"number_of_discs = {value}"))
-    assert (
-        parse_drive(BASE.replace("number_of_discs = 1", "number_of_discs = 2.0")).cases["nominal"].disc.torque_share
-        == 0.5
-    )
+    two = parse_drive(BASE.replace("number_of_discs = 1", "number_of_discs = 2.0")).cases["nominal"]
+    assert two.disc.number_of_discs == 2

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
 
 BASE = shipped_drive().split("[[case]]")[0]
 
@@ -51,16 +54,39 @@ def test_cases_override_single_fields_deeply():
     assert soft.disc.thickness == 11.8
 
 
-def test_torque_share_is_one_over_the_number_of_discs():
-    assert parse_drive(BASE).cases["nominal"].disc.torque_share == 1.0
-    two = BASE.replace("number_of_discs = 1", "number_of_discs = 2")
-    assert parse_drive(two).cases["nominal"].disc.torque_share == 0.5
-    given = BASE.replace("number_of_discs = 1", "number_of_discs = 2\ntorque_share = 0.6")
-    assert parse_drive(given).cases["nominal"].disc.torque_share == 0.6
-    # a case that changes the number changes the share with it
-    assert parse_drive(BASE + '[[case]]\nname = "a"\ndisc = { number_of_discs = 3 }').cases[
-        "a"
-    ].disc.torque_share == pytest.approx(1.0 / 3.0)
+def test_what_single_discs_have_of_their_own():
+    """Entries of disc.of and crank.of take the place of what all discs have; what they leave out stays."""
+    text = BASE.replace("number_of_discs = 1", 'number_of_discs = 2\nphases = ["0 deg", "170 deg"]').replace(
+        "[crank_bearing]",
+        "[[disc.of]]\n[[disc.of]]\nrunout = { amount = 0.004, angle = '90 deg' }\nclearance = { pin_hole = 0.02 }\n"
+        "[[crank.of]]\neccentricity_error = 0.003\n[[crank.of]]\nphase_error = '1 arcmin'\n[crank_bearing]",
+        1,
+    )
+    drive = parse_drive(text).cases["nominal"]
+    first, second = single_discs(drive)
+    assert (first.disc.runout, first.clearance) == (drive.disc.runout, drive.clearance)
+    assert second.disc.runout.amount == 0.004
+    assert (second.clearance.bearing, second.clearance.pin_hole) == (drive.clearance.bearing, 0.02)
+    assert (first.crank.eccentricity_error, second.crank.eccentricity_error) == (0.003, 0.0)
+    assert (first.eccentric_phase, second.disc.phases) == (0.0, (np.radians(170.0),))
+    assert second.eccentric_phase == pytest.approx(np.radians(170.0) + np.radians(1.0 / 60.0), abs=1e-15)
+    assert second.flank_turn == pytest.approx(-np.radians(170.0) / 13.0, abs=1e-15)
+    assert parse_drive(drive_text(drive)).cases["nominal"] == drive
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        ("[[disc.of]]\n[[disc.of]]", r"disc\.of has 2 entries: must have 1"),
+        ("[[crank.of]]\nphase_error = 0.2", r"crank\.of\.0\.phase_error = 0\.2 rad: must be at most 0\.125 rad"),
+        ("[[disc.of]]\nrunout = { amount = 0.6 }", r"disc\.of\.0\.runout\.amount = 0\.6 mm: must be at most 0\.5 mm"),
+        ("[[disc.of]]\nrunnout = { amount = 0.6 }", r"disc\.of\.0\.runnout: is not a field .* did you mean `runout`"),
+        ("[[disc.of]]\nclearance = { bearing = -1 }", r"disc\.of\.0\.clearance\.bearing = -1: must be at least 0 mm"),
+    ],
+)
+def test_mistakes_of_single_discs_are_named(entry, told):
+    with pytest.raises(DriveError, match=told):
+        parse_drive(BASE.replace("[crank_bearing]", f"{entry}\n[crank_bearing]", 1))
 
 
 def test_error_arrays_are_read():
@@ -94,11 +120,7 @@ def test_error_arrays_are_read():
         ("stiffness = 1.0e6", "stiffness = '1 N'", "pin_shaft.stiffness = '1 N': must have the unit N/mm"),
         ("bearing = 0.0 ", "bearing = -0.01 ", "clearance.bearing = -0.01: must be at least 0 mm"),
         ("poisson_ratio = 0.3 }", "poisson_ratio = 0.5 }", "must be at least 0 and less than 0.5"),
-        (
-            "# torque_share = 1.0",
-            "torque_share = 1.5 #",
-            "disc.torque_share = 1.5: must be greater than 0 and at most 1",
-        ),
+        ("# phases = [", "torque_share = 0.55 # [", "disc.torque_share: is no field any more"),
         ("[crank]\neccentricity = 4.0", "crank = 4.0", "crank = 4.0: must be a table"),
     ],
 )

@@ -30,8 +30,9 @@ MALFORMED = [
     ("light_torque = 10000.0", "light_torque = -5", ["load.light_torque = -5", "greater than 0 N·mm"]),
     ("bearing = 0.0", "bearing = -0.01", ["clearance.bearing = -0.01", "at least 0 mm"]),
     ("pin_hole = 0.0", "pin_hole = -0.01", ["clearance.pin_hole = -0.01", "at least 0 mm"]),
-    ("# torque_share = 1.0", "torque_share = nan", ["disc.torque_share = nan", "finite"]),
-    ("# torque_share = 1.0", "torque_share = 1.5", ["disc.torque_share = 1.5", "at most 1"]),
+    ("# phases = [", "torque_share = 0.55 # [", ["disc.torque_share", "computed"]),
+    ("# phases = [", "phases = [0.0, 3.14] # [", ["disc.phases has 2 entries", "must have 1"]),
+    ("# planes = [", "planes = [1.0] # [", ["disc.planes has the mean 1 mm", "must be 0 mm"]),
     # wrong units
     ("eccentricity = 4.0", 'eccentricity = "4 N"', ["crank.eccentricity = '4 N'", "unit mm"]),
     ("pin_circle_radius = 88.0", 'pin_circle_radius = "88 MPa"', ["pin_circle_radius = '88 MPa'", "unit mm"]),

@@ -13,6 +13,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.commands import curves, optimise, sweep, tolerance
 from ltca.compliance.coefficients import without_coupling
 from ltca.drive.fields import read_field
+from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
@@ -289,10 +290,12 @@ def test_wrong_options_are_refused(tmp_path):
 
 def test_replacing_fields_keeps_the_rest(drive):
     changed = with_fields(drive, {"disc.number_of_discs": 2})
-    assert changed.disc.torque_share == 0.5
-    # A share that somebody gave stays; a sweep over the number of discs replaced it by 1/n.
-    uneven = with_fields(changed, {"disc.torque_share": 0.6})
-    assert with_fields(uneven, {"disc.number_of_discs": 3}).disc.torque_share == 0.6
-    with pytest.raises(DriveError, match=r"disc\.torque_share = 0\.6: must be 1, a single disc"):
-        with_fields(uneven, {"disc.number_of_discs": 1})
+    assert changed.disc.disc_phases == (0.0, pytest.approx(np.pi))
+    own = with_fields(changed, {"disc.of.1.runout.amount": 0.003, "disc.of.1.clearance.bearing": 0.02})
+    assert [single.disc.runout.amount for single in single_discs(own)] == [drive.disc.runout.amount, 0.003]
+    assert [single.clearance.bearing for single in single_discs(own)] == [drive.clearance.bearing, 0.02]
+    with pytest.raises(DriveError, match=r"disc\.of has 2 entries: must have 3"):
+        with_fields(own, {"disc.number_of_discs": 3})
+    with pytest.raises(DriveError, match=r"there is no disc 2"):
+        with_fields(changed, {"disc.of.2.runout.amount": 0.003})
     assert changed.pin_wheel is drive.pin_wheel or changed.pin_wheel == drive.pin_wheel

@@ -1,0 +1,115 @@
+"""Either member held: moments, ratio, and work at every position."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.torque_curve import torque_curve
+from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.output_torque import crank_moment, solve_at_output
+from ltca.equilibrium.reducer import disc_responses
+from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.placement import position_angles
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+
+ANGLES = np.array([0.31, 1.7, 4.4])
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_drive("paper").cases["CS-6"]
+
+
+@pytest.fixture(scope="module")
+def joint():
+    return parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
+
+
+@pytest.mark.parametrize("direction", ["ccw", "cw"])
+def test_held_wheel_is_the_same_drive_described_otherwise(paper, direction):
+    """Where the wheel's moment is the same, so is every load; the output's deviation is that of the wheel times −z_P/z_C."""
+    held = with_fields(paper, {"installation.held": "pin-wheel", "load.direction": direction})
+    free = with_fields(paper, {"load.direction": direction})
+    found = analyse(held, ANGLES)
+    same = solve_equilibrium(HalfSpace().prepare(free).model, ANGLES, found.full.wheel_moment)
+    np.testing.assert_allclose(found.full.response.pin_load, same.response.pin_load, rtol=0.0, atol=1e-5)
+    np.testing.assert_allclose(found.full.pose, same.pose, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(found.transmission_error, -14.0 / 13.0 * same.pose[:, WHEEL_ANGLE], rtol=1e-7)
+    assert (held.transmission_ratio, free.transmission_ratio) == (-13.0, 14.0)
+    # in the mean the housing bears T_out z_P/z_C; at a position what output and crank put on it
+    model = HalfSpace().prepare(held).model
+    crank = crank_moment(model, ANGLES, found.full.pose, found.full.response)
+    output = held.driving_sign * held.load.torque
+    np.testing.assert_allclose(found.full.wheel_moment + crank + output, 0.0, atol=1e-8 * held.load.torque)
+    np.testing.assert_array_equal(np.sign(found.full.wheel_moment), -held.driving_sign)
+
+
+def test_moments_of_a_held_wheel_have_their_mean(paper):
+    """|T_wheel| = T_out z_P/z_C in the mean over a turn: no work is stored over a turn but in rollers and cage."""
+    held = with_fields(paper, {"installation.held": "pin-wheel"})
+    found = analyse(held, position_angles(97))
+    # one turn is no period of the rollers: plain means of sampled positions hold to 2e-4 (design)
+    assert np.mean(found.full.wheel_moment) == pytest.approx(held.wheel_moment(), rel=2e-4)
+    assert np.ptp(found.full.wheel_moment) > 1e-4 * held.load.torque
+
+
+@pytest.mark.slow
+def test_stiffness_and_play_at_the_output(paper):
+    """Seen from the pin shaft: stiffness × (z_C/z_P)², backlash and lost motion × z_P/z_C."""
+    held = torque_curve(with_fields(paper, {"installation.held": "pin-wheel"}), ANGLES, points=2)
+    free = torque_curve(with_fields(paper, {"load.torque": paper.load.torque * 14.0 / 13.0}), ANGLES, points=2)
+    # the crank's moment swings about T_W/u by some per cent under the light torques of the play, 0.1 % of T_W
+    np.testing.assert_allclose(held.backlash, free.backlash * 14.0 / 13.0, rtol=1e-4)
+    np.testing.assert_allclose(held.lost_motion, free.lost_motion * 14.0 / 13.0, rtol=2e-3)
+    # a pin shaft that turns ccw turns the wheel cw against it: the two senses change places
+    np.testing.assert_allclose(held.stiffness, free.stiffness[:, ::-1] * (13.0 / 14.0) ** 2, rtol=5e-3)
+    assert np.all(np.diff(held.output_angle, axis=1) > 0.0)
+
+
+def stored(model, response):
+    """ΣU, N·mm, and ∂U/∂ρ of every wheel pin, N, by differences of the law alone."""
+    total, slopes = 0.0, []
+    for disc, part in zip(model.discs, disc_responses(response), strict=True):
+        laws, flank = disc.roller_laws, part.flank
+        total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
+        total = total + 0.5 * disc.hole_stiffness * (np.maximum(part.holes.approach, 0.0) ** 2).sum(axis=1)
+        total = total + laws.inner.energy(part.rollers.inner_approach, laws.inner_radius).sum(axis=1)
+        total = total + laws.outer.energy(part.rollers.outer_approach, laws.outer_radius).sum(axis=1)
+        step = 1e-4 * flank.effective_radius
+        ends = [disc.pin_law.energy(flank.approach, flank.effective_radius + side * step) for side in (1.0, -1.0)]
+        slopes.append((ends[0] - ends[1]) / (2.0 * step))
+    return total, np.concatenate(slopes, axis=1)
+
+
+@pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
+@pytest.mark.parametrize("discs", [1, 2, 3])
+def test_virtual_work_at_every_position(joint, discs, held):
+    """T_C + T_W (1/u + w′) = U′ − Σ ∂U/∂ρ ρ′ with the cage's moment in T_C."""
+    words = {"disc.number_of_discs": discs, "disc.phases": (), "disc.planes": (), "installation.held": held}
+    drive = with_fields(joint, words)
+    drive = with_fields(drive, {"disc.of.0.runout.amount": 0.003, "clearance.bearing": 0.02})
+    model = HalfSpace().prepare(drive).model
+    angle = 2.0 * np.pi * np.arange(5) / 5.0 + 0.05
+    centre = solve_at_output(model, drive, angle, drive.load.torque)
+    crank = crank_moment(model, angle, centre.pose, centre.response)
+    slope = stored(model, centre.response)[1]
+
+    def left(step):
+        ends = []
+        for side in (1.0, -1.0):
+            at = angle + side * step
+            found = solve_at_output(model, drive, at, drive.load.torque, centre.pose)
+            ends.append((stored(model, found.response)[0], found.pose[:, WHEEL_ANGLE], found.response.flank))
+        (up, wheel_up, flank_up), (down, wheel_down, flank_down) = ends
+        turn = (wheel_up - wheel_down) / (2.0 * step)
+        radii = (flank_up.effective_radius - flank_down.effective_radius) / (2.0 * step)
+        work = (up - down) / (2.0 * step) - (slope * radii).sum(axis=1)
+        return crank + centre.wheel_moment * (1.0 / drive.reduction_ratio + turn) - work
+
+    # differences of second order, taken to fourth by two of them (Richardson)
+    closed = (4.0 * left(1e-4) - left(2e-4)) / 3.0
+    np.testing.assert_allclose(closed / drive.load.torque, 0.0, atol=1e-7)
