@@ -167,9 +167,7 @@ def _print_contacts(solution: FullSolution) -> None:
 def _print_drive(solution: ReducerSolution) -> None:
     if solution.drive.wheel_is_held:
         print(f"moment on the held wheel {solution.wheel_moment / 1e3:.6g} N·m")
-    print(
-        f"wheel angle {solution.wheel_angle:.6g} rad; largest unbalanced force {solution.equilibrium_residual:.1e} N"
-    )
+    print(f"wheel angle {solution.wheel_angle:.6g} rad; largest unbalanced force {solution.equilibrium_residual:.1e} N")
     iterations = " + ".join(str(disc.pose_iterations) for disc in solution.discs)
     print(f"{solution.unknowns:,} unknowns, {iterations} pose iterations, {solution.seconds['total']:.1f} s")
 

@@ -96,7 +96,14 @@ def _mesh_disc(
         f"{meshes.unknowns:,} unknowns in {len(meshes.bodies)} bodies, {time.perf_counter() - start:.2f} s", flush=True
     )
     _write_files(meshes, out, place)
-    _draw(drive, shapes, contacts, meshes, out / f"{disc_prefix(*place)}mesh.png", f"{title}: {meshes.unknowns:,} unknowns")
+    _draw(
+        drive,
+        shapes,
+        contacts,
+        meshes,
+        out / f"{disc_prefix(*place)}mesh.png",
+        f"{title}: {meshes.unknowns:,} unknowns",
+    )
 
 
 def _write_files(meshes: DriveMeshes, out: Path, place: tuple[int, int]) -> None:

@@ -18,8 +18,8 @@ from fem.body.stress import recover_stress
 from fem.body.wall_stress import WallStress, stress_along_wall
 from fem.contact.subsurface_shear import largest_shear_below
 from fem.drive.contact_results import PairResult
-from fem.drive.model import ContactPair
 from fem.drive.full_solution import FullSolution
+from fem.drive.model import ContactPair
 from fem.drive.solution import FINE_SHARE
 
 FloatArray = NDArray[np.float64]
@@ -151,14 +151,18 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
     disc, crank = ("case", "disc", "position"), ("case", "disc", "crank", "position")
     return {
         "lobe": (("lobe",), np.arange(len(discs[0].root_stress)), {"units": "1", "long_name": "lobe of the flank"}),
-        "wall_disc": per_node([np.full(len(wall.parameter), number) for number, _, wall in walls], "1", "number of the disc"),
+        "wall_disc": per_node(
+            [np.full(len(wall.parameter), number) for number, _, wall in walls], "1", "number of the disc"
+        ),
         "wall_boundary": per_node(
             [np.full(len(wall.parameter), number) for _, number, wall in walls], "1", "0 flank, 1 bore, 2 + k hole k"
         ),
         "wall_parameter": per_node([wall.parameter for *_, wall in walls], "rad", "θ of Eq. 1, or polar angle"),
         "wall_stress": per_node([wall.stress for *_, wall in walls], "MPa", "stress along the wall, tension positive"),
         "wall_clear": per_node(
-            [clear.astype(int) for stress in discs for clear in stress.clear], "1", "1 beyond four half-widths of contacts"
+            [clear.astype(int) for stress in discs for clear in stress.clear],
+            "1",
+            "1 beyond four half-widths of contacts",
         ),
         "root_stress": per_part((*disc, "lobe"), "root_stress", largest.format("the flank about each lobe root")),
         "bore_stress": per_part(disc, "bore_stress", largest.format("the bore")),

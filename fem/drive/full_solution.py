@@ -67,9 +67,7 @@ class FullSolution:
         """
         model, place = self.model, self.model.placement
         forces = pair_forces(model, list(self.state.integrals), self.state.contact.pressure)
-        on_disc = -sum(
-            force for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "roller_outer"
-        )
+        on_disc = -sum(force for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "roller_outer")
         push = complex(on_disc[0], on_disc[1])
         lever = model.race_centre - complex(place.crank_axis)
         about_race = float(on_disc[2]) - (model.race_centre.conjugate() * push).imag

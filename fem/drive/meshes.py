@@ -158,7 +158,9 @@ def require_model_memory(models: Sequence[tuple[DriveShapes, ExpectedContacts]],
     for shapes, guess in models:
         unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, scale))
         sizes.append(unknowns + estimate_unknowns(shapes.inner_race, race_refinements(guess, scale)))
-    what = "the model of disc and inner race" if len(sizes) == 1 else f"the models of {len(sizes)} discs and inner races"
+    what = (
+        "the model of disc and inner race" if len(sizes) == 1 else f"the models of {len(sizes)} discs and inner races"
+    )
     require_memory(sum(sizes), sum(solution_memory(unknowns) for unknowns in sizes), what)
 
 

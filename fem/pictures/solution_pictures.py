@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.fields import BodyField
-from fem.drive.model import ContactPair, DriveModel
 from fem.drive.full_solution import FullSolution
+from fem.drive.model import ContactPair, DriveModel
 from fem.pictures.scene import Lines, Panel, Triangles, render
 
 FloatArray = NDArray[np.float64]
@@ -35,7 +35,13 @@ NAMES = {
 
 
 def draw_solution(
-    solution: FullSolution, fields: Sequence[BodyField], headline: str, folder: Path, *, side: int = 1600, prefix: str = ""
+    solution: FullSolution,
+    fields: Sequence[BodyField],
+    headline: str,
+    folder: Path,
+    *,
+    side: int = 1600,
+    prefix: str = "",
 ) -> str:
     """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``.
 

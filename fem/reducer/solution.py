@@ -147,9 +147,7 @@ class _Task:
         """Solve one disc under a moment to the last digit that its pose has."""
         found = self.start(disc, moment) if previous is None else previous
         while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
-            found = self.timed(
-                solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc))
-            )
+            found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
         return found
 
     def left_over(self, discs: list[FullSolution]) -> float:
@@ -230,7 +228,9 @@ def solve_reducer(
         say=progress or _silent,
     )
     if len(singles) == 1 and not drive.wheel_is_held:
-        return replace(ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque))), drive=drive, torque=task.torque)
+        return replace(
+            ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque))), drive=drive, torque=task.torque
+        )
     if len(singles) > 1:
         require_solution_memory(drive, crank_angle, scale)
     moment, slope = expect_shares(drive, crank_angle, drive.wheel_moment(torque))

@@ -153,7 +153,13 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
             "rotation of the disc, mean over the area",
         ),
         ("bearing_radial", bearings[:, 0], "crank", "N", "bearing force on the disc along its eccentricity"),
-        ("bearing_tangential", bearings[:, 1], "crank", "N", "bearing force on the disc, 90° ahead of its eccentricity"),
+        (
+            "bearing_tangential",
+            bearings[:, 1],
+            "crank",
+            "N",
+            "bearing force on the disc, 90° ahead of its eccentricity",
+        ),
         ("equilibrium_residual", solution.equilibrium_residual, "drive", "N", "largest unbalanced force"),
     ):
         add(name, value, belongs, unit, text)
@@ -196,7 +202,12 @@ def _coordinates(solution: ReducerSolution, case: str) -> dict[str, Any]:
         found[name] = np.arange(len(radii))
     for name, dimensions, centres, frame in (
         ("pin", ("case", "pin"), place.wheel_pin_centres, "wheel pin, in the frame of the wheel"),
-        ("hole", ("case", "disc", "hole"), np.array([own.hole_centres for own in places]), "hole, in the frame of the disc"),
+        (
+            "hole",
+            ("case", "disc", "hole"),
+            np.array([own.hole_centres for own in places]),
+            "hole, in the frame of the disc",
+        ),
         ("shaft_pin", ("case", "hole"), place.shaft_pin_centres, "shaft pin, in the fixed frame"),
     ):
         found[f"{name}_x"] = at(dimensions, centres.real, "mm", frame)
@@ -236,9 +247,7 @@ def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, 
     }
 
 
-def write_solution(
-    solution: ReducerSolution, fields: Sequence[Iterable[BodyField]], case: str, folder: Path
-) -> None:
+def write_solution(solution: ReducerSolution, fields: Sequence[Iterable[BodyField]], case: str, folder: Path) -> None:
     """Write all files of a solution; each appears only when it is complete, ``fem.vtm`` only over bodies of this one.
 
     Parameters

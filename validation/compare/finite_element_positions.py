@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from fem.drive.solution_files import summarise
 
 from fem.body.elasticity import PlaneState
 from fem.drive.disc_stress import recover_disc_stress
 from fem.drive.fields import recover_fields
 from fem.drive.solution import FullSolution, solve_drive
-from fem.drive.solution_files import summarise
 from fem.pictures.solution_pictures import draw_solution
 from ltca.drive.parts import Drive
 from ltca.output.files import write_json
