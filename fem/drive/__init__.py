@@ -1,4 +1,4 @@
-"""One disc with wheel, crank and pin shaft at one crank angle: expected contacts, graded meshes, condensed model, loaded pose, results.
+"""One disc with wheel, crank and pin shaft at one crank angle: what presses, meshes, model, loaded pose, results.
 
 Modules in the order data passes:
 

@@ -8,7 +8,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from ltca.drive.single_discs import single_discs
 from ltca.output.files import whole_file
+from validation.compare.finite_element_positions import disc_case
 from validation.compare.model_positions import MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
@@ -75,7 +77,11 @@ def _context(study: Study) -> dict[str, Any]:
     positions = [position_scene(item) for items in study.compared.values() for item in items]
     data = {
         "models": ["full FE", *MODELS],
-        "drives": {case: drive_scene(drive) for case, drive in plan.drives.items()},
+        "drives": {
+            disc_case(case, disc, drive.disc.number_of_discs): drive_scene(single)
+            for case, drive in plan.drives.items()
+            for disc, single in enumerate(single_discs(drive))
+        },
         "positions": positions,
     }
     head = headline(study)
@@ -202,13 +208,13 @@ def _difference(value: float, unit: str, sign: str = "") -> str:
 def _pictures(study: Study) -> list[dict[str, str]]:
     return [
         {
-            "case": case,
+            "case": item.full.case,
             "angle": f"{item.full.crank_angle:.4g}",
             "name": path.stem,
             "title": PICTURE_TITLES[path.stem],
             "source": _embedded(path),
         }
-        for case, items in study.compared.items()
+        for items in study.compared.values()
         for item in items
         for path in item.full.pictures
     ]
