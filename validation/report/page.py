@@ -210,8 +210,8 @@ def _pictures(study: Study) -> list[dict[str, str]]:
         {
             "case": item.full.case,
             "angle": f"{item.full.crank_angle:.4g}",
-            "name": path.stem,
-            "title": PICTURE_TITLES[path.stem],
+            "name": picture_name(path),
+            "title": PICTURE_TITLES[picture_name(path)],
             "source": _embedded(path),
         }
         for items in study.compared.values()
@@ -220,13 +220,24 @@ def _pictures(study: Study) -> list[dict[str, str]]:
     ]
 
 
+def picture_name(path: Path) -> str:
+    """Return which picture a file is: of several discs its name begins with that of the disc.
+
+    Examples
+    --------
+    >>> picture_name(Path("kept/disc_1_von_mises.png"))
+    'von_mises'
+    """
+    return next(name for name in PICTURE_TITLES if path.stem.endswith(name))
+
+
 def _embedded(path: Path) -> str:
     """Return a picture as a data address, made smaller for the page."""
     from PIL import Image
 
     with Image.open(path) as opened:
         image = opened.convert("RGB")
-    width = min(PICTURE_WIDTHS[path.stem], image.width)
+    width = min(PICTURE_WIDTHS[picture_name(path)], image.width)
     image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
     stream = io.BytesIO()
     image.save(stream, "WEBP", quality=82, method=4)
