@@ -65,7 +65,7 @@ def test_a_disc_that_carries_nothing_is_named():
             wheel_angle=np.array([-4e-4, -4e-4, -9e-3]) + SOFTNESS * moment, left_over=float(moment.sum()) - TOTAL
         )
 
-    with pytest.raises(ConvergenceError, match="disc 2 carries less than 0.001 of the mean share"):
+    with pytest.raises(ConvergenceError, match=r"disc 2 carries less than 0\.001 of the mean share"):
         share_moment(one_idle, np.full(3, TOTAL / 3.0), SOFTNESS)
 
 
