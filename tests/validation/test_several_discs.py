@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import validation.compare.derived_coefficients as derived
-import validation.levels.flexible_disc
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
 from ltca.drive.deviations import DiscClearance, OneDisc, Runout
@@ -18,14 +17,14 @@ from validation.compare.compared_positions import compare_case
 from validation.compare.finite_element_positions import FullPosition, Settings, answer_of_summary, disc_case
 from validation.compare.model_positions import answers_of
 from validation.levels.closed_forms import _power
-from validation.levels.flexible_disc import study_case
+from validation.levels.flexible_disc import FlexibilityEffect, turn_figures
 from validation.levels.positions import compare_position_rows
 from validation.report.page import write_report
 from validation.report.scene import position_scene
 from validation.rows import failed_rows
 from validation.study import Plan, Study, first_disc
 
-ANGLES = (0.2, 0.9)
+ANGLES = (0.2,)
 
 
 @pytest.fixture(scope="module")
@@ -62,13 +61,13 @@ def compared(drive, positions, coefficients):
 
 def test_every_disc_meets_its_own_answer(compared, drive):
     """The half-space's answer to a disc is its own at every position, and not that of the other disc."""
-    assert [item.full.case for item in compared] == ["CS-3, disc 0", "CS-3, disc 1"] * 2
-    for item, single in zip(compared, single_discs(drive) * 2, strict=True):
+    assert [item.full.case for item in compared] == ["CS-3, disc 0", "CS-3, disc 1"]
+    for item, single in zip(compared, single_discs(drive), strict=True):
         difference = item.differences["half-space"]
         assert difference.worst_load[2] == 0.0
         assert difference.wheel_angle == difference.disc_displacement == 0.0
         assert item.drive == single
-    first, second = compared[:2]
+    first, second = compared
     assert first.full.answer.wheel_angle == second.full.answer.wheel_angle
     assert first.full.answer.bearing_tangential != pytest.approx(second.full.answer.bearing_tangential, rel=1e-3)
     rows = [row for item in compared for row in compare_position_rows(item) if row.model == "half-space"]
@@ -82,7 +81,7 @@ def test_an_analysis_of_several_discs_has_no_one_answer(drive):
 
 def test_parts_stand_on_the_eccentric_of_their_disc(compared, drive):
     """The race of the second disc lies half a turn from that of the first; loaded pins touch its flank."""
-    first, second = (position_scene(item) for item in compared[:2])
+    first, second = (position_scene(item) for item in compared)
     np.testing.assert_allclose(first["race"], -np.array(second["race"]), atol=1e-3)
     for scene in (first, second):
         for contact in scene["contacts"]:
@@ -91,12 +90,11 @@ def test_parts_stand_on_the_eccentric_of_their_disc(compared, drive):
                 assert np.dot(away / np.linalg.norm(away), contact["to"]) > 0.9
 
 
-def test_report_of_several_discs(compared, drive, coefficients, tmp_path, monkeypatch):
-    monkeypatch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 3)
-    monkeypatch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
-    effect = study_case(drive, coefficients)
-    # bodies that add nothing: fe is stiffer only where plane strain is, and largest loads are those of any disc
-    assert effect.turn["half-space"].pin_load > 0.0
+def test_report_of_several_discs(compared, drive, coefficients, tmp_path):
+    analysis = analyse(drive, np.array(ANGLES))
+    figures = turn_figures(analysis)
+    assert figures.pin_load == max(own.full.response.pin_load.max() for own in analysis.discs)
+    effect = FlexibilityEffect(turn=dict.fromkeys(("half-space", "fe", "hybrid"), figures), by_torque={})
     rows = tuple(row for item in compared for row in compare_position_rows(item))
     plan = Plan(name="two", drives={"CS-3": drive}, crank_angles=ANGLES, level="quick", settings=Settings())
     study = Study(
