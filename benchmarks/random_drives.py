@@ -1,6 +1,7 @@
 """Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
 
-``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`); none of them may be refused.
+``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`), ``--preloaded`` such whose parts
+overlap as drawn; none of them may be refused.
 
 Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
 `ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
@@ -14,30 +15,32 @@ import json
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.equilibrium.balance import solve_equilibrium
+from ltca.analysis.engines import HalfSpace
+from ltca.drive.parts import Drive
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
-from ltca.testing.practical_drives import practical_drive
-from ltca.testing.random_drives import COORDINATES, random_drive
+from ltca.testing.practical_drives import practical_drive, preloaded_drive
+from ltca.testing.random_drives import random_reducer
 
 
-def try_drive(seed: int, practical: bool) -> tuple[str, str, int]:
+def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> tuple[str, str, int]:
     """Return outcome, detail and iterations of the drive of a seed."""
-    drawn = practical_drive(seed) if practical else random_drive(np.random.default_rng(seed).random(COORDINATES))
+    drawn = draw(seed)
     if drawn is None:
         return "no drive fits", "", 0
     drive, angle = drawn
     try:
-        model = HalfSpaceCompliance.of_drive(drive)
-        balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
+        model = HalfSpace().prepare(drive).model
+        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
     except ConvergenceError as error:
         return ("convergence error" if error.history else "error without history"), str(error), 0
-    problems = find_imbalance(drive, model, balanced)
+    problems = find_imbalance(drive, model, balanced, torque=drive.load.torque)
     return ("wrong" if problems else "balanced"), "; ".join(problems), int(balanced.iterations[0])
 
 
@@ -45,10 +48,14 @@ def main() -> int:
     """Run the count asked for; exit status 1 when an answer was wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=2000, help="drives to draw; default 2000")
-    parser.add_argument("--practical", action="store_true", help="drives as people draw them")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--practical", action="store_true", help="drives as people draw them")
+    kind.add_argument("--preloaded", action="store_true", help="such drives whose parts overlap as drawn")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
+    answered = arguments.practical or arguments.preloaded
+    draw = practical_drive if arguments.practical else preloaded_drive if arguments.preloaded else random_reducer
     outcomes: Counter[str] = Counter()
     remarks: list[str] = []
     iterations: Counter[int] = Counter()
@@ -56,7 +63,7 @@ def main() -> int:
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     for number, seed in enumerate(range(arguments.first, arguments.first + arguments.count), start=1):
         start = time.perf_counter()
-        outcome, detail, steps = try_drive(seed, arguments.practical)
+        outcome, detail, steps = try_drive(seed, draw)
         taken = time.perf_counter() - start
         if number > 1 and taken > slowest:  # the first one builds the table of the contact law
             slowest, slowest_seed = taken, seed
@@ -79,7 +86,7 @@ def main() -> int:
             arguments.out.write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
             print(f"{number}: {dict(outcomes)}, {report['seconds']} s", flush=True)
     bad = outcomes["wrong"] + outcomes["error without history"]
-    return 1 if bad or (arguments.practical and outcomes["balanced"] < arguments.count) else 0
+    return 1 if bad or (answered and outcomes["balanced"] < arguments.count) else 0
 
 
 if __name__ == "__main__":

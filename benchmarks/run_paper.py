@@ -47,7 +47,7 @@ def main() -> None:
     print(f"  {'imports (numpy, scipy, xarray …)':<34}{time.perf_counter() - start:8.2f} s")
     start = time.perf_counter()
     line_contact_table()
-    print(f"  {'line-contact table':<34}{time.perf_counter() - start:8.2f} s")
+    print(f"  {'line-contact table, read':<34}{time.perf_counter() - start:8.2f} s")
     cases = load_drive("paper").cases
     angles = ltca.geometry.placement.position_angles(360)
     start = time.perf_counter()

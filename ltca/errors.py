@@ -67,11 +67,16 @@ class ConvergenceError(CycloError):
         What did not converge, and where.
     history : sequence of float
         The residual after each iteration, in the unit the message states.
+
+    Notes
+    -----
+    ``partial`` holds what has an answer where some positions have none, marked as such; None where nothing has.
     """
 
     exit_status = 1
 
     def __init__(self, message: str, history: Sequence[float] = ()) -> None:
+        self.partial: Any = None
         self.history = tuple(float(value) for value in history)
         tail = ", ".join(f"{value:.3g}" for value in self.history[-8:])
         super().__init__(f"{message}; last residuals: {tail}" if tail else message)

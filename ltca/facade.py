@@ -13,12 +13,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ltca.analysis.engines import Engine, engine_named
+from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse as analyse_positions
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 
 if TYPE_CHECKING:
@@ -83,6 +84,12 @@ class AnalysisResult:
     def summary(self) -> dict[str, float | None]:
         """Scalars as in ``summary.json``, units in the keys."""
         return dict(self._summary)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know of drive, positions and answer before they are used, one sentence each, as `cyclo run` prints it."""
+        sampled = sampling_warning(self.drive, self.loaded.full.crank_angle)
+        return [*self.loaded.warnings, *([] if sampled is None else [sampled])]
 
     @property
     def plot(self) -> Plots:
@@ -215,7 +222,7 @@ def analyse(
     DriveError
         When a name, a number or their combination makes no sense, or the torque cannot be carried.
     ConvergenceError
-        When a position does not balance.
+        When a position does not balance; ``partial`` is the result of those that do, their numbers alone.
 
     Examples
     --------
@@ -238,4 +245,9 @@ def analyse(
     engine = engine_named(
         compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
     )
-    return AnalysisResult(case=case, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
+    try:
+        return AnalysisResult(case=case, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
+    except ConvergenceError as error:
+        if isinstance(error.partial, LoadedAnalysis):
+            error.partial = AnalysisResult(case=case, loaded=error.partial)
+        raise

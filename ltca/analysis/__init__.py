@@ -7,7 +7,8 @@ engines                    Engines: how the bodies of a drive yield and how its 
                            their options
 loaded_analysis            Loaded tooth contact analysis of one drive at many crank angles: equilibrium, then
                            pressures and bearing forces
-half_width_guard           Where half-spaces end: contacts wider than the bodies are curved are refused, by name
+half_width_guard           Where half-spaces and the parabolas of tables end: contacts wider than the bodies are curved are
+                           refused, by name
 extremes                   Extremes of an analysis between its positions: peak-to-peak values and largest loads that do not
                            hang on sampling
 results                    The labelled dataset of a run: what ``results.nc`` holds

@@ -19,9 +19,10 @@ from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.neighbours import pose_between
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import bearing_forces, geometries
-from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, X, Y, disc_displacement
+from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.geometry.placement import Placement, position_angles
 
 FloatArray = NDArray[np.float64]
@@ -346,7 +347,7 @@ def _kinks_behind(x: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatA
 
 @dataclass(slots=True, kw_only=True)
 class _Stage:
-    """The positions at one torque: their search, and their poses as seen from the turning crank."""
+    """The positions at one torque: their search, and their poses."""
 
     search: PeakSearch
     angle: FloatArray
@@ -365,27 +366,17 @@ class _Stage:
             groups=groups,
             nearest=NEAREST * TURN / passages,
         )
-        pose = _turned(found.pose, -found.crank_angle)
-        return cls(search=search, angle=found.crank_angle, pose=pose, torque=torque)
+        return cls(search=search, angle=found.crank_angle, pose=found.pose, torque=torque)
 
     def start(self, angle: FloatArray) -> FloatArray:
         """Poses between those known."""
-        between = [np.interp(angle, self.angle, column) for column in self.pose.T]
-        return _turned(np.stack(between, axis=1), angle)
+        return pose_between(self.angle, self.pose, angle)
 
     def add(self, angle: FloatArray, pose: FloatArray, signals: dict[str, FloatArray]) -> None:
         self.search.add(angle, np.hstack(list(signals.values())))
         joined = np.concatenate([self.angle, angle])
         order = np.argsort(joined, kind="stable")
-        self.angle, self.pose = joined[order], np.concatenate([self.pose, _turned(pose, -angle)])[order]
-
-
-def _turned(pose: FloatArray, angle: FloatArray) -> FloatArray:
-    turned = pose.copy()
-    for first in range(0, pose.shape[1] - 1, DISC_COORDINATES):
-        place = disc_displacement(pose[:, first:]) * np.exp(1j * angle)
-        turned[:, first + X], turned[:, first + Y] = place.real, place.imag
-    return turned
+        self.angle, self.pose = joined[order], np.concatenate([self.pose, pose])[order]
 
 
 def _solve(

@@ -8,15 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.analysis.half_width_guard import check_half_widths
+from ltca.analysis.half_width_guard import check_half_widths, separation_warning
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.unit_table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
+from ltca.equilibrium.partial_balance import balance_what_can_be
 from ltca.equilibrium.reducer import (
     bearing_forces,
     disc_pressures,
@@ -26,6 +28,7 @@ from ltca.equilibrium.reducer import (
 )
 from ltca.errors import DriveError, shortened
 from ltca.frozen_arrays import freeze
+from ltca.geometry.interference import preload_warning
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_pose
 
 FloatArray = NDArray[np.float64]
@@ -53,6 +56,8 @@ class LoadedAnalysis:
         Bearing force on each disc along its own eccentricity and 90° ahead, N.
     wall_stresses : tuple of WallStresses
         Stresses along the walls of each disc at that torque; empty where bodies are half-spaces and have no walls.
+    balanced, balanced_light : array of bool, shape (positions,)
+        Where that torque and the light torque have an answer; elsewhere numbers are none.
     """
 
     drive: Drive
@@ -65,6 +70,13 @@ class LoadedAnalysis:
     bearing_radial: FloatArray
     bearing_tangential: FloatArray
     wall_stresses: tuple[WallStresses, ...]
+    balanced: NDArray[np.bool_]
+    balanced_light: NDArray[np.bool_]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every position has an answer at both torques."""
+        return bool(np.all(self.balanced) and np.all(self.balanced_light))
 
     @property
     def discs(self) -> tuple[LoadedAnalysis, ...]:
@@ -111,6 +123,18 @@ class LoadedAnalysis:
         """The same at the light torque, rad."""
         return np.asarray(self.drive.output_per_wheel_angle * self.light.pose[:, WHEEL_ANGLE])
 
+    @property
+    def warnings(self) -> list[str]:
+        """What to know of drive and answer before they are used, one sentence each."""
+        found = [stiffness_warning(self.drive), preload_warning(self.drive)]
+        discs = self.discs if np.all(self.balanced) else ()
+        for number, disc in enumerate(discs):
+            if isinstance(disc.model, HalfSpaceCompliance):
+                of = "" if len(discs) == 1 else f"disc {number}: "
+                told = separation_warning(disc.model, disc.drive, disc.full, disc.pressures)
+                found.append(None if told is None else of + told)
+        return [warning for warning in found if warning is not None]
+
 
 @names_unit_mistakes
 def analyse(
@@ -137,7 +161,7 @@ def analyse(
     Raises
     ------
     ConvergenceError
-        When a position does not balance.
+        When a position does not balance; ``partial`` is the analysis of those that do.
     DriveError
         When angles or torque make no sense, or the torque cannot be carried: a half-width beyond 0.3 of the
         smallest radius.
@@ -153,26 +177,42 @@ def analyse(
     angle, torque = check_positions(crank_angle), check_torque(drive, torque)
     used: Engine = HalfSpace() if engine is None else engine
     prepared = used.prepare(drive)
-    full = prepared.balance(angle, torque)
-    light = prepared.balance(angle, drive.load.light_torque, full.pose)
-    push = bearing_forces(full.response) * np.stack(
-        [disc.placement.eccentric_direction(full.crank_angle).conjugate() for disc in geometries(prepared.model)],
+
+    def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
+        return prepared.balance(angle[rows], torque, start)
+
+    def at_light_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
+        return prepared.balance(angle[rows], drive.load.light_torque, start)
+
+    full = balance_what_can_be(at_torque, angle.size)
+    pressures = prepared.model.pressures(full.found.response)
+    check_half_widths(drive, full.found.response, pressures, torque)
+    start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
+    start[full.rows] = full.found.pose
+    light = balance_what_can_be(at_light_torque, angle.size, start)
+    push = bearing_forces(full.found.response) * np.stack(
+        [disc.placement.eccentric_direction(angle[full.rows]).conjugate() for disc in geometries(prepared.model)],
         axis=1,
     )
-    pressures = prepared.model.pressures(full.response)
-    check_half_widths(drive, full.response, pressures, torque)
-    return LoadedAnalysis(
+    analysis = LoadedAnalysis(
         drive=drive,
         torque=torque,
         engine=used,
-        full=freeze(full),
-        light=freeze(light),
+        full=freeze(replace(full.spread(full.found), crank_angle=angle)),
+        light=freeze(replace(light.spread(light.found), crank_angle=angle)),
         model=prepared.model,
-        pressures=freeze(pressures),
-        bearing_radial=freeze(push.real),
-        bearing_tangential=freeze(push.imag),
-        wall_stresses=freeze(_wall_stresses(prepared.model, full, pressures)),
+        pressures=freeze(full.spread(pressures)),
+        bearing_radial=freeze(full.spread(push.real)),
+        bearing_tangential=freeze(full.spread(push.imag)),
+        wall_stresses=freeze(full.spread(_wall_stresses(prepared.model, full.found, pressures))),
+        balanced=freeze(full.balanced),
+        balanced_light=freeze(light.balanced),
     )
+    for failure in (full.failure, light.failure):
+        if failure is not None:
+            failure.partial = analysis
+            raise failure
+    return analysis
 
 
 def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: ContactPressures) -> tuple[WallStresses, ...]:

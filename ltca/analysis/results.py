@@ -81,6 +81,8 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "disc_rotation": ("disc", "rad", "rotation of the disc, ccw positive"),
     "equilibrium_residual": ("drive", "N", "largest unbalanced force, moments by their lever arms"),
     "iterations": ("drive", "1", "Newton iterations at the torque of the run"),
+    "status": ("drive", "1", "0: balanced at the torque of the run, 1: no equilibrium found"),
+    "status_light": ("drive", "1", "the same at the light torque"),
 }
 
 # What bodies with walls have besides: engines on derived coefficients.
@@ -107,6 +109,8 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "transmission_error_light": analysis.transmission_error_light,
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
+        "status": (~analysis.balanced).astype(np.int32),
+        "status_light": (~analysis.balanced_light).astype(np.int32),
     }
 
 
@@ -298,6 +302,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         attrs={
             **provenance(drive_name, first.drive, drive_file),
             **first.engine.options,
+            "status": "complete" if all(analysis.is_complete for analysis in analyses.values()) else "partial",
             "held": first.drive.installation.held,
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],
             **_bodies(analyses),

@@ -26,8 +26,8 @@ OF_RANGES = (
     "pin_shaft_loaded_range_deg",
 )
 """What needs more than one position."""
-
-
+OF_LOADS = ("pin_shaft_loaded_range_deg", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
+"""Counts of loaded contacts."""
 REFINED = {
     "ptp_tangential_bearing_load_N": ("ptp_tangential_bearing_load", 1.0),
     "max_bearing_load_N": ("max_bearing_load", 1.0),
@@ -112,6 +112,8 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
             largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))
             values[f"max_{wall}_stress_MPa"] = largest
     values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
+    if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
+        values |= dict.fromkeys(OF_LOADS, np.nan)
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
@@ -137,7 +139,8 @@ def _largest(values: FloatArray) -> float:
 
 
 def _refined(analysis: LoadedAnalysis) -> dict[str, float]:
-    found = refine_extremes(analysis) if is_full_turn(analysis.full.crank_angle) else None
+    whole = analysis.is_complete and is_full_turn(analysis.full.crank_angle)
+    found = refine_extremes(analysis) if whole else None
     return {
         f"refined_{key}": np.nan if found is None else factor * getattr(found, name)
         for key, (name, factor) in REFINED.items()

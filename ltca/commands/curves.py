@@ -21,14 +21,19 @@ if TYPE_CHECKING:
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.rating_life import RatingLife
     from ltca.analysis.torque_curve import TorqueCurve
-    from ltca.analysis.transmission_error_orders import Spectrum
+    from ltca.analysis.transmission_error_orders import Order, Spectrum
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
 POSITIONS_PER_TURN = 192
+"""Least positions in a turn; more where the highest order asks for them (`positions_per_turn`)."""
 ANGLES = 4
 HARMONICS = 7
+"""Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST`)."""
+HIGHEST = 320
+SEEN = 2.05
+"""Positions for each period of the highest order, beyond the two that tell it from others."""
 FIGURES = ("torque_curve", "transmission_error_orders", "flank_pressure")
 
 
@@ -139,7 +144,7 @@ def execute(arguments: argparse.Namespace) -> int:
     engine = compliance_of(arguments)
     for drive in cases.values():
         turns = arguments.turns or drive.pin_wheel.number_of_pins
-        require_room_for([drive], turns * POSITIONS_PER_TURN, out, f"--turns {turns}")
+        require_room_for([drive], turns * positions_per_turn(drive), out, f"--turns {turns}")
         if turns < drive.pin_wheel.number_of_pins:
             _require_turns(drive, turns)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
@@ -149,13 +154,27 @@ def execute(arguments: argparse.Namespace) -> int:
         return _solve_and_write(file.name, cases, limits, engine, arguments, out)
 
 
+def _orders(drive: Drive) -> tuple[Order, ...]:
+    """Return the orders that are looked for."""
+    from ltca.analysis.transmission_error_orders import known_orders
+
+    return known_orders(drive, harmonics=min(HARMONICS, max(2, HIGHEST // drive.disc.number_of_teeth)))
+
+
+def positions_per_turn(drive: Drive) -> int:
+    """Return how many positions a turn needs for the highest order to be told from the others."""
+    from math import ceil
+
+    return max(POSITIONS_PER_TURN, ceil(SEEN * max(order.value for order in _orders(drive))))
+
+
 def _require_turns(drive: Drive, turns: int) -> None:
     """Refuse turns over which the orders of the transmission error look alike."""
-    from ltca.analysis.transmission_error_orders import known_orders, least_turns
+    from ltca.analysis.transmission_error_orders import least_turns
     from ltca.errors import DriveError
 
-    orders = known_orders(drive, harmonics=HARMONICS)
-    least = least_turns(orders, POSITIONS_PER_TURN, drive.pin_wheel.number_of_pins)
+    orders = _orders(drive)
+    least = least_turns(orders, positions_per_turn(drive), drive.pin_wheel.number_of_pins)
     if turns < least:
         raise DriveError(
             [
@@ -195,16 +214,17 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
     from ltca.analysis.pressure_safety import pressure_safety
     from ltca.analysis.rating_life import RollerBearing, rating_life
     from ltca.analysis.torque_curve import torque_curve
-    from ltca.analysis.transmission_error_orders import fit_orders, known_orders
+    from ltca.analysis.transmission_error_orders import fit_orders
     from ltca.errors import DriveError
 
     engine = engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
     curve = torque_curve(drive, mesh * np.arange(ANGLES) / ANGLES, engine=engine)
-    angle = 2.0 * np.pi * np.arange(turns * POSITIONS_PER_TURN) / POSITIONS_PER_TURN
+    each = positions_per_turn(drive)
+    angle = 2.0 * np.pi * np.arange(turns * each) / each
     analysis = loaded_analysis.analyse(drive, angle, engine=engine)
     try:
-        spectrum = fit_orders(angle, analysis.transmission_error, known_orders(drive, harmonics=HARMONICS))
+        spectrum = fit_orders(angle, analysis.transmission_error, _orders(drive))
     except ValueError as error:
         raise DriveError([f"--turns = {turns}: {error}"]) from error
     part = drive.crank_bearing
@@ -253,9 +273,8 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     print(
         f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh"
     )
-    print(
-        f"  backlash at the {output}, disc{'s' * (discs > 1)} floating{' ' * (11 - len(output) - (discs > 1))}{_range(curve.backlash * ARCMIN)}′"
-    )
+    floating = f"backlash at the {output}, disc{'s' * (discs > 1)} floating"
+    print(f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′")
     print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
     print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
     print(f"orders of the transmission error {over}")
@@ -283,8 +302,9 @@ def _draw(found: CaseCurves, title: str, folder: Path, ending: str) -> list[Path
     from ltca.figures import curve_figures as figures
 
     # The turn that holds the largest pressure of all: what is drawn is what is printed.
-    first = found.safety.position - found.safety.position % POSITIONS_PER_TURN
-    turn = slice(first, first + POSITIONS_PER_TURN)
+    each = found.crank_angle.size // found.turns
+    first = found.safety.position - found.safety.position % each
+    turn = slice(first, first + each)
     shown = replace(found.safety, position=found.safety.position - first)
     return [
         figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
+from ltca.errors import ConvergenceError
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
@@ -140,7 +142,7 @@ def _solve_and_write(
     from ltca.output.netcdf import write_netcdf
 
     file, cases, engine, torque = chosen
-    analyses = _analyse(cases, angles, torque, engine, "cases")
+    analyses, failures = _analyse(cases, angles, torque, engine, "cases")
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
     dataset = build_dataset(file.name, analyses, file.text)
     with whole_file(out / "results.nc") as part:
@@ -150,7 +152,9 @@ def _solve_and_write(
     if pressure_angles is not None:
         from ltca.analysis.pressure_fields import build_pressure_dataset
 
-        shown = _analyse(cases, pressure_angles, torque, engine, "pressure fields")
+        shown, also = _analyse(cases, pressure_angles, torque, engine, "pressure fields")
+        if also:  # a field of a position without an answer is no field
+            raise next(iter(also.values()))
         fields = build_pressure_dataset(file.name, shown, drive_file=file.text)
         packed = {name: {"zlib": True} for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))}
         with whole_file(out / "pressure.nc") as part:
@@ -160,11 +164,17 @@ def _solve_and_write(
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
     if any(analysis.pressures.rigid_shaft_pins for analysis in analyses.values()):
         print(RIGID_SHAFT_PINS)
-    print(_sampling(cases, angles))
+    print(_sampling(analyses, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
+    for name, failure in failures.items():
+        count = sum(int((~known).sum()) for known in (failure.partial.balanced, failure.partial.balanced_light))
+        print(
+            f"cyclo: error: case {name}: partial: {count} of {2 * angles.size} states have no answer: {failure}",
+            file=sys.stderr,
+        )
     if figures:
         _draw(dataset, fields, cases, out / "figures")
-    return 0
+    return ConvergenceError.exit_status if failures else 0
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:
@@ -180,16 +190,22 @@ def _engine(arguments: argparse.Namespace) -> Engine:
 
 def _analyse(
     cases: dict[str, Drive], angles: FloatArray, torque: float | None, engine: Engine, title: str
-) -> dict[str, LoadedAnalysis]:
+) -> tuple[dict[str, LoadedAnalysis], dict[str, ConvergenceError]]:
+    """Analyses of all cases; those without an answer at some positions, and why."""
     from ltca.analysis.loaded_analysis import analyse
     from ltca.output.progress import progress
 
-    analyses = {}
+    analyses, failures = {}, {}
     with progress(title, len(cases)) as advance:
         for name, drive in cases.items():
-            analyses[name] = analyse(drive, angles, torque, engine)
+            try:
+                analyses[name] = analyse(drive, angles, torque, engine)
+            except ConvergenceError as error:
+                if error.partial is None:
+                    raise
+                analyses[name], failures[name] = error.partial, error
             advance(name)
-    return analyses
+    return analyses, failures
 
 
 def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path) -> None:
@@ -286,16 +302,17 @@ def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
 
-def _sampling(cases: dict[str, Drive], angles: FloatArray) -> str:
-    """What the values stand for: which positions, and whether they see the mesh."""
+def _sampling(analyses: dict[str, LoadedAnalysis], angles: FloatArray) -> str:
+    """What the values stand for: which positions, whether they see the mesh, and what to know of drive and answer."""
     from ltca.analysis.extremes import is_full_turn, sampling_warning
-    from ltca.drive.unit_mistakes import stiffness_warning
 
     many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
     warnings = {
-        warn for drive in cases.values() for warn in (sampling_warning(drive, angles), stiffness_warning(drive))
+        warning
+        for analysis in analyses.values()
+        for warning in (sampling_warning(analysis.drive, angles), *analysis.warnings)
+        if warning is not None
     }
-    warnings -= {None}
-    return "\n".join([*lines, *(f"warning: {text}" for text in sorted(map(str, warnings)))])
+    return "\n".join([*lines, *(f"warning: {text}" for text in sorted(warnings))])

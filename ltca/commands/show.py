@@ -52,16 +52,15 @@ def execute(arguments: argparse.Namespace) -> int:
 def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
     from ltca.analysis.engines import describe_engine
     from ltca.analysis.loaded_analysis import analyse
-    from ltca.drive.unit_mistakes import stiffness_warning
     from ltca.figures.drive_picture import draw_drive
 
     for name, drive in cases.items():
         print(f"\ncase {name}")
-        if warning := stiffness_warning(drive):
+        analysis = analyse(drive, angle)
+        for warning in analysis.warnings:
             print(f"  warning: {warning}")
         for title, value in _properties(drive):
             print(f"  {title:<47} {value}")
-        analysis = analyse(drive, angle)
         print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
             print(f"    {title:<45} {value}")

@@ -14,7 +14,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.near_field import NearField
@@ -134,6 +133,8 @@ def finite_length_approach(length: float, half_width: float) -> float:
     float
         Pressure-weighted mean over the patch pressed by a straight cylinder: its approach less the mean separation.
     """
+    from scipy.optimize import brentq  # 0.2 s to import, for hybrid models only
+
     law = LineContactLaw(length, 1.0)
 
     def excess(logarithm: float) -> float:

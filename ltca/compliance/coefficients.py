@@ -8,6 +8,7 @@ actual places is added again.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +20,13 @@ from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients,
 from ltca.drive.parts import Clearance, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
-from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary, boundaries_of, turned_boundaries
+from ltca.geometry.boundary_stations import (
+    LAGRANGE_POINTS,
+    Boundary,
+    boundaries_of,
+    turned_boundaries,
+    weights_of,
+)
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
@@ -138,8 +145,9 @@ class InfluenceCoefficients:
         holes: FloatArray,
         flank_places: NDArray[np.complex128],
         radius: float,
+        loaded: Sequence[NDArray[np.intp]] | None = None,
     ) -> FloatArray:
-        """Return the coefficients between all contacts of the disc, the logarithm of a contact on itself left out.
+        """Return the coefficients between contacts of the disc, the logarithm of a contact on itself left out.
 
         Parameters
         ----------
@@ -149,54 +157,64 @@ class InfluenceCoefficients:
             The flank contacts in the disc frame, mm.
         radius : float
             Of the bore, mm.
+        loaded : sequence of three arrays of int, shape (positions, chosen), optional
+            Pins, rollers and holes whose loads are asked for; all of them by default.
 
         Returns
         -------
-        array, shape (positions, contacts, contacts)
-            In the order flank, bore, holes, mm/N.
+        array, shape (positions, contacts, loaded contacts)
+            Approach of every contact by unit loads, in the order flank, bore, holes, mm/N.
         """
-        stations, weights = (
-            np.concatenate(parts, axis=1)
-            for parts in zip(
-                self.flank.weights(flank),
-                self.bore.weights(bore),
-                *(
-                    tuple(part[:, None] for part in boundary.weights(holes[:, number]))
-                    for number, boundary in enumerate(self.holes)
-                ),
-                strict=True,
-            )
-        )
-        positions, contacts, _ = stations.shape
-        spread = np.zeros((positions, contacts, self.disc.shape[0]))
-        np.put_along_axis(spread, stations, weights, axis=2)
-        half = (spread.reshape(-1, self.disc.shape[0]) @ self.disc).reshape(spread.shape)
-        matrix = np.matmul(half, spread.swapaxes(1, 2))
-        pins, rollers = flank.shape[1], bore.shape[1]
-        self._add_logarithm(matrix[:, :pins, :pins], flank_places)
-        self._add_logarithm(matrix[:, pins : pins + rollers, pins : pins + rollers], radius * np.exp(1j * bore))
-        return np.asarray(matrix)
+        positions, pins, rollers = flank.shape[0], flank.shape[1], bore.shape[1]
+        boundaries = [self.flank] * pins + [self.bore] * rollers + list(self.holes)
+        stations, weights = weights_of(boundaries, np.concatenate((flank, bore, holes), axis=1))
+        if loaded is None:
+            loaded = [np.tile(np.arange(count), (positions, 1)) for count in (pins, rollers, holes.shape[1])]
+        on_flank, in_bore, in_holes = loaded
+        columns = np.concatenate((on_flank, pins + in_bore, pins + rollers + in_holes), axis=1)
+        matrix = self._interpolated(stations, weights, columns)
+        split = on_flank.shape[1]
+        self._add_logarithm(matrix[:, :pins, :split], flank_places, on_flank)
+        around = radius * np.exp(1j * bore)
+        self._add_logarithm(matrix[:, pins : pins + rollers, split : split + in_bore.shape[1]], around, in_bore)
+        return matrix
 
-    def _add_logarithm(self, block: FloatArray, places: NDArray[np.complex128]) -> None:
-        distance = np.abs(places[:, :, None] - places[:, None, :])
-        same = np.eye(places.shape[1], dtype=bool)
-        block -= self.disc_logarithm * np.log(np.where(same, 1.0, distance))
+    def _interpolated(self, stations: NDArray[np.intp], weights: FloatArray, columns: NDArray[np.intp]) -> FloatArray:
+        """Smooth parts between contacts at stations with weights, shape (positions, contacts, columns)."""
+        from scipy.sparse import csr_array
+
+        positions, contacts, points = stations.shape
+        chosen, size = columns.shape[1], self.disc.shape[0]
+        at, weight = (np.take_along_axis(values, columns[..., None], axis=1).ravel() for values in (stations, weights))
+        rows = positions * chosen
+        spread = csr_array((weight, at, np.arange(rows + 1) * points), shape=(rows, size))
+        half = spread @ self.disc
+        places = (np.arange(rows) * size).reshape(positions, chosen, 1) + stations.reshape(positions, 1, -1)
+        near = half.ravel().take(places).reshape(positions, chosen, contacts, points)
+        return np.asarray(np.einsum("bkna,bna->bnk", near, weights))
+
+    def _add_logarithm(self, block: FloatArray, places: NDArray[np.complex128], columns: NDArray[np.intp]) -> None:
+        """Take off κ ln(distance) between all places and those of the columns, a place and itself left out."""
+        apart = places[:, :, None] - np.take_along_axis(places, columns, axis=1)[:, None, :]
+        square = apart.real**2 + apart.imag**2
+        same = np.arange(places.shape[1])[None, :, None] == columns[:, None, :]
+        block -= 0.5 * self.disc_logarithm * np.log(np.where(same, 1.0, square))
 
     def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:
-        """Return the coefficients between the inner contacts of all rollers, shape (positions, n_BR, n_BR), mm/N.
+        """Return the coefficients between the inner contacts of all rollers, shape (n_BR, n_BR), mm/N.
 
         Parameters
         ----------
-        angles : array, shape (positions, n_BR)
-            Polar angles of the contacts, rad.
+        angles : array, shape (n_BR,)
+            Polar angles of the contacts in the cage, rad.
         radius : float
             r_i, mm.
         """
-        between = angles[:, :, None] - angles[:, None, :]
+        between = angles[:, None] - angles[None, :]
         stations, weights = Boundary(first=0, count=self.race.size).weights(between)
-        matrix = np.einsum("bijk,bijk->bij", self.race[stations], weights)
+        matrix = np.einsum("ijk,ijk->ij", self.race[stations], weights)
         distance = 2.0 * radius * np.abs(np.sin(0.5 * between))
-        same = np.eye(angles.shape[1], dtype=bool)
+        same = np.eye(angles.size, dtype=bool)
         return np.asarray(matrix - self.race_logarithm * np.log(np.where(same, 1.0, distance)))
 
 

@@ -12,6 +12,9 @@ method solves
 
 .. math:: R(\epsilon) = \epsilon + C f(\epsilon) - \delta(q) = 0 .
 
+Only contacts that may carry are unknowns: those pressed together, and open ones within `MARGIN`. The others' ε follows
+from the loads; where one of them is positive after all, every contact is taken.
+
 Of a roller the outer contact is the unknown. Its inner contact carries F_i = F_o (n_o·n) and yields with the race,
 the roller and the inner contacts of the other rollers; the place of the roller on its ray follows.
 """
@@ -36,14 +39,16 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
 from ltca.laws.contact_law import ContactLaw, LoadLaw
-from ltca.laws.series import SeriesLaw, SpringLaw, approach_at_load
+from ltca.laws.series import SpringLaw, approach_at_load
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
-CHUNK = 128
+CHUNK = 256
 """Positions solved at once: the matrices of more would fall out of the cache."""
+MARGIN = 0.25
+"""Gap within which an open contact may carry, as a part of the largest overlap of its position."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +64,11 @@ class CoupledCompliance:
     near_field : NearFieldLaws
         Laws of the near fields.
     hole_law : LoadLaw
-        Spring of the shaft pin, with the hole wall's near field in series if it counts.
+        Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
+    hole_spring : float
+        What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
+    race : array, shape (n_BR, n_BR)
+        Coefficients between the inner contacts of all rollers, which the cage turns together, mm/N.
     outer_radius, inner_radius : array, shape (n_BR,)
         Effective radii of the rollers' contacts, mm.
     hole_radius : array, shape (z_PS,)
@@ -72,6 +81,8 @@ class CoupledCompliance:
     coefficients: InfluenceCoefficients
     near_field: NearFieldLaws
     hole_law: LoadLaw
+    hole_spring: float
+    race: FloatArray
     outer_radius: FloatArray
     inner_radius: FloatArray
     hole_radius: FloatArray
@@ -115,16 +126,19 @@ class CoupledCompliance:
         place = geometry.placement
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
-        spring = SpringLaw(stiffness=drive.pin_shaft.stiffness)
+        own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum)
+        race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=SeriesLaw(spring=spring, contact=laws.hole) if hole_near_field else spring,
+            hole_law=laws.hole if hole_near_field else SpringLaw(stiffness=drive.pin_shaft.stiffness),
+            hole_spring=1.0 / drive.pin_shaft.stiffness if hole_near_field else 0.0,
+            race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
             inner_radius=place.inner_effective_radii,
             hole_radius=place.hole_effective_radii,
-            own=OwnParts.of_drive(drive, geometry, body, near_field, laws.datum),
+            own=own,
         )
 
     @property
@@ -143,23 +157,34 @@ class CoupledCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
         holes = self.geometry.holes(crank_angle, pose)
         parts = [
-            self._solve(
-                _Batch(self, crank_angle[rows], pose[rows], _take(flank, rows), _take(holes, rows)), start, rows
-            )
+            self._solve(crank_angle[rows], pose[rows], _take(flank, rows), _take(holes, rows), start, rows)
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
         joined: Response = _join(parts)
         return joined
 
-    def _solve(self, batch: _Batch, start: Start | None, rows: NDArray[np.intp]) -> Response:
-        guess = batch.geometric.copy()
+    def _solve(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        flank: FlankMotion,
+        holes: PairMotion,
+        start: Start | None,
+        rows: NDArray[np.intp],
+    ) -> Response:
+        bodies = _Bodies(self, crank_angle, pose, flank, holes)
         # Half of a rigid overlap is a fair share of the near field.
-        guess = np.where(guess > 0.0, 0.5 * guess, guess)
+        guess = np.where(bodies.geometric > 0.0, 0.5 * bodies.geometric, bodies.geometric)
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
                 if warm is not None:
                     guess[row] = warm
-        return batch.response(batch.solve(guess))
+        for margin in (MARGIN, np.inf):
+            batch = _Batch(bodies, margin)
+            response = batch.response(batch.solve(guess))
+            if response is not None:
+                return response
+        raise AssertionError("all contacts are taken, none is left out")
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return pressures and half-widths from the near fields."""
@@ -180,8 +205,8 @@ class CoupledCompliance:
         )
 
 
-class _Batch:
-    """The coupled problem of some positions at given poses."""
+class _Bodies:
+    """Some positions at given poses, undeformed: where their contacts are and how far they overlap."""
 
     def __init__(
         self,
@@ -192,89 +217,141 @@ class _Batch:
         holes: PairMotion,
     ) -> None:
         self.model, self.flank, self.holes = model, flank, holes
-        geometry, place, c = model.geometry, model.geometry.placement, model.coefficients
-        self.pins, self.rollers = flank.approach.shape[1], place.roller_radii.size
+        place = model.geometry.placement
         self.displacement = (pose[:, 0] + 1j * pose[:, 1])[:, None]
-        self.rays = geometry.rollers(crank_angle)
-        self.place_rollers(np.zeros((pose.shape[0], self.rollers)))
+        self.rays = model.geometry.rollers(crank_angle)
         turn = pose[:, 2, None]
         play = place.shaft_pin_centres - (place.race_centre(crank_angle)[:, None] + self.displacement)
         play = play - place.hole_centres * np.exp(1j * turn)
-        self.body = c.disc_matrix(
+        length, outward, _ = self.rollers_at(0.0)
+        self.bore_places, self.hole_places = np.angle(outward) - turn, np.angle(play) - turn
+        self.geometric = np.concatenate([flank.approach, length - self.rays.bore_play, holes.approach], axis=1)
+        """Overlap of the undeformed bodies, shape (positions, contacts)."""
+
+    def rollers_at(self, inner_approach: FloatArray | float) -> tuple[FloatArray, ComplexArray, FloatArray]:
+        """Distances of the rollers from the disc centre, directions, and cosines to their rays, at inner approaches, mm."""
+        arm = (self.rays.outermost - inner_approach) * self.rays.direction - self.displacement
+        length = np.sqrt(arm.real**2 + arm.imag**2)
+        outward = arm / length
+        return length, outward, (outward * self.rays.direction.conjugate()).real
+
+    def within(self, margin: float) -> list[NDArray[np.intp]]:
+        """Pins, rollers and holes that overlap or nearly do, as many in each position, shape (positions, chosen)."""
+        reach = margin * np.max(self.geometric, axis=1, initial=0.0)[:, None]
+        pins, rollers = self.flank.approach.shape[1], self.rays.bore_play.size
+        chosen = []
+        for part in np.split(self.geometric, (pins, pins + rollers), axis=1):
+            near = (part > 0.0) | (part > -reach)
+            most = max(1, int(np.max(np.count_nonzero(near, axis=1))))
+            chosen.append(np.sort(np.argsort(-part, axis=1, kind="stable")[:, :most], axis=1))
+        return chosen
+
+
+class _Batch:
+    """The coupled problem of some positions: as many contacts in each of them as may carry anywhere."""
+
+    def __init__(self, bodies: _Bodies, margin: float) -> None:
+        self.bodies, self.model = bodies, bodies.model
+        model, flank = bodies.model, bodies.flank
+        pins, rollers = flank.approach.shape[1], model.outer_radius.size
+        own = (model.own.pin, model.own.outer, model.own.hole + model.hole_spring)
+        self.loaded = bodies.within(margin)
+        self.body = model.coefficients.disc_matrix(
             flank.parameter,
-            np.angle(self.outward) - turn,
-            np.angle(play) - turn,
-            geometry.profile.flank(flank.parameter),
-            float(place.bore_radius),
+            bodies.bore_places,
+            bodies.hole_places,
+            model.geometry.profile.flank(flank.parameter),
+            float(model.geometry.placement.bore_radius),
+            self.loaded,
         )
-        own = np.concatenate(
-            [
-                np.full(self.pins, model.own.pin),
-                np.full(self.rollers, model.own.outer),
-                np.full(play.shape[1], model.own.hole),
-            ]
-        )
-        self.body += np.diag(own)
-        self.race = c.race_matrix(np.angle(self.rays.direction), float(place.inner_race_radius))
-        self.race += np.diag(np.full(self.rollers, model.own.inner))
-        self.outer = slice(self.pins, self.pins + self.rollers)
+        on_flank, in_bore, in_holes = self.loaded
+        self.chosen = np.concatenate((on_flank, pins + in_bore, pins + rollers + in_holes), axis=1)
+        self.outer = slice(on_flank.shape[1], on_flank.shape[1] + in_bore.shape[1])
+        self.all_outer = slice(pins, pins + rollers)
+        rows, columns = np.arange(self.chosen.shape[0])[:, None], np.arange(self.chosen.shape[1])
+        self.body[rows, self.chosen, columns] += np.repeat(own, [part.shape[1] for part in self.loaded])
+        self.among = self.body[rows, self.chosen]
+        self.race = model.race[in_bore[:, :, None], in_bore[:, None, :]]
+        self.effective_radius = np.take_along_axis(flank.effective_radius, on_flank, axis=1)
+        self.outer_radius, self.inner_radius = model.outer_radius[in_bore], model.inner_radius[in_bore]
+        self.hole_radius = model.hole_radius[in_holes]
+        self.inner_near = self.inner_compliance = self.inner_load = np.zeros(in_bore.shape)
+        self.placed = False
+        self.place_rollers(np.zeros((rows.size, rollers)))
+
+    def of_chosen(self, values: FloatArray) -> FloatArray:
+        """The values of the chosen contacts."""
+        return np.take_along_axis(values, self.chosen, axis=1)
+
+    def of_all(self, values: FloatArray, kind: NDArray[np.intp], count: int) -> FloatArray:
+        """Values of the chosen contacts of a kind among zeros for the others."""
+        full = np.zeros((values.shape[0], count))
+        np.put_along_axis(full, kind, values, axis=1)
+        return full
 
     def place_rollers(self, inner_approach: FloatArray) -> None:
         """Put the rollers where their inner contacts are pressed together by an amount, mm."""
-        arm = (self.rays.outermost - inner_approach) * self.rays.direction - self.displacement
-        self.length = np.abs(arm)
-        self.outward = arm / self.length
-        self.cosine = (self.outward * self.rays.direction.conjugate()).real
+        self.inner_approach = inner_approach
+        self.length, self.outward, cosine = self.bodies.rollers_at(inner_approach)
+        self.cosine = np.take_along_axis(cosine, self.loaded[1], axis=1)
 
     @property
     def geometric(self) -> FloatArray:
         """Overlap of the undeformed bodies at the present places of the rollers, shape (positions, contacts)."""
-        return np.concatenate([self.flank.approach, self.length - self.rays.bore_play, self.holes.approach], axis=1)
+        overlap = self.bodies.geometric.copy()
+        overlap[:, self.all_outer] = self.length - self.bodies.rays.bore_play
+        return overlap
 
     def loads(self, near: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return loads and stiffnesses of the near fields."""
-        m = self.model
+        m, outer = self.model, self.outer
         parts = (
-            m.near_field.pin.load_and_stiffness(near[:, : self.pins], self.flank.effective_radius),
-            m.near_field.outer.load_and_stiffness(near[:, self.outer], m.outer_radius),
-            m.hole_law.load_and_stiffness(near[:, self.outer.stop :], m.hole_radius),
+            m.near_field.pin.load_and_stiffness(near[:, : outer.start], self.effective_radius),
+            m.near_field.outer.load_and_stiffness(near[:, outer], self.outer_radius),
+            m.hole_law.load_and_stiffness(near[:, outer.stop :], self.hole_radius),
         )
         load, stiffness = (np.concatenate(columns, axis=1) for columns in zip(*parts, strict=True))
         return load, stiffness
 
     def evaluate(self, near: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the residual R(ε) and the body matrix with the inner contacts of the rollers in it."""
-        m = self.model
+        m, outer, in_bore = self.model, self.outer, self.loaded[1]
         self.load, self.stiffness = self.loads(near)
-        outer_load = self.load[:, self.outer]
+        outer_load = self.load[:, outer]
         cross = m.coefficients.roller[0, 1]
-        for _ in range(2):  # the direction of the outer load hardly turns with the roller's place
-            self.inner_load = outer_load * self.cosine
+        # The direction of the outer load hardly turns with the roller's place: that of the last evaluation is as good.
+        for _ in range(1 if self.placed else 2):
+            inner_load = outer_load * self.cosine
+            expected = self.inner_near + self.inner_compliance * (inner_load - self.inner_load)
+            self.inner_load = inner_load
             self.inner_near, self.inner_compliance = approach_at_load(
-                m.near_field.inner, self.inner_load, m.inner_radius
+                m.near_field.inner, inner_load, self.inner_radius, expected
             )
-            inner = self.inner_near + np.einsum("bij,bj->bi", self.race, self.inner_load) + cross * outer_load
+            inner = self.of_all(self.inner_load, in_bore, m.race.shape[0]) @ m.race
+            inner += self.of_all(self.inner_near + cross * outer_load, in_bore, m.race.shape[0])
             self.place_rollers(inner)
-        self.inner_approach = inner
+        self.placed = True
         c = self.cosine
-        seen = self.race + np.einsum("bi,ij->bij", self.inner_compliance, np.eye(self.rollers))
-        matrix = self.body.copy()
-        matrix[:, self.outer, self.outer] += c[:, :, None] * seen * c[:, None, :]
-        matrix[:, self.outer, self.outer] += 2.0 * cross * np.einsum("bi,ij->bij", c, np.eye(self.rollers))
-        yielding = np.einsum("bij,bj->bi", self.body, self.load)
-        yielding[:, self.outer] += cross * self.inner_load
-        return near + yielding - self.geometric, matrix
+        matrix = self.among.copy()
+        matrix[:, outer, outer] += c[:, :, None] * self.race * c[:, None, :]
+        diagonal = np.einsum("bii->bi", matrix)
+        diagonal[:, outer] += c * self.inner_compliance * c + 2.0 * cross * c
+        yielding = np.matmul(self.among, self.load[..., None])[..., 0]
+        yielding[:, outer] += cross * self.inner_load
+        return near + yielding - self.of_chosen(self.geometric), matrix
 
-    def solve(self, near: FloatArray) -> FloatArray:
-        """Return the near-field approaches at which every contact's approach is accounted for."""
+    def solve(self, guess: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the near-field approaches at which every contact's approach is accounted for, and the matrix there."""
+        near = self.of_chosen(guess)
         residual, matrix = self.evaluate(near)
         size = np.max(np.abs(residual), axis=1)
         history: list[float] = []
+        one = np.eye(near.shape[1])
         for _ in range(ITERATIONS):
             history.append(float(np.max(size, initial=0.0)))
             if history[-1] < 1e-13:
-                return near
-            jacobian = np.eye(near.shape[1]) + matrix * self.stiffness[:, None, :]
+                return near, matrix
+            jacobian = one + matrix * self.stiffness[:, None, :]
             step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
             fraction = np.ones(near.shape[0])
             for _ in range(12):
@@ -287,55 +364,68 @@ class _Batch:
                 fraction = np.where(worse, 0.5 * fraction, fraction)
             near, size = trial, found
             if len(history) > 5 and history[-1] < 1e-11 and float(np.max(size)) >= 0.5 * history[-1]:
-                return near  # round-off of radii of 100 mm
+                return near, matrix  # round-off of radii of 100 mm
         raise ConvergenceError("near-field approaches do not settle; largest residual in mm", history)
 
-    def response(self, near: FloatArray) -> Response:
-        """Return forces and tangent at the solution."""
-        _, matrix = self.evaluate(near)
-        load, pins, outer = self.load, self.pins, self.outer
+    def response(self, solution: tuple[FloatArray, FloatArray]) -> Response | None:
+        """Return forces and tangent at the solution; None where a contact that was left out is pressed together."""
+        near, matrix = solution
+        bodies, (on_flank, in_bore, in_holes), outer = self.bodies, self.loaded, self.outer
+        cross = self.model.coefficients.roller[0, 1]
+        pins, rollers = bodies.flank.approach.shape[1], self.model.outer_radius.size
+        contacts = bodies.geometric.shape[1]
+        yielding = np.matmul(self.body, self.load[..., None])[..., 0]
+        yielding[:, self.all_outer] += cross * self.of_all(self.inner_load, in_bore, rollers)
+        everywhere = self.geometric - yielding
+        np.put_along_axis(everywhere, self.chosen, near, axis=1)
+        left_out = self.of_all(np.ones(near.shape), self.chosen, contacts) == 0.0
+        if np.any(everywhere[left_out] > 0.0):
+            return None
         # dF = k (1 + C k)⁻¹ dδ: symmetric, and zero in rows and columns of open contacts.
         root = np.sqrt(self.stiffness)
         inside = np.eye(near.shape[1]) + root[:, :, None] * matrix * root[:, None, :]
-        coupled = root[:, :, None] * np.linalg.inv(inside) * root[:, None, :]
         gradient = np.zeros((*near.shape, 4))
-        gradient[:, :pins] = self.flank.gradient
-        gradient[:, outer, 0], gradient[:, outer, 1] = -self.outward.real, -self.outward.imag
-        gradient[:, outer.stop :] = self.holes.gradient
-        tangent = gradient.swapaxes(1, 2) @ coupled @ gradient
-        tangent += np.einsum("bi,bijk->bjk", load[:, :pins], self.flank.curvature)
-        tangent += np.einsum("bi,bijk->bjk", load[:, outer.stop :], self.holes.curvature)
-        sideways = 1j * self.outward
-        across = np.stack((sideways.real, sideways.imag), axis=-1)
-        bend = load[:, outer] / self.length
-        tangent[:, :2, :2] += np.einsum("bi,bij,bik->bjk", bend, across, across)
+        gradient[:, : outer.start] = np.take_along_axis(bodies.flank.gradient, on_flank[..., None], axis=1)
+        outward = np.take_along_axis(self.outward, in_bore, axis=1)
+        gradient[:, outer, 0], gradient[:, outer, 1] = -outward.real, -outward.imag
+        gradient[:, outer.stop :] = np.take_along_axis(bodies.holes.gradient, in_holes[..., None], axis=1)
+        gradient *= root[..., None]
+        tangent = np.matmul(gradient.swapaxes(1, 2), np.linalg.solve(inside, gradient))
+        load = self.of_all(self.load, self.chosen, contacts)
+        pin_load, outer_load, hole_load = np.split(load, (pins, pins + rollers), axis=1)
+        tangent += bodies.flank.bend(pin_load) + bodies.holes.bend(hole_load)
+        across = np.stack((-outward.imag, outward.real), axis=-1)
+        bend = self.load[:, outer] / np.take_along_axis(self.length, in_bore, axis=1)
+        tangent[:, :2, :2] += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         # A pair's approach: the overlap less what the other pairs' loads take of it. Negative is open.
-        diagonal = np.einsum("bii->bi", self.body)
-        approach = near + diagonal * load
-        inner_self = np.einsum("bii->bi", self.race)
-        resting = np.abs(self.rays.outermost * self.rays.direction - self.displacement) - self.rays.bore_play
-        free = load[:, outer] <= 0.0
-        rollers = RollerState(
+        approach = everywhere + self.of_all(np.einsum("bii->bi", self.among) * self.load, self.chosen, contacts)
+        inner_load = self.of_all(self.inner_load, in_bore, rollers)
+        rays = bodies.rays
+        resting = np.abs(rays.outermost * rays.direction - bodies.displacement) - rays.bore_play
+        free = outer_load <= 0.0
+        inner_near = self.of_all(self.inner_near, in_bore, rollers) + np.diag(self.model.race) * inner_load
+        at_bore = approach[:, self.all_outer]
+        state = RollerState(
             share=np.full(free.shape, 0.5),
-            inner_approach=np.where(free, 0.0, self.inner_near + inner_self * self.inner_load),
-            outer_approach=np.where(free, np.minimum(resting, approach[:, outer]), approach[:, outer]),
-            inner_load=self.inner_load,
-            outer_load=load[:, outer],
+            inner_approach=np.where(free, 0.0, inner_near),
+            outer_approach=np.where(free, np.minimum(resting, at_bore), at_bore),
+            inner_load=inner_load,
+            outer_load=outer_load,
             outer_direction=self.outward,
             tangent=np.zeros((*free.shape, 2, 2)),
         )
-        flank = replace(self.flank, approach=approach[:, :pins])
-        holes = replace(self.holes, approach=approach[:, outer.stop :])
+        flank = replace(bodies.flank, approach=approach[:, :pins])
+        holes = replace(bodies.holes, approach=approach[:, pins + rollers :])
         warm_start = np.empty(near.shape[0], dtype=object)
-        warm_start[:] = list(near)
+        warm_start[:] = list(everywhere)
         return Response(
-            force=resultant(flank, load[:, :pins], holes, load[:, outer.stop :], rollers),
+            force=resultant(flank, pin_load, holes, hole_load, state),
             tangent=tangent,
             flank=flank,
             holes=holes,
-            rollers=rollers,
-            pin_load=load[:, :pins],
-            hole_load=load[:, outer.stop :],
+            rollers=state,
+            pin_load=pin_load,
+            hole_load=hole_load,
             warm_start=warm_start,
         )
 

@@ -154,6 +154,22 @@ class Start:
         """Return the start that a response gives for the next pose."""
         return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
 
+    @classmethod
+    def nothing(cls) -> Start:
+        """Return the start of no position."""
+        return cls(parameter=np.zeros((0, 0)), share=np.zeros((0, 0)), warm_start=np.zeros(0, dtype=object))
+
+    def enlarged(self, positions: int, rows: NDArray[np.intp], other: Start) -> Start:
+        """Return the start of all positions with some taken from another start; nothing is known of those of neither."""
+        if self.warm_start.size == positions:
+            return self.replaced(rows, other)
+        whole = Start(
+            parameter=np.zeros((positions, other.parameter.shape[1])),
+            share=np.zeros((positions, other.share.shape[1])),
+            warm_start=np.full(positions, None, dtype=object),
+        )
+        return whole.replaced(rows, other)
+
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
         return Start(parameter=self.parameter[rows], share=self.share[rows], warm_start=self.warm_start[rows])

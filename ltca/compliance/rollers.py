@@ -8,7 +8,7 @@ U_i(δ_i(s)) + U_o(δ_o(s, d)) over s.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,53 +101,21 @@ def balance_rollers(
     """
     direction = rays.direction
     lowest = rays.touching_distance(displacement)
-    along = direction.real * displacement.real[:, None] + direction.imag * displacement.imag[:, None]
     interference = rays.outermost - lowest
-    pressed = interference > 0.0
-    total = np.where(pressed, interference, 1.0)
-    share = np.full(direction.shape, 0.5) if start is None else start
-    low, high = np.zeros_like(total), np.ones_like(total)
-    history: list[float] = []
-    for _ in range(ITERATIONS):
-        place = rays.outermost - share * total
-        arm = place * direction - displacement[:, None]
-        length = np.abs(arm)
-        outward = arm / length
-        cosine = outward.real * direction.real + outward.imag * direction.imag
-        inner_approach = np.where(pressed, share * total, 0.0)
-        # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
-        reach = place + lowest - 2.0 * along
-        outer_approach = (1.0 - share) * total * reach / (length + rays.bore_play)
-        inner_load, inner_stiffness = laws.inner.load_and_stiffness(inner_approach, laws.inner_radius)
-        outer_load, outer_stiffness = laws.outer.load_and_stiffness(
-            np.where(pressed, outer_approach, 0.0), laws.outer_radius
-        )
-        bend = outer_load * (1.0 - cosine**2) / length
-        stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
-        imbalance = np.where(pressed, inner_load - outer_load * cosine, 0.0)
-        if np.isnan(imbalance).any():  # bisection would settle on it all the same
-            raise ConvergenceError("rollers do not balance between the races: a load is not a number", history)
-        low = np.where(imbalance < 0.0, share, low)
-        high = np.where(imbalance > 0.0, share, high)
-        safe = np.where(pressed & (stiffness > 0.0), stiffness, 1.0)
-        step = imbalance / (safe * total)
-        following = share - step
-        # Newton within the bracket, bisection where it leaves it.
-        following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
-        following = np.where(pressed & (imbalance != 0.0), following, share)
-        history.append(float(np.max(np.abs(following - share), initial=0.0)))
-        if history[-1] <= 1e-11:
-            break
-        share = following
-    else:
-        raise ConvergenceError("rollers do not balance between the races; change of their share", history)
-    if not np.all(pressed):
-        # A free roller rests on the inner race; its outer gap follows from there.
-        resting = np.abs(rays.outermost * direction - displacement[:, None])
-        outer_approach = np.where(pressed, outer_approach, resting - rays.bore_play)
-    tangent = _eliminated_tangent(
-        direction, outward, cosine, length, outer_load, outer_stiffness, np.where(stiffness > 0.0, stiffness, 1.0)
-    )
+    share = np.full(direction.shape, 0.5) if start is None else np.array(start)
+    # Half of the rollers are free: only those pressed between the races are balanced.
+    pressed = np.nonzero(interference > 0.0)
+    balanced = _balance_pressed(rays, displacement, laws, pressed, interference[pressed], share[pressed])
+    # A free roller rests on the inner race; its outer gap follows from there.
+    arm = rays.outermost * direction - displacement[:, None]
+    length = np.abs(arm)
+    outward, outer_approach = arm / length, length - rays.bore_play
+    inner_approach, inner_load, outer_load = (np.zeros(direction.shape) for _ in range(3))
+    tangent = np.zeros((*direction.shape, 2, 2))
+    for values, found in zip(
+        (share, inner_approach, outer_approach, inner_load, outer_load, outward, tangent), balanced, strict=True
+    ):
+        values[pressed] = found
     return RollerState(
         share=share,
         inner_approach=inner_approach,
@@ -157,6 +125,66 @@ def balance_rollers(
         outer_direction=outward,
         tangent=tangent,
     )
+
+
+def _balance_pressed(
+    rays: RollerRays,
+    displacement: ComplexArray,
+    laws: RollerLaws[Law],
+    pressed: tuple[NDArray[np.intp], ...],
+    total: FloatArray,
+    share: FloatArray,
+) -> tuple[NDArray[Any], ...]:
+    """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last."""
+
+    def each(values: FloatArray) -> FloatArray:
+        return np.broadcast_to(values, rays.direction.shape)[pressed]
+
+    direction, moved = rays.direction[pressed], displacement[pressed[0]]
+    outermost, bore_play = each(rays.outermost), each(rays.bore_play)
+
+    def loads(law: Law, approach: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+        # A law may know its pairs by their places (grids), so it is asked for all; open ones cost it nothing.
+        everywhere = np.zeros(rays.direction.shape)
+        everywhere[pressed] = approach
+        load, stiffness = law.load_and_stiffness(everywhere, radius)
+        return load[pressed], stiffness[pressed]
+
+    lowest = outermost - total
+    along = direction.real * moved.real + direction.imag * moved.imag
+    low, high = np.zeros_like(total), np.ones_like(total)
+    history: list[float] = []
+    for _ in range(ITERATIONS):
+        place = outermost - share * total
+        arm = place * direction - moved
+        length = np.abs(arm)
+        outward = arm / length
+        cosine = outward.real * direction.real + outward.imag * direction.imag
+        inner_approach = share * total
+        # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
+        outer_approach = (1.0 - share) * total * (place + lowest - 2.0 * along) / (length + bore_play)
+        inner_load, inner_stiffness = loads(laws.inner, inner_approach, laws.inner_radius)
+        outer_load, outer_stiffness = loads(laws.outer, outer_approach, laws.outer_radius)
+        bend = outer_load * (1.0 - cosine**2) / length
+        stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
+        imbalance = inner_load - outer_load * cosine
+        if np.isnan(imbalance).any():  # bisection would settle on it all the same
+            raise ConvergenceError("rollers do not balance between the races: a load is not a number", history)
+        low = np.where(imbalance < 0.0, share, low)
+        high = np.where(imbalance > 0.0, share, high)
+        safe = np.where(stiffness > 0.0, stiffness, 1.0)
+        following = share - imbalance / (safe * total)
+        # Newton within the bracket, bisection where it leaves it.
+        following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
+        following = np.where(imbalance != 0.0, following, share)
+        history.append(float(np.max(np.abs(following - share), initial=0.0)))
+        if history[-1] <= 1e-11:
+            break
+        share = following
+    else:
+        raise ConvergenceError("rollers do not balance between the races; change of their share", history)
+    tangent = _eliminated_tangent(direction, outward, cosine, length, outer_load, outer_stiffness, safe)
+    return share, inner_approach, outer_approach, inner_load, outer_load, outward, tangent
 
 
 def _eliminated_tangent(

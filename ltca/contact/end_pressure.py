@@ -8,16 +8,19 @@ L/√(ρδ) alone; profiled contacts are sampled over the approaches and radii a
 
 from __future__ import annotations
 
+import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.contact.pressure_cells import PatchSolution
-from ltca.contact.tracked_grid import ContactKind, solve_fitted
+from ltca.contact.tracked_grid import CELLS, ContactKind, solve_fitted
 
 FloatArray = NDArray[np.float64]
 
+TABLE = Path(__file__).with_name("end_pressure.json")
 _NODES = 19
 _LONGEST, _SHORTEST = 3.0e3, 1.0
 _APPROACHES, _RADII = 9, 3
@@ -50,12 +53,31 @@ def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
     return largest_pressure(solved, kind.end_cell) / solved.mid_pressure
 
 
-@cache
-def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes of ln(L/√(ρδ)) and the ratio there."""
+def tabulate_cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
+    """Solve the ratio of cylinders on contact grids.
+
+    Parameters
+    ----------
+    cells : int
+        Cells over the half-width and over half the length.
+
+    Returns
+    -------
+    tuple of (array, array)
+        Nodes of ln(L/√(ρδ)), ascending, and the largest pressure by the one at mid-width there.
+    """
     kind = ContactKind(length=1.0, contact_modulus=1.0, generator=None, symmetric=True, cells=cells)
     nodes = np.linspace(np.log(_SHORTEST), np.log(_LONGEST), _NODES)
     return nodes, np.array([_ratio(kind, float(np.exp(-node)), float(np.exp(-node))) for node in nodes])
+
+
+@cache
+def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes and ratio as they ship with the package (`ltca.laws.shipped_tables`); other grids are solved."""
+    if cells != CELLS:
+        return tabulate_cylinder_ratio(cells)
+    stored = json.loads(TABLE.read_text(encoding="utf-8"))
+    return np.array(stored["nodes"]), np.array(stored["ratio"])
 
 
 def largest_pressure_ratio(kind: ContactKind, approach: FloatArray, effective_radius: FloatArray) -> FloatArray:

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
 
 FloatArray = NDArray[np.float64]
 
@@ -195,6 +193,9 @@ def solve_point_contact(
     ValueError
         If the radii are not positive and in order.
     """
+    from scipy.optimize import brentq  # 0.2 s to import; line contacts do without
+    from scipy.special import ellipe, ellipk
+
     if not 0.0 < radius_small <= radius_large:
         raise ValueError(f"need 0 < radius_small <= radius_large, got {radius_small} and {radius_large}")
     if radius_large / radius_small < 1.0 + 1e-9:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
 from ltca.errors import ConvergenceError
 
@@ -86,6 +85,8 @@ def solve_unilateral_contact(
     ----------
     J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587 (block principal pivoting with Murty's rule).
     """
+    from scipy.linalg import lapack  # 0.1 s to import; what runs on tables solves no cells
+
     count = penetration.size
     active = (penetration > 0.0) if start is None else np.array(start, dtype=bool)
     pressure = np.zeros(count)

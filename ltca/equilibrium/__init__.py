@@ -2,15 +2,18 @@
 
 Modules in the order data passes:
 
-==============  ============================================================
-reducer         A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel
-                for all
-newton          Damped Newton iteration for the pose in which a batch of positions balances
-balance         Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89)
-output_torque   Equilibrium at a given torque of the output, whichever member is held
-paper_method    The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
-                43–46, 90–93)
-clearance_free  Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system
-                (Eq. 7–40)
-==============  ============================================================
+===============  ============================================================
+reducer          A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel
+                 for all
+newton           Damped Newton iteration for the pose in which a batch of positions balances
+neighbours       Which positions of many are balanced first, and the poses of those between them: seen from the crank they
+                 hardly differ
+balance          Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89)
+output_torque    Equilibrium at a given torque of the output, whichever member is held
+partial_balance  Balance as many positions as have an answer: one that has none costs the others nothing
+paper_method     The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
+                 43–46, 90–93)
+clearance_free   Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system
+                 (Eq. 7–40)
+===============  ============================================================
 """

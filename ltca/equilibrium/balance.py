@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.response import BatchModel, ComplianceModel, Response
+from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import Search
 from ltca.equilibrium.reducer import disc_responses, geometries
 from ltca.errors import ConvergenceError
@@ -30,6 +31,8 @@ HEAVIER = 8.0
 HEAVIEST = 7
 """Most times that the torque grows by `HEAVIER` to find a start."""
 LEAST_RATIO = 1.05
+FEW = 3
+"""Iterations from a start that is near."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,11 +120,28 @@ def solve_equilibrium(
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     lever = lever_arms(model)
     load = np.abs(moment) / lever[..., WHEEL_ANGLE]
+    first = leading_positions(model.discs[0].geometry, angle, moment)
+    pose = np.zeros((angle.size, lever.shape[-1]))
     if start is None:
-        start = _at_first_contact(model, angle, moment)
-    pose = np.array(start, dtype=float)
+        pose[first] = _at_first_contact(_rows_of(model, first, angle.size), angle[first], moment[first])
+    else:
+        pose[:] = start
     search = Search(model, angle, moment, lever, load, pose)
-    left = search.iterate(ITERATIONS)
+    left = search.iterate(ITERATIONS, first)
+    rest = np.setdiff1d(np.arange(angle.size), first)
+    if rest.size:
+        # A start that leads somewhere in a few steps is as good as what lies between neighbours.
+        between = start is None or np.median(search.iterations[first]) > FEW
+        lost = np.zeros(0, dtype=np.intp) if left.size == 0 else left
+        known = np.setdiff1d(first, lost)
+        inner = None
+        if between and known.size:
+            pose[rest] = pose_between(angle[known], pose[known], angle[rest])
+            ratio = model.discs[0].geometry.placement.reduction_ratio
+            inner = start_between(angle[known], search.known.take(known), angle[rest], ratio)
+        elif start is None:
+            pose[rest] = _at_first_contact(_rows_of(model, rest, angle.size), angle[rest], moment[rest])
+        left = np.union1d(left, search.iterate(ITERATIONS, rest, inner))
     if left.size:
         left = _follow_down(search, left)
     if left.size:
@@ -146,6 +166,11 @@ def _at_first_contact(model: ComplianceModel, angle: FloatArray, moment: FloatAr
         turned = [_take_up(geometry.take(rows), angle[rows], int(value)) for geometry in geometries(model)]
         pose[rows, WHEEL_ANGLE] = value * np.min(value * np.stack(turned), axis=0)
     return pose
+
+
+def _rows_of(model: ComplianceModel, rows: NDArray[np.intp], positions: int) -> ComplianceModel:
+    batch = model.discs[0].geometry.placement.is_batch and rows.size != positions
+    return cast(BatchModel, model).take(rows) if batch else model
 
 
 def _taken(search: Search, rows: NDArray[np.intp]) -> ComplianceModel:

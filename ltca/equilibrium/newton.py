@@ -74,8 +74,10 @@ class Search:
         self.half_pitch = np.pi / self.place.reduction_ratio
         self.rotations = rotations(pose.shape[1])
         self.history: list[FloatArray] = []
+        self.residual = np.full(angle.size, np.inf)
         self.iterations = np.zeros(angle.size, dtype=np.intp)
         self.slipped = np.zeros(angle.size, dtype=bool)
+        self.known = Start.nothing()
 
     def levers(self, rows: NDArray[np.intp]) -> FloatArray:
         """Return the lever arms of some positions: one row for all where the drives are the same."""
@@ -98,20 +100,27 @@ class Search:
         tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
         return response, gradient, tangent
 
-    def iterate(self, most: int) -> NDArray[np.intp]:
-        """Move all positions towards balance; return those that do not balance, ascending.
+    def iterate(self, most: int, rows: NDArray[np.intp] | None = None, known: Start | None = None) -> NDArray[np.intp]:
+        """Move positions towards balance; return those of them that do not balance, ascending.
 
         Parameters
         ----------
         most : int
             Iterations.
+        rows : array of int, optional
+            Which positions, ascending; all by default.
+        known : Start, optional
+            Inner unknowns near the poses of these positions.
         """
-        active = np.arange(self.angle.size)
+        active = asked = np.arange(self.angle.size) if rows is None else rows
         first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
-        damping, bound = np.full(active.size, 1e-6), np.full(active.size, first_bound)
-        response, gradient, tangent = self.evaluate(active, self.pose, None)
-        start = self.known = Start.after(response)
-        residual = np.max(np.abs(gradient), axis=1)
+        damping, bound = np.full(self.angle.size, 1e-6), np.full(self.angle.size, first_bound)
+        response, gradient, tangent = self.evaluate(active, self.pose[active], known)
+        start = Start.after(response)
+        whole = active.size == self.angle.size
+        self.known = start if whole else self.known.enlarged(self.angle.size, active, start)
+        residual = self.residual
+        residual[active] = np.max(np.abs(gradient), axis=1)
         for _ in range(most):
             self.history.append(residual.copy())
             # A residual that is no number does not balance either.
@@ -131,7 +140,7 @@ class Search:
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
             self.known = self.known.replaced(active, start)
-        return np.union1d(active, np.nonzero(self.slipped)[0])
+        return np.union1d(active, asked[self.slipped[asked]])
 
     def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
         """Return the largest residual that counts as balance, N."""

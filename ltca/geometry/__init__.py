@@ -10,6 +10,8 @@ flank_deviation    Deviation of the flank from its design along the design norma
 placement          Where pins, rollers and holes stand and how large they are, errors included
 flank              Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1)
 pairs              How far each pair is pressed together at a pose, and how that changes with the pose (Eq. 45–64)
+interference       How far parts overlap as they are drawn, before any body yields: what presses a drive together
+                   without load
 first_contact      Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry
                    (Eq. 2–6)
 play               How far the wheel can turn while no body gives: the play of all clearances together, disc floating

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,16 +37,7 @@ class Boundary:
         parameter : array
             Places, rad, period 2π.
         """
-        place = np.mod(parameter - self.offset, 2.0 * np.pi) * (self.count / (2.0 * np.pi))
-        cell = np.floor(place)
-        local = (place - cell)[..., None]
-        nodes = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
-        weights = np.ones((*place.shape, LAGRANGE_POINTS))
-        for one, node in enumerate(nodes):
-            for other in np.delete(nodes, one):
-                weights[..., one] *= (local[..., 0] - other) / (node - other)
-        stations = np.mod(cell[..., None].astype(np.intp) + nodes, self.count) + self.first
-        return stations, weights
+        return _lagrange(parameter - self.offset, np.asarray(self.first), np.asarray(self.count))
 
     def refined(self, values: FloatArray, times: int) -> FloatArray:
         """Return values at `times` as many uniform places, by Fourier series, shape (…, times · count).
@@ -66,6 +58,46 @@ class Boundary:
     def parameters(self, times: int = 1) -> FloatArray:
         """Return the parameters of the places of `refined`, rad."""
         return self.offset + 2.0 * np.pi * np.arange(times * self.count) / (times * self.count)
+
+
+def weights_of(boundaries: Sequence[Boundary], parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+    """Return stations and weights of places that lie on several boundaries, shapes (…, places, 6).
+
+    Parameters
+    ----------
+    boundaries : sequence of Boundary
+        The boundary of each place.
+    parameter : array, shape (…, places)
+        rad, period 2π.
+    """
+    first, count = (np.array([getattr(own, name) for own in boundaries]) for name in ("first", "count"))
+    offset = np.array([own.offset for own in boundaries])
+    return _lagrange(parameter - offset, first, count)
+
+
+_NODES = np.arange(LAGRANGE_POINTS) - (LAGRANGE_POINTS // 2 - 1)
+_SCALES = np.array([1.0 / np.prod([float(node - other) for other in _NODES if other != node]) for node in _NODES])
+
+
+def _lagrange(
+    parameter: FloatArray, first: NDArray[np.intp], count: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], FloatArray]:
+    """Stations and weights on boundaries that begin at `first` and have `count` stations each."""
+    place = np.mod(parameter, 2.0 * np.pi) * (count / (2.0 * np.pi))
+    cell = np.floor(place)
+    local = place - cell
+    weights = np.empty((*place.shape, LAGRANGE_POINTS))
+    # The product over all other nodes: of those before and of those after.
+    before = np.ones_like(local)
+    for one, node in enumerate(_NODES):
+        weights[..., one] = before * _SCALES[one]
+        before = before * (local - node)
+    after = np.ones_like(local)
+    for one, node in reversed(list(enumerate(_NODES))):
+        weights[..., one] *= after
+        after = after * (local - node)
+    stations = np.mod(cell.astype(np.intp)[..., None] + _NODES, count[..., None]) + first[..., None]
+    return stations, weights
 
 
 def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:

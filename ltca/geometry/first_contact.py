@@ -53,8 +53,8 @@ def first_contact(
 
     Notes
     -----
-    Where errors of single parts press pins on the flank at every rotation, the answer is the rotation at which those
-    that close stop touching, so that backlash is negative, or that of least `interference` where there is none.
+    Where pins press on the flank at every rotation, by errors of single parts or as they are drawn, the answer is the
+    rotation of least `interference` in both senses, so that backlash is zero.
     """
     rotation, pin, settled, history = turn_to_contact(geometry, crank_angle, coordinate, sense)
     if not np.all(settled):
@@ -110,7 +110,8 @@ def turn_to_contact(
         rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
         free = pressed <= TOUCHING * _size(geometry)
         rotation = np.where(free, rotation, bottom)
-        better = free & stopped | ~free & ~settled[unsure]
+        # Among pins that overlap Newton's method above follows the steepest away: no rotation frees them.
+        better = stopped | ~free
         rows = unsure[better]
         pose[rows, coordinate], pin[rows], settled[rows] = rotation[better], touching[better], True
     pose[~settled, coordinate] = 0.0

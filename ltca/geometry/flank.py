@@ -323,7 +323,9 @@ class FlankProfile:
             return found
         sharp = (self.generating_radius - self.eccentricity * u) ** 2 / np.where(bend > 0.0, bend, np.nan)
         theta = found.parameter
-        away = np.abs(self.locus(theta).point + self.centre - point)
+        # Without a deviation the contact curve is the trochoid.
+        trochoid = found.curve.point if self.deviation is None else self.locus(theta).point + self.centre
+        away = np.abs(trochoid - point)
         pitch = 2.0 * np.pi / (u - 1.0)
         root = pitch * np.round(theta / pitch)
         doubtful = (away > 0.3 * sharp) & (np.abs(theta - root) < 0.25 * pitch)

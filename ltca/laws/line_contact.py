@@ -6,30 +6,28 @@ serves every pin and roller. The table holds the energy U = ∫F dδ = E* L δ²
 is smooth and nearly linear in X for long contacts, the load and the stiffness are exact derivatives of one
 function (what an equilibrium solver by minimum potential needs), and the energy is closed.
 
-The nodes are solutions of `ltca.contact.pressure_cells` on two grids, extrapolated to zero cell size (Richardson) with the orders
-measured in ``tests/analytic/test_line_contact_table.py``.
+The table ships with the package as ``line_contact.json``; `ltca.laws.shipped_tables` makes it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import json
+from dataclasses import dataclass, field, fields
 from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
 from ltca.laws.slenderness_curve import SlendernessCurve
 
 FloatArray = NDArray[np.float64]
 
 LONGEST = 1.0e5
 SHORTEST = 0.15
-_NODES = 31
-_CELLS = 16
-# Orders of convergence when both cell counts are doubled, as measured: energy 2.7, half-width and pressure 2.2 to 2.9.
-_ENERGY_GAIN = 1.0 / (2.0**2.7 - 1.0)
-_FIELD_GAIN = 1.0 / (2.0**2.4 - 1.0)
+"""Range of λ = L/√(ρδ) that the table is made for."""
+TABLE = Path(__file__).with_name("line_contact.json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,47 +48,28 @@ class LineContactTable:
     inverse_square_pressure: SlendernessCurve
     inverse_square_half_width: SlendernessCurve
 
+    @classmethod
+    def of_content(cls, content: dict[str, dict[str, Any]]) -> LineContactTable:
+        """Return the table whose `content` this is, to the last bit."""
+        return cls(**{name: SlendernessCurve.of_content(curve) for name, curve in content.items()})
+
+    def content(self) -> dict[str, dict[str, Any]]:
+        """Return the curves by name as plain numbers, for a file."""
+        return {item.name: getattr(self, item.name).content() for item in fields(self)}
+
 
 @cache
-def line_contact_table(
-    cells: int = _CELLS, nodes: int = _NODES, shortest: float = SHORTEST, longest: float = LONGEST
-) -> LineContactTable:
-    """Build the dimensionless table from patch solutions (cached in the process).
+def line_contact_table() -> LineContactTable:
+    """Return the dimensionless table that ships with the package (read once in the process).
 
-    Parameters
-    ----------
-    cells : int
-        Cells over the half-width and over half the length on the finer grid; the coarser has half as many.
-    nodes : int
-        Number of nodes, uniform in ln λ.
-    shortest, longest : float
-        Range of λ = L/√(ρδ).
+    It is made by `ltca.laws.shipped_tables`, and read rather than solved: that takes half a second, and its last digits
+    would be those of the machine.
 
     Returns
     -------
     LineContactTable
     """
-    places = np.linspace(-2.0 * np.log(longest), -2.0 * np.log(shortest), nodes)
-    rows = np.empty((nodes, 3))
-    for row, place in zip(rows, places, strict=True):
-        slenderness = float(np.exp(-0.5 * place))
-        half_width = expected_half_width(slenderness, 1.0, 1.0)
-        for _ in range(2):
-            guess = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
-            half_width = guess.half_width
-        # Both grids must cut the contact at the same place for their difference to extrapolate.
-        coarse = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
-        fine = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells, half_width=half_width, start=coarse)
-        row[0] = (fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)) / slenderness
-        row[1] = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
-        row[2] = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
-    energy, pressure, half_width_ratio = rows.T
-    # A slender contact has δ = q/(π E*) (ln 1/δ + …), so δ E* L/F → −X/π, b² = 4 F ρ/(π E* L) and p = E* b/(2ρ).
-    return LineContactTable(
-        inverse_energy=SlendernessCurve.through(places, 1.0 / energy, 2.0 / np.pi),
-        inverse_square_pressure=SlendernessCurve.through(places, pressure**-2, 1.0),
-        inverse_square_half_width=SlendernessCurve.through(places, half_width_ratio**-2, 0.25),
-    )
+    return LineContactTable.of_content(json.loads(TABLE.read_text(encoding="utf-8")))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,13 +106,26 @@ class LineContactLaw:
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load and its exact derivative by the approach, N and N/mm."""
-        pressed, place, closed = self._place(approach, effective_radius)
+        delta, radius = np.broadcast_arrays(
+            np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
+        )
+        closed = delta > 0.0
+        if closed.all():
+            return self._closed(delta, radius)
+        # Most pins of a drive are open: they cost nothing.
+        load, stiffness = np.zeros(delta.shape), np.zeros(delta.shape)
+        load[closed], stiffness[closed] = self._closed(delta[closed], radius[closed])
+        return load, stiffness
+
+    def _closed(self, pressed: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Load and stiffness of contacts that are all closed."""
+        place = np.log(pressed * radius / (self.length * self.length))
         w, first, second = self.table.inverse_energy.value_and_derivatives(place)
         inverse = 1.0 / w
         scale = (self.contact_modulus * self.length) * inverse
         slope = first * inverse
         load = scale * pressed * (2.0 - slope)
-        stiffness = scale * (2.0 - slope * (3.0 - 2.0 * slope) - second * inverse) * closed
+        stiffness = scale * (2.0 - slope * (3.0 - 2.0 * slope) - second * inverse)
         return load, stiffness
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:

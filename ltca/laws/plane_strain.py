@@ -57,21 +57,31 @@ class PlaneContactLaw:
             np.sqrt(4.0 * load * np.asarray(effective_radius) / (np.pi * self.contact_modulus * self.thickness))
         )
 
-    def _load(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """Invert the law: concave in the load, so Newton from below rises to the root without passing it."""
+    def _load(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Invert the law by Newton's method: load and ln(2D/b) there; concave, so it rises to the root from below.
+
+        With λ(F) = ln(2D/b) the approach is F (λ + 1/2) in its unit and its slope λ: the step ends at
+        (δ − F/2)/λ, one logarithm each.
+        """
         delta = np.asarray(approach, dtype=float)
         closed = delta > 0.0
-        target = np.where(closed, delta, 1.0)
-        scale = 2.0 / (np.pi * self.contact_modulus * self.thickness)
-        load = target / (scale * 60.0)
+        pull = np.pi * self.contact_modulus * self.thickness
+        at_unit_load = np.log(2.0 * self.datum) - 0.5 * np.log(4.0 * np.asarray(effective_radius, dtype=float) / pull)
+        # Open contacts take an approach at which the law surely holds.
+        target = np.where(closed, delta * (0.5 * pull), np.exp(2.0 * at_unit_load - 10.0))
+        logarithm = at_unit_load - 0.5 * np.log(target / 10.0)
+        load = target / (logarithm + 0.5)
         history = []
         for _ in range(60):
-            found, compliance = self.approach_and_compliance(load, effective_radius)
-            step = (target - found) / compliance
-            load = load + step
-            history.append(float(np.max(np.abs(step) / load, initial=0.0)))
-            if history[-1] < 1e-14 or (history[-1] < 1e-7 and len(history) > 2):
-                return np.where(closed, load, 0.0)
+            logarithm = at_unit_load - 0.5 * np.log(load)
+            following = (target - 0.5 * load) / logarithm
+            history.append(float(np.max(np.abs(following - load) / load, initial=0.0)))
+            load = following
+            if not np.all((load > 0.0) & (logarithm > 0.0)):
+                break
+            if history[-1] < 1e-7:  # quadratic: 1e-14 is left
+                logarithm = at_unit_load - 0.5 * np.log(load)
+                return np.where(closed, load, 0.0), logarithm
         raise ConvergenceError(
             f"approach beyond what the plane-strain law holds for (half-width against datum {self.datum:g} mm); "
             "relative change of the load",
@@ -80,13 +90,13 @@ class PlaneContactLaw:
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the load at an approach and its derivative, N and N/mm; zero where open."""
-        load = self._load(approach, effective_radius)
-        _, compliance = self.approach_and_compliance(load, effective_radius)
-        return load, np.where(load > 0.0, 1.0 / compliance, 0.0)
+        load, logarithm = self._load(approach, effective_radius)
+        scale = 2.0 / (np.pi * self.contact_modulus * self.thickness)
+        return load, np.where(load > 0.0, 1.0 / (scale * logarithm), 0.0)
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return ∫ F dδ = F δ − ∫ δ dF, N·mm."""
-        load = self._load(approach, effective_radius)
+        load, _ = self._load(approach, effective_radius)
         scale = 2.0 / (np.pi * self.contact_modulus * self.thickness)
         # ∫₀^F F′ (ln(2D/b) + 1/2) dF′ = F²/2 (ln(2D/b) + 3/4), since ln b grows like ln(F)/2.
         logarithm = np.log(2.0 * self.datum / self._half_width_of(np.maximum(load, 1e-300), effective_radius))
@@ -94,9 +104,9 @@ class PlaneContactLaw:
 
     def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the contact half-width, mm (Johnson, Eq. 4.43)."""
-        return self._half_width_of(self._load(approach, effective_radius), effective_radius)
+        return self._half_width_of(self._load(approach, effective_radius)[0], effective_radius)
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the peak pressure, MPa (Johnson, Eq. 4.45)."""
-        line_load = self._load(approach, effective_radius) / self.thickness
+        line_load = self._load(approach, effective_radius)[0] / self.thickness
         return np.sqrt(line_load * self.contact_modulus / (np.pi * np.asarray(effective_radius)))

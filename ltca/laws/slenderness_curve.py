@@ -8,12 +8,12 @@ contacts of a usual batch that takes about half the time of scipy's own evaluati
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import factorial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 FloatArray = NDArray[np.float64]
 
@@ -48,6 +48,8 @@ def quintic_spline_pieces(values: FloatArray) -> FloatArray:
     >>> bool(np.isclose(pieces[:, 2].sum(), 81.0))
     True
     """
+    from scipy.interpolate import make_interp_spline  # 0.2 s to import, for curves that are not read from a file
+
     count = values.size
     if count < 8:
         raise ValueError(f"a quintic spline needs at least 8 values, not {count}")
@@ -81,6 +83,8 @@ def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray
     >>> bool(np.isclose(np.polyval(pieces[::-1, 2], 0.5), 2.5**4))
     True
     """
+    from scipy.interpolate import BPoly, PPoly
+
     count = values.size
     rise = np.diff(values)
     before, after = slopes[:-1], slopes[1:]
@@ -134,6 +138,16 @@ class SlendernessCurve:
     def through(cls, nodes: FloatArray, values: FloatArray, light_slope: float) -> SlendernessCurve:
         """Curve through positive values at uniform nodes."""
         return cls(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values), light_slope)
+
+    @classmethod
+    def of_content(cls, content: dict[str, Any]) -> SlendernessCurve:
+        """Return the curve whose `content` this is, to the last bit."""
+        return cls(**content | {"coefficients": np.array(content["coefficients"])})
+
+    def content(self) -> dict[str, Any]:
+        """Return the curve as plain numbers, for a file."""
+        own = {item.name: getattr(self, item.name) for item in fields(self)}
+        return own | {"coefficients": self.coefficients.tolist()}
 
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""

@@ -12,15 +12,18 @@ import numpy as np
 from ltca.drive.parts import Drive, LengthProfile
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.reading.deviation_checks import (
+    deviation_bound,
     find_deviation_problems,
     find_disc_problems,
     find_flank_problems,
     named_in_disc,
 )
 
-# Fits that are exact in the definition (r_i + 2 r_BR = r_o) must survive the rounding of their sum.
-ROUNDING = 1e-9
+# Parts that overlap are pressed together when they are assembled, and answered. Bodies strained by a tenth are beyond linear
+# elasticity whatever they are made of; sharper limits need a load and are those of `ltca.analysis.half_width_guard`.
+ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 
 
 def find_contradictions(drive: Drive) -> list[str]:
@@ -107,13 +110,13 @@ def _flank(drive: Drive) -> Iterator[str]:
             f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: leaves a root radius of "
             f"{profile.root_radius:.6g} mm, must be greater than 0 mm"
         )
-    # Gap of every pin in the nominal position: Δr_P − ΔR_C cos ψ, ψ between 0 and asin(e z_P/R).
-    steepest = float(np.sqrt(1.0 - (pitch_radius / profile.generating_radius) ** 2))
-    gap = disc.equidistant_offset - max(disc.shifting_offset, disc.shifting_offset * steepest)
-    if gap < -ROUNDING:
+    overlap = drawn_interference(drive).pins
+    bound = deviation_bound(drive)
+    if overlap > bound + ROUNDING:
         yield (
             f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
-            f"{disc.equidistant_offset - gap:.6g} mm with this shifting offset, or disc and pins interfere"
+            f"{disc.equidistant_offset + overlap - bound:.6g} mm with this shifting offset, or disc and pins overlap by "
+            f"more than {bound:g} mm, {ELASTIC}"
         )
 
 
@@ -152,10 +155,11 @@ def _bearing(drive: Drive) -> Iterator[str]:
             f"crank_bearing.inner_race_radius = {bearing.inner_race_radius:g} mm: must be {bound}, or the rollers have no "
             f"room below the outer race (outer_race_radius = {bearing.outer_race_radius:g} mm)"
         )
-    elif 2.0 * bearing.roller_radius > space + ROUNDING:
+    elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
         yield (
-            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most {0.5 * space:.6g} mm, "
-            "half the space between the races"
+            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most "
+            f"{bearing.roller_radius - 0.5 * (overlap - elastic):.6g} mm, or it overlaps the races by more than {elastic:g} mm, "
+            f"{ELASTIC}"
         )
     elif 2.0 * bearing.roller_radius < 0.9 * space:
         yield (
@@ -183,10 +187,13 @@ def _bearing(drive: Drive) -> Iterator[str]:
 def _holes(drive: Drive) -> Iterator[str]:
     shaft, e = drive.pin_shaft, drive.crank.eccentricity
     play = shaft.hole_radius - shaft.pin_radius
-    if play < e - ROUNDING:
+    # Pins in tight holes push the disc along the eccentricity: by half of it they would lead it no more.
+    most = min(deviation_bound(drive), 0.5 * e)
+    smallest = shaft.pin_radius + e - drive.clearance.pin_hole - most
+    if shaft.hole_radius < smallest - ROUNDING:
         yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {shaft.pin_radius + e:g} mm, "
-            "pin radius plus eccentricity"
+            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, or it overlaps its pin by more "
+            f"than {most:g} mm, {ELASTIC} (and half the eccentricity at most)"
         )
     elif play > 1.5 * e:
         yield (
@@ -200,11 +207,11 @@ def _holes(drive: Drive) -> Iterator[str]:
         )
     radius, circle = drive.hole_radius, shaft.pin_circle_radius
     # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
-    smallest = shaft.pin_radius + e
+    fitting = shaft.pin_radius + e
 
     def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> str:
         bound = shaft.hole_radius - excess
-        if bound > smallest or play < e - ROUNDING:
+        if bound > fitting or play < e - ROUNDING:
             return f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: {trouble}; must be less than {max(bound, 0.0):.6g} mm"
         return f"pin_shaft.pin_circle_radius = {circle:g} mm: {trouble}; must be {circle_bound}"
 

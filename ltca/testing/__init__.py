@@ -5,10 +5,13 @@ Modules in the order data passes:
 ==================  ============================================================
 random_drives       Random but valid drives, to try the analysis on what nobody thought of
 practical_drives    Drives as people draw them: round numbers, zeros and equalities, steel, aluminium or plastic
+actual_parts        Every part of a drive at its actual place, written out from the definition apart from `ltca.geometry`
 balance_check       Whether a pose balances, found without the code that balances it
 field_changes       One sensible change for every leaf field of a drive: what the contract is walked with
 malformed           Malformed drive and study files by a seeded generator: values, texts, structures and bytes nobody
                     should write
+elastic_cylinder    An elastic cylinder between two rigid planes, solved with its true boundary: what half-spaces are
+                    measured by
 closed_form_bodies  Influence coefficients of bodies in closed form: a coefficient file without finite elements
 ==================  ============================================================
 """

@@ -6,15 +6,18 @@ no clearance, equal radii, full and hundredth torque.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.random import Generator
 
-from ltca.drive.parts import Drive
+from ltca.drive.deviations import OneDisc, OneEccentric, Runout
+from ltca.drive.parts import Clearance, Drive, Installation
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
+from ltca.reading.physical_checks import is_sound
 
 MATERIALS = {
     "steel": (206e3, 0.3, 1200.0),
@@ -66,7 +69,7 @@ def practical_drive(seed: int) -> tuple[Drive, float]:
     Returns
     -------
     Drive
-        With its rated torque or a hundredth of it.
+        With its rated torque or a hundredth of it, one to three discs, either member held.
     float
         φ_C, rad; one in four is zero.
     """
@@ -75,7 +78,59 @@ def practical_drive(seed: int) -> tuple[Drive, float]:
         drawn = _draw(random)
         if drawn is not None:
             break
-    return drawn, float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+    return _built_in(random, drawn), float(random.choice([0.0, *random.uniform(0.0, 2.0 * np.pi, 3)]))
+
+
+def _built_in(random: Generator, drive: Drive) -> Drive:
+    """One to three discs under so much more torque, small errors of one of them, either member held."""
+    discs = int(random.choice([1, 1, 2, 2, 3]))
+    load = replace(drive.load, torque=discs * drive.load.torque, light_torque=discs * drive.load.light_torque)
+    disc, crank = replace(drive.disc, number_of_discs=discs), drive.crank
+    if discs > 1 and random.uniform() < 0.5:
+        size = float(random.choice([0.002, 0.005, 0.01])) * min(1.0, drive.crank.eccentricity)
+        own = [OneDisc(runout=Runout(amount=size, angle=float(random.choice([0.0, 1.0]))))]
+        disc = replace(disc, of=(*own, *[OneDisc()] * (discs - 1)))
+        if random.uniform() < 0.5:
+            crank = replace(crank, of=(*[OneEccentric()] * (discs - 1), OneEccentric(eccentricity_error=size)))
+    held: Any = str(random.choice(["pin-shaft", "pin-wheel"]))
+    return replace(drive, disc=disc, crank=crank, load=load, installation=Installation(held=held))
+
+
+def preloaded_drive(seed: int) -> tuple[Drive, float]:
+    """Return a drive as `practical_drive` does whose parts overlap as drawn, and a crank angle in rad.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative; the same seed gives the same drive.
+
+    Returns
+    -------
+    Drive
+        Pins and flank, rollers and races, shaft pins and holes overlap, or some of them: by micrometres to a fortieth of the
+        smallest pin or roller radius.
+    float
+        φ_C, rad.
+    """
+    random = np.random.default_rng((seed, 1))
+    while True:
+        drive, angle = practical_drive(int(random.integers(2**32)))
+        wheel, disc, bearing, shaft = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.pin_shaft
+        largest = min(
+            0.025 * min(wheel.pin_radius, bearing.roller_radius, shaft.pin_radius), 0.5 * drive.crank.eccentricity
+        )
+        size = min(float(random.choice([0.001, 0.005, 0.01, 0.02, 0.05])), largest)
+        which = int(random.integers(1, 8))
+        if which & 1:
+            shift = float(random.choice([0.0, 0.5 * size, -0.5 * size]))
+            disc = replace(disc, equidistant_offset=-size, shifting_offset=shift)
+        if which & 2:
+            bearing = replace(bearing, roller_radius=bearing.roller_radius + 0.5 * size)
+        if which & 4:
+            shaft = replace(shaft, hole_radius=shaft.hole_radius - size)
+        drive = replace(drive, disc=disc, crank_bearing=bearing, pin_shaft=shaft, clearance=Clearance())
+        if is_sound(drive):
+            return drive, angle
 
 
 def _draw(random: Generator) -> Drive | None:

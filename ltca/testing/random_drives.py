@@ -7,15 +7,18 @@ nearly every point is a valid drive. Zeros give the plainest one.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.random import Generator
 
-from ltca.drive.parts import Drive
+from ltca.drive.deviations import DiscClearance, OneDisc, OneEccentric, PlacementErrors, RollerErrors, Runout
+from ltca.drive.parts import Drive, Installation
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.drive_file import build_drive
+from ltca.reading.physical_checks import find_contradictions
 
 COORDINATES = 34
 REFERENCE_PRESSURE = 2000.0
@@ -150,6 +153,63 @@ def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
         return build_drive(table), angle
     except DriveError:
         return None
+
+
+def random_reducer(seed: int) -> tuple[Drive, float] | None:
+    """Return a drive of one to three discs with either member held, and a crank angle in rad; None where none fits.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative: of the point that `random_drive` takes, and of what each disc has of its own.
+    """
+    random = np.random.default_rng(seed)
+    drawn = random_drive(random.random(COORDINATES).tolist())
+    if drawn is None:
+        return None
+    drive, angle = drawn
+    discs = int(random.choice([1, 1, 2, 3]))
+    spread = 2.0 * np.pi * np.arange(discs) / discs
+    away = random.choice([0.0, 0.3]) * random.uniform(-1.0, 1.0, discs)
+    phases = () if random.uniform() < 0.5 else tuple((spread + away).tolist())
+    size = float(random.choice([0.0, 1e-3])) * drive.pin_wheel.pin_radius
+    size = min(size, 0.03 * drive.crank.eccentricity)
+    disc, crank = replace(drive.disc, number_of_discs=discs, phases=phases), drive.crank
+    if size > 0.0:
+        own = [_own_errors(random, drive, size) for _ in range(discs)]
+        eccentrics = [_own_eccentric(random, drive, size) for _ in range(discs)]
+        disc, crank = replace(disc, of=tuple(own)), replace(crank, of=tuple(eccentrics))
+    load = replace(drive.load, torque=discs * drive.load.torque)
+    held: Any = str(random.choice(["pin-shaft", "pin-wheel"]))
+    found = replace(drive, disc=disc, crank=crank, load=load, installation=Installation(held=held))
+    return None if find_contradictions(found) else (found, angle)
+
+
+def _own_errors(random: Generator, drive: Drive, size: float) -> OneDisc:
+    """What one disc has of its own: nothing, or some of runout, clearances and errors of its holes and rollers."""
+    given = random.uniform(size=4) < 0.5
+    holes, rollers = drive.pin_shaft.number_of_pins, drive.crank_bearing.number_of_rollers
+    scattered = _Scattered(random, scatter=size / 3.0)
+    return OneDisc(
+        runout=Runout(amount=size * random.uniform(), angle=2.0 * np.pi * random.uniform()) if given[0] else None,
+        clearance=DiscClearance(bearing=size * random.uniform()) if given[1] else None,
+        hole_errors=PlacementErrors(**_tuples(scattered.errors(holes))) if given[2] else None,
+        roller_errors=(
+            RollerErrors(**_tuples(scattered.errors(rollers, "tangential", "diameter"))) if given[3] else None
+        ),
+    )
+
+
+def _own_eccentric(random: Generator, drive: Drive, size: float) -> OneEccentric:
+    """An eccentric with errors of its own, or none."""
+    if random.uniform() < 0.5:
+        return OneEccentric()
+    error, ahead = (size * random.uniform(-1.0, 1.0, 2)).tolist()
+    return OneEccentric(eccentricity_error=error, phase_error=ahead / drive.crank.eccentricity)
+
+
+def _tuples(errors: dict[str, list[float]]) -> dict[str, Any]:
+    return {name: tuple(values) for name, values in errors.items()}
 
 
 class _Lengths:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND, check_half_widths
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.grids import GridCompliance
+from ltca.drive.single_discs import single_discs, without_own
 from ltca.errors import DriveError
+from ltca.reading.changes import with_fields
+from ltca.testing.practical_drives import practical_drive
 
 
 def check(drive, radius, pin=(0.0, 0.0), outer=0.0, inner=0.0):
@@ -45,3 +52,44 @@ def test_rollers_are_bounded_by_their_own_radius(paper_cases, place, name):
     check(drive, (2.0, 2.0), **{place: 0.999 * bound})
     with pytest.raises(DriveError, match=name):
         check(drive, (2.0, 2.0), **{place: 1.001 * bound})
+
+
+def one_disc_of(seed):
+    """The drive of a seed with one of its discs, which carries its part of the torque, and the pin shaft held."""
+    drive, angle = practical_drive(seed)
+    alone, torque = single_discs(without_own(drive))[0], drive.load.torque / drive.disc.number_of_discs
+    return with_fields(alone, {"installation.held": "pin-shaft", "load.torque": torque}), angle
+
+
+def test_tables_are_warned_of_where_the_flank_leaves_its_parabola():
+    """Curvature that changes within the contact: tables 1.5 % beside the true separation while b/r is 0.07."""
+    drive, angle = one_disc_of(116)
+    torque = 100.0 * drive.load.torque
+    found = analyse(drive, np.array([angle]), torque)
+    (warning,) = found.warnings
+    told = re.search(r"load of wheel pin (\d+) differs by ([\d.]+) % of the largest .* take --method direct", warning)
+    assert told, warning
+    assert analyse(drive, np.array([angle]), 0.01 * torque).warnings == []
+
+
+@pytest.mark.slow
+def test_direct_has_nothing_to_warn_of():
+    """Solved anew by the true separation the loads move by 0.9 % of the largest, as the warning said to its order."""
+    drive, angle = one_disc_of(116)
+    torque = 100.0 * drive.load.torque
+    tables = analyse(drive, np.array([angle]), torque)
+    direct = analyse(drive, np.array([angle]), torque, HalfSpace(method="direct"))
+    assert direct.warnings == []
+    loads = direct.full.response.pin_load
+    pin = int(re.search(r"wheel pin (\d+)", tables.warnings[0])[1])
+    told = float(re.search(r"([\d.]+) % of the largest", tables.warnings[0])[1])
+    grids = GridCompliance.of_drive(drive).respond(tables.full.crank_angle, tables.full.pose).pin_load[0]
+    difference = abs(tables.full.response.pin_load[0, pin] - grids[pin]) / grids.max()
+    assert told == pytest.approx(100.0 * difference, rel=0.05)  # two digits are told
+    moved = np.max(np.abs(tables.full.response.pin_load - loads)) / np.max(loads)
+    assert 0.005 < moved < 0.025
+
+
+def test_the_paper_is_not_warned_of(paper_cases):
+    for drive in paper_cases.values():
+        assert analyse(drive, np.linspace(0.0, 6.0, 7)).warnings == []

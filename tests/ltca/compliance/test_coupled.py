@@ -8,6 +8,7 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance import coupled
 from ltca.compliance.coefficients import load_coefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
@@ -113,3 +114,36 @@ def test_interpolation_is_exact_for_low_harmonics():
     # Six points at a spacing of 15° on the second harmonic: (h k)^6 · 225/46080 ≈ 1e-4.
     np.testing.assert_allclose(found, np.cos(2.0 * places + 0.3), atol=2e-4)
     np.testing.assert_allclose(weights.sum(axis=-1), 1.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("near_field", ["plane-strain", "half-space"])
+def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, monkeypatch, near_field):
+    """Only contacts near to closing are unknowns; the answer is that of all of them, whichever were left out."""
+    drive = paper_cases["CS-6"]
+    model = CoupledCompliance.of_drive(drive, closed_form(drive), near_field)
+    pose = solve_equilibrium(model, ANGLES, drive.wheel_moment()).pose
+    few = model.respond(ANGLES, pose)
+    monkeypatch.setattr(coupled, "MARGIN", np.inf)
+    everything = model.respond(ANGLES, pose)
+    within = coupled._Bodies.within
+    asked = []
+
+    def blind(bodies, margin):
+        """Leaves out what carries most: found out, and made good."""
+        asked.append(margin)
+        found = within(bodies, np.inf)
+        return found if len(asked) > 1 else [np.sort(np.argsort(loads, axis=1)[:, :2], axis=1) for loads in carried]
+
+    carried = (everything.pin_load, everything.rollers.outer_load, everything.hole_load)
+    monkeypatch.setattr(coupled._Bodies, "within", blind)
+    mended = model.respond(ANGLES, pose)
+    assert len(asked) == 2
+    for other in (few, mended):
+        # Near fields settle to 1e-13 mm, at some 1e6 N/mm.
+        for name in ("pin_load", "hole_load"):
+            np.testing.assert_allclose(getattr(other, name), getattr(everything, name), atol=1e-6)
+        np.testing.assert_allclose(other.force, everything.force, atol=1e-6 * 56.0)
+        np.testing.assert_allclose(other.flank.approach, everything.flank.approach, atol=1e-12)
+        np.testing.assert_allclose(other.rollers.outer_approach, everything.rollers.outer_approach, atol=1e-12)
+        scale = np.abs(everything.tangent).max()
+        np.testing.assert_allclose(other.tangent, everything.tangent, atol=1e-9 * scale)

@@ -119,6 +119,18 @@ def test_pins_larger_than_their_flank_interfere_by_what_they_are_larger(paper_ca
     np.testing.assert_allclose(found, growth, rtol=0.0, atol=1e-12)
 
 
+def test_flanks_that_overlap_every_pin_have_no_backlash(paper_cases):
+    """The pins whose normals point at the axis were followed: a backlash of −179506′."""
+    geometry = ContactGeometry.of_drive(with_offsets(paper_cases["CS-1"], -0.01, 0.0))
+    angles = np.linspace(0.0, 2.0 * np.pi, 25)
+    for coordinate in (DISC_ROTATION, WHEEL_ANGLE):
+        for sense in (1, -1):
+            # all pins are in the same place against the flank: the ideal angle is that of least interference;
+            # overlaps grow with the rotation times 56 mm at most, so 1e-9 rad are far above their round-off of 1e-13 mm
+            np.testing.assert_allclose(first_contact(geometry, angles, coordinate, sense)[0], 0.0, atol=1e-9)
+    np.testing.assert_allclose(interference(geometry, angles), 0.01, rtol=0.0, atol=1e-11)
+
+
 def test_backlash_is_the_sum_of_both_senses_and_positive(random_drives):
     for drive in random_drives:
         geometry = ContactGeometry.of_drive(drive)

@@ -49,12 +49,12 @@ WRONG = {
         r"pin_wheel\.pin_radius = 8\.6 mm: must be less than 8\.4057\d* mm .*undercut",
     ),
     "disc and pins interfere": (
-        {"disc": {"equidistant_offset": 0.05}},
-        r"disc\.equidistant_offset = 0\.05 mm: must be at least 0\.09 mm",
+        {"disc": {"equidistant_offset": -0.42}},
+        r"disc\.equidistant_offset = -0\.42 mm: must be at least -0\.41 mm .* overlap by more than 0\.5 mm",
     ),
     "negative offsets interfere on the flank": (
-        {"disc": {"equidistant_offset": -0.08, "shifting_offset": -0.09}},
-        r"disc\.equidistant_offset = -0\.08 mm: must be at least -0\.069\d* mm",
+        {"disc": {"equidistant_offset": -0.58, "shifting_offset": -0.09}},
+        r"disc\.equidistant_offset = -0\.58 mm: must be at least -0\.569\d* mm",
     ),
     "wheel pins overlap": (
         {"pin_wheel": {"pin_radius": 19.7}},
@@ -65,8 +65,8 @@ WRONG = {
         r"pin_shaft\.pin_radius = 22 mm: must be less than 21\.4303 mm, or neighbouring pins overlap",
     ),
     "rollers too large for the races": (
-        {"crank_bearing": {"roller_radius": 5.001}},
-        r"crank_bearing\.roller_radius = 5\.001 mm: must be at most 5 mm, half the space between the races",
+        {"crank_bearing": {"roller_radius": 5.27}},
+        r"crank_bearing\.roller_radius = 5\.27 mm: must be at most 5\.2635 mm, or it overlaps the races by more than 0\.527 mm",
     ),
     "rollers loose between the races": (
         {"crank_bearing": {"roller_radius": 4.4}},
@@ -85,8 +85,8 @@ WRONG = {
         r"clearance\.bearing = 5\.5 mm: must be at most 5 mm, the roller radius",
     ),
     "hole too small for the eccentricity": (
-        {"pin_shaft": {"hole_radius": 14.07}},
-        r"pin_shaft\.hole_radius = 14\.07 mm: must be at least 14\.075 mm, pin radius plus eccentricity",
+        {"pin_shaft": {"hole_radius": 13.57}},
+        r"pin_shaft\.hole_radius = 13\.57 mm: must be at least 13\.575 mm, or it overlaps its pin by more than 0\.5 mm",
     ),
     "hole too large to lead the disc": (
         {"pin_shaft": {"pin_radius": 8.0}},
@@ -141,6 +141,15 @@ def test_sound_at_the_bound_itself(vary):
     vary(pin_shaft={"hole_radius": 10.075 + 4.0})
     vary(disc={"equidistant_offset": 0.09})
     vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0})
+
+
+def test_drawn_interference_is_answered_and_clearance_counts(vary):
+    """Oversize pins passed as errors of single parts while the same overlap was refused as drawn."""
+    vary(disc={"equidistant_offset": -0.4})
+    vary(crank_bearing={"roller_radius": 5.01})
+    vary(pin_shaft={"hole_radius": 14.0})
+    vary(crank_bearing={"roller_radius": 5.27}, clearance={"bearing": 0.06})
+    vary(pin_shaft={"hole_radius": 13.57}, clearance={"pin_hole": 0.01})
 
 
 def test_several_contradictions_are_told_together(vary):

@@ -5,18 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.equilibrium.balance import solve_equilibrium
+from ltca.analysis.engines import HalfSpace
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.geometry.interference import drawn_interference
 from ltca.testing.balance_check import find_imbalance
-from ltca.testing.practical_drives import practical_drive
+from ltca.testing.practical_drives import practical_drive, preloaded_drive
 
 
-def check_seeds(first, count):
+def check_seeds(first, count, draw=practical_drive):
     for seed in range(first, first + count):
-        drive, angle = practical_drive(seed)
-        model = HalfSpaceCompliance.of_drive(drive)
-        balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
-        assert find_imbalance(drive, model, balanced) == [], seed
+        drive, angle = draw(seed)
+        model = HalfSpace().prepare(drive).model
+        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+        assert find_imbalance(drive, model, balanced, torque=drive.load.torque) == [], seed
 
 
 def test_practical_drives_quick():
@@ -29,6 +30,23 @@ def test_five_hundred_practical_drives():
     check_seeds(20, 480)
 
 
+def test_preloaded_drives_quick():
+    check_seeds(0, 8, preloaded_drive)
+
+
+@pytest.mark.slow
+def test_a_hundred_preloaded_drives():
+    """``benchmarks/random_drives.py --preloaded`` runs thousands."""
+    check_seeds(8, 92, preloaded_drive)
+
+
+def test_preload_of_every_kind_is_drawn():
+    found = [drawn_interference(preloaded_drive(seed)[0]) for seed in range(40)]
+    for kind in ("pins", "rollers", "holes"):
+        assert any(getattr(overlaps, kind) > 5e-4 for overlaps in found)
+    assert all(max(overlaps.pins, overlaps.rollers, overlaps.holes) > 0.0 for overlaps in found)
+
+
 def test_zeros_and_equalities_are_drawn():
     """They are what people type, and what a generator of real numbers never meets."""
     drives = [practical_drive(seed)[0] for seed in range(120)]
@@ -38,6 +56,9 @@ def test_zeros_and_equalities_are_drawn():
     assert any(drive.clearance.bearing == drive.clearance.pin_hole == 0.0 for drive in drives)
     assert any(drive.crank_bearing.roller_length == drive.disc.thickness for drive in drives)
     assert {drive.load.direction for drive in drives} == {"ccw", "cw"}
+    assert {drive.disc.number_of_discs for drive in drives} == {1, 2, 3}
+    assert {drive.installation.held for drive in drives} == {"pin-shaft", "pin-wheel"}
+    assert any(drive.disc.of for drive in drives)
     assert {drive.materials.disc.youngs_modulus for drive in drives} == {206e3, 70e3, 2.6e3}
     assert min(drive.pin_wheel.number_of_pins for drive in drives) <= 8
     assert max(drive.pin_wheel.number_of_pins for drive in drives) >= 100

@@ -216,9 +216,9 @@ def test_damaged_and_foreign_batches_are_solved_again(paper, tmp_path):
 
 
 def bad_sweep(paper):
-    """Thickness so small that the torque cannot be carried, and a flank that interferes, among sound samples."""
+    """Thickness so small that the torque cannot be carried, and a flank that overlaps its pins too far, among sound samples."""
     factors = (
-        SweepFactor(path="disc.equidistant_offset", levels=(0.15, 0.05, 0.15, 0.16)),
+        SweepFactor(path="disc.equidistant_offset", levels=(0.15, -0.6, 0.15, 0.16)),
         SweepFactor(path="load.torque", levels=(3e5, 3e5, 1e8, 3e5)),
     )
     return Study(
@@ -235,14 +235,14 @@ def test_failed_samples_are_listed_with_their_drive_and_stop_nobody(paper, tmp_p
     folder = StudyFolder(path=tmp_path)
     found = run_study(bad_sweep(paper), folder, Workers())
     assert [sample for sample, _ in found.failures] == [1, 2]
-    assert "interfere" in found.failures[0][1]
+    assert "overlap" in found.failures[0][1]
     assert "cannot be carried" in found.failures[1][1]
     with xr.open_dataset(folder.results, engine="h5netcdf") as data:
         np.testing.assert_array_equal(data["failed"].values, [0, 1, 1, 0])
         np.testing.assert_array_equal(np.isfinite(data["max_pin_load"].values), [True, False, False, True])
         assert list(data["failed_sample"].values) == [1, 2]
     unsound = (tmp_path / "samples" / "sample_00000001.toml").read_text()
-    assert "disc.equidistant_offset = 0.05" in unsound
+    assert "disc.equidistant_offset = -0.6" in unsound
     heavy = load_drive(tmp_path / "samples" / "sample_00000002.toml").cases["nominal"]
     assert heavy.load.torque == 1e8
     # told again by a resumed, finished study

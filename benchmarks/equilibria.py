@@ -1,0 +1,90 @@
+"""Equilibria per second of processor time on one core: half-space, ``fe`` and ``hybrid``, and their evaluations.
+
+    python benchmarks/equilibria.py [--coefficients FILE] [--positions 360] [--rounds 3]
+
+``fe`` and ``hybrid`` start from the solution on tables as the engines do (their time includes it). Without a file of
+``cyclo derive paper --case CS-1`` the bodies are those in closed form (`ltca.testing.closed_form_bodies`), on fewer stations.
+Each figure is the best of the rounds; compare ratios of one run.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import argparse
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ltca.compliance.coefficients import load_coefficients
+from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.near_field import NEAR_FIELDS
+from ltca.compliance.response import ComplianceModel, Start
+from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.geometry.placement import position_angles
+from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import closed_form_coefficients
+
+
+def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium, float]:
+    """Return the last answer and the fewest processor seconds."""
+    seconds = np.inf
+    for _ in range(rounds):
+        start = time.process_time()
+        answer = function()
+        seconds = min(seconds, time.process_time() - start)
+    return answer, seconds
+
+
+def one_evaluation(model: ComplianceModel, angles: np.ndarray, pose: np.ndarray) -> float:
+    """Return processor seconds of one evaluation at poses, from its neighbour's start."""
+    start = Start.after(model.respond(angles, pose))
+    began = time.process_time()
+    model.respond(angles, pose + 1e-6, start)
+    return time.process_time() - began
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--coefficients", type=Path, help="of cyclo derive paper --case CS-1")
+    parser.add_argument("--positions", type=int, default=360, help="positions of a batch; default 360")
+    parser.add_argument("--rounds", type=int, default=3, help="of which the best counts; default 3")
+    arguments = parser.parse_args()
+    drive = load_drive("paper").cases["CS-1"]
+    angles, moment = position_angles(arguments.positions), drive.wheel_moment()
+    with tempfile.TemporaryDirectory() as folder:
+        path = arguments.coefficients
+        if path is None:
+            path = Path(folder) / "closed_form.nc"
+            closed_form_coefficients(drive, half_width=0.05, depth=300.0).to_netcdf(path, engine="h5netcdf")
+        coefficients = load_coefficients(path, drive)
+    tables = HalfSpaceCompliance.of_drive(drive)
+    print(f"{angles.size} positions of the paper's CS-1, one core, best of {arguments.rounds}")
+    print(f"{'':<12}{'equilibria/s':>14}{'iterations':>12}{'ms/evaluation':>15}{'time by half-space':>20}")
+    near, base = best(arguments.rounds, lambda: solve_equilibrium(tables, angles, moment))
+    models: dict[str, ComplianceModel] = {"half-space": tables}
+    models |= {name: CoupledCompliance.of_drive(drive, coefficients, field) for name, field in NEAR_FIELDS.items()}
+    for name, model in models.items():
+        found, seconds = near, base
+        if name != "half-space":
+            found, seconds = best(
+                arguments.rounds, lambda model=model: solve_equilibrium(model, angles, moment, near.pose)
+            )
+            seconds += base
+        each = min(one_evaluation(model, angles, found.pose) for _ in range(arguments.rounds)) / angles.size
+        print(
+            f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{1e3 * each:>15.3f}"
+            f"{seconds / base:>20.1f}"
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,37 @@
+"""Where the assumptions of the tables end: errors of a half-plane against an elastic cylinder with its true boundary.
+
+``python benchmarks/wide_contacts.py``: load, half-width and largest pressure at the same approach, per cent of
+`ltca.testing.elastic_cylinder.press_cylinder`, over the half-width by the radius. ``parabola`` is what the tables take for the
+separation, ``circle`` what ``direct`` takes.
+"""
+
+from __future__ import annotations
+
+from ltca.testing.elastic_cylinder import CylinderContact, hertz_approach, press_cylinder, press_half_plane
+
+CELLS, REACH = 400, 0.4
+
+
+def errors(found: CylinderContact, right: CylinderContact) -> str:
+    """Return the three errors in per cent as a row."""
+    pairs = (
+        (found.line_load, right.line_load),
+        (found.half_width, right.half_width),
+        (found.peak_pressure, right.peak_pressure),
+    )
+    return "".join(f"{100.0 * (value / reference - 1.0):9.3f}" for value, reference in pairs)
+
+
+def main() -> None:
+    """Print the curve."""
+    titles = "".join(f"{name:>9}" for name in ("load", "width", "peak"))
+    print(f"{'b/r':>6}   parabola {titles}   circle {titles}   per cent")
+    for half_width in (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3):
+        approach = hertz_approach(half_width)
+        right = press_cylinder(approach, CELLS, REACH)
+        parabola, circle = (press_half_plane(approach, CELLS, REACH, parabola=flag) for flag in (True, False))
+        print(f"{half_width:6.2f}            {errors(parabola, right)}          {errors(circle, right)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""Which positions of many are balanced first, and the poses of those between them: seen from the crank they hardly differ."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import Start
+from ltca.geometry.pairs import DISC_COORDINATES, ContactGeometry, X, Y, disc_displacement
+
+FloatArray = NDArray[np.float64]
+
+RESOLVED = 4
+"""Leading positions in a passage of a tooth, a hole or a roller, whichever are most: a pose between two is near then."""
+WORTH = 3
+"""Positions for one leading, below which each might as well lead."""
+MOST = 8
+
+
+def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
+    """Return which positions to balance first; all of them where neighbours are no help.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        Of a disc; positions of a batch of drives all lead.
+    angle, moment : array, shape (positions,)
+        φ_C, rad, and moments on the wheel, N·mm: neighbours carry the same.
+    """
+    everything = np.arange(angle.size)
+    place = geometry.placement
+    if place.is_batch or angle.size < WORTH * RESOLVED or np.ptp(moment) > 0.0:
+        return everything
+    order = np.argsort(angle, kind="stable")
+    passages = max(place.reduction_ratio, place.hole_radii.size, place.roller_radii.size)
+    spacing = float(np.max(np.diff(angle[order])))
+    stride = min(MOST, int(2.0 * np.pi / (passages * RESOLVED * spacing))) if spacing > 0.0 else 1
+    if stride < WORTH:
+        return everything
+    return np.sort(np.append(order[:-1:stride], order[-1]))
+
+
+def pose_between(angle: FloatArray, pose: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return poses between known ones, in line as seen from the turning crank.
+
+    Parameters
+    ----------
+    angle : array, shape (positions,)
+        φ_C of the known poses, in any order, rad.
+    pose : array, shape (positions, 3 discs + 1)
+        q there.
+    wanted : array
+        φ_C of the poses to return, rad.
+
+    Examples
+    --------
+    >>> pose_between(np.array([0.0, np.pi]), np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 2]]), np.array([0.5 * np.pi])).round(9)
+    array([[0., 1., 0., 1.]])
+    """
+    order = np.argsort(angle, kind="stable")
+    seen = turned_poses(pose, -angle)[order]
+    between = np.stack([np.interp(wanted, angle[order], column) for column in seen.T], axis=1)
+    return turned_poses(between, wanted)
+
+
+def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
+    """Return inner unknowns between known ones: places on the flank in line as seen from the wheel, the rest likewise.
+
+    Parameters
+    ----------
+    angle : array, shape (positions,)
+        φ_C of the known poses, in any order, rad.
+    known : Start
+        Inner unknowns there.
+    wanted : array
+        φ_C of the poses to start at, rad.
+    ratio : float
+        u: a pin moves along the flank by φ_C/u.
+    """
+    order = np.argsort(angle, kind="stable")
+    at = angle[order]
+    behind = np.clip(np.searchsorted(at, wanted), 1, max(at.size - 1, 1))
+    before, after = order[behind - 1], order[min(at.size - 1, 1) * behind]
+    span = angle[after] - angle[before]
+    part = np.clip((wanted - angle[before]) / np.where(span > 0.0, span, 1.0), 0.0, 1.0)[:, None]
+
+    def between(values: FloatArray) -> FloatArray:
+        return np.asarray(values[before] + part * (values[after] - values[before]))
+
+    along = between(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
+    nearer = np.where(part[:, 0] < 0.5, before, after)
+    return Start(parameter=along, share=between(known.share), warm_start=known.warm_start[nearer])
+
+
+def turned_poses(pose: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return poses whose displacements are turned by angles, rad; rotations stay.
+
+    Parameters
+    ----------
+    pose : array, shape (positions, 3 discs + 1)
+        q.
+    angle : array, shape (positions,)
+        rad.
+    """
+    turned = pose.copy()
+    for first in range(0, pose.shape[1] - 1, DISC_COORDINATES):
+        place = disc_displacement(pose[:, first:]) * np.exp(1j * angle)
+        turned[:, first + X], turned[:, first + Y] = place.real, place.imag
+    return turned

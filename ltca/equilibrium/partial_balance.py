@@ -1,0 +1,123 @@
+"""Balance as many positions as have an answer: one that has none costs the others nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.equilibrium.balance import Equilibrium
+from ltca.errors import ConvergenceError
+
+FloatArray = NDArray[np.float64]
+Balance = Callable[[NDArray[np.intp], FloatArray | None], Equilibrium]
+"""What balances some positions, from poses near by if given."""
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartlyBalanced:
+    """Positions of which some may have no answer.
+
+    Attributes
+    ----------
+    positions : int
+        How many were asked for.
+    rows : array of int
+        Which have an answer, ascending.
+    found : Equilibrium
+        Of these.
+    failure : ConvergenceError or None
+        Of the first that has none.
+    """
+
+    positions: int
+    rows: NDArray[np.intp]
+    found: Equilibrium
+    failure: ConvergenceError | None
+
+    @property
+    def balanced(self) -> NDArray[np.bool_]:
+        """Which have an answer, shape (positions,)."""
+        known = np.zeros(self.positions, dtype=bool)
+        known[self.rows] = True
+        return known
+
+    def spread(self, value: Value) -> Value:
+        """Return what belongs to the found positions as that of all: no numbers where there is no answer.
+
+        Parameters
+        ----------
+        value : array with the positions on axis 0, or tuples and dataclasses of such
+            Anything else is left as it is.
+        """
+        if self.failure is None:
+            return value
+        spread: Value = self._spread(value)
+        return spread
+
+    def _spread(self, value: Any) -> Any:
+        if isinstance(value, np.ndarray) and value.ndim and value.shape[0] == self.rows.size:
+            empty = {"f": np.nan, "c": np.nan, "O": None}.get(value.dtype.kind, 0)
+            whole = np.full((self.positions, *value.shape[1:]), empty, dtype=value.dtype)
+            whole[self.rows] = value
+            return whole
+        if isinstance(value, tuple):
+            return tuple(self._spread(item) for item in value)
+        if is_dataclass(value) and not isinstance(value, type):
+            return replace(value, **{item.name: self._spread(getattr(value, item.name)) for item in fields(value)})
+        return value
+
+
+def balance_what_can_be(balance: Balance, positions: int, start: FloatArray | None = None) -> PartlyBalanced:
+    """Balance positions together, and where that fails find out which of them have an answer.
+
+    Parameters
+    ----------
+    balance : callable
+        Numbers of positions and poses to start from, or None, to balanced positions.
+    positions : int
+        How many.
+    start : array, shape (positions, coordinates), optional
+        Poses to start from; not a number where there is none.
+
+    Raises
+    ------
+    ConvergenceError
+        When no position at all has an answer: that of the first.
+    """
+    everything = np.arange(positions)
+    failures: list[ConvergenceError] = []
+    pieces: list[tuple[NDArray[np.intp], Equilibrium]] = []
+
+    def attempt(rows: NDArray[np.intp]) -> None:
+        begin = None if start is None or np.isnan(start[rows]).any() else start[rows]
+        try:
+            pieces.append((rows, balance(rows, begin)))
+        except ConvergenceError as error:
+            failures.append(error)
+            if rows.size > 1:
+                for half in np.array_split(rows, 2):
+                    attempt(half)
+
+    attempt(everything)
+    if not pieces:
+        raise failures[0]
+    rows = np.concatenate([rows for rows, _ in pieces])
+    found = _joined([piece for _, piece in pieces]) if len(pieces) > 1 else pieces[0][1]
+    # The first failure is that of all positions together, and names the worst of them and how many there are.
+    failure = failures[0] if rows.size < positions else None
+    return PartlyBalanced(positions=positions, rows=rows, found=found, failure=failure)
+
+
+def _joined(parts: list[Any]) -> Any:
+    """Join arrays, or tuples and dataclasses of them, along the positions."""
+    first = parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, tuple):
+        return tuple(_joined(list(items)) for items in zip(*parts, strict=True))
+    return type(first)(**{item.name: _joined([getattr(part, item.name) for part in parts]) for item in fields(first)})

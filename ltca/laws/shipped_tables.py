@@ -1,0 +1,88 @@
+"""Makes the tables of cylinders that ship with the package, from solutions on contact grids.
+
+    OPENBLAS_NUM_THREADS=1 python -m ltca.laws.shipped_tables
+
+writes those of `ltca.laws.line_contact` and `ltca.contact.end_pressure` anew; ``tests/ltca/laws/test_shipped_tables.py``
+compares. That takes a second, which every process would spend, and other processors would find other last digits.
+
+The nodes of the line contact are solutions of `ltca.contact.pressure_cells` on two grids, extrapolated to zero cell size
+(Richardson) with the orders measured in ``tests/analytic/test_line_contact_table.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+
+import numpy as np
+
+from ltca.contact import end_pressure
+from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
+from ltca.contact.tracked_grid import CELLS as TRACKED_CELLS
+from ltca.laws import line_contact
+from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactTable
+from ltca.laws.slenderness_curve import SlendernessCurve
+
+NODES = 31
+CELLS = 16
+# Orders of convergence when both cell counts are doubled, as measured: energy 2.7, half-width and pressure 2.2 to 2.9.
+_ENERGY_GAIN = 1.0 / (2.0**2.7 - 1.0)
+_FIELD_GAIN = 1.0 / (2.0**2.4 - 1.0)
+
+
+def tabulate_line_contact(
+    cells: int = CELLS, nodes: int = NODES, shortest: float = SHORTEST, longest: float = LONGEST
+) -> LineContactTable:
+    """Solve the dimensionless table on contact grids.
+
+    Parameters
+    ----------
+    cells : int
+        Cells over the half-width and over half the length on the finer grid; the coarser has half as many.
+    nodes : int
+        Number of nodes, uniform in ln λ.
+    shortest, longest : float
+        Range of λ = L/√(ρδ).
+
+    Returns
+    -------
+    LineContactTable
+    """
+    places = np.linspace(-2.0 * np.log(longest), -2.0 * np.log(shortest), nodes)
+    rows = np.empty((nodes, 3))
+    for row, place in zip(rows, places, strict=True):
+        slenderness = float(np.exp(-0.5 * place))
+        half_width = expected_half_width(slenderness, 1.0, 1.0)
+        for _ in range(2):
+            guess = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
+            half_width = guess.half_width
+        # Both grids must cut the contact at the same place for their difference to extrapolate.
+        coarse = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
+        fine = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells, half_width=half_width, start=coarse)
+        row[0] = (fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)) / slenderness
+        row[1] = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
+        row[2] = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
+    energy, pressure, half_width_ratio = rows.T
+    # A slender contact has δ = q/(π E*) (ln 1/δ + …), so δ E* L/F → −X/π, b² = 4 F ρ/(π E* L) and p = E* b/(2ρ).
+    return LineContactTable(
+        inverse_energy=SlendernessCurve.through(places, 1.0 / energy, 2.0 / np.pi),
+        inverse_square_pressure=SlendernessCurve.through(places, pressure**-2, 1.0),
+        inverse_square_half_width=SlendernessCurve.through(places, half_width_ratio**-2, 0.25),
+    )
+
+
+def write_tables() -> None:
+    """Write the tables into the package."""
+    ratio = dict(zip(("nodes", "ratio"), end_pressure.tabulate_cylinder_ratio(TRACKED_CELLS), strict=True))
+    contents = {
+        line_contact.TABLE: tabulate_line_contact().content(),
+        end_pressure.TABLE: {name: values.tolist() for name, values in ratio.items()},
+    }
+    for path, content in contents.items():
+        path.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if os.environ.get("OPENBLAS_NUM_THREADS") != "1":
+        raise SystemExit("set OPENBLAS_NUM_THREADS=1: the last digits of the tables depend on it")
+    write_tables()

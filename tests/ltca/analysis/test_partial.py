@@ -1,0 +1,102 @@
+"""A position without an answer costs the others nothing: partial results are kept, and marked."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ltca
+from ltca.analysis import engines
+from ltca.analysis.loaded_analysis import analyse
+from ltca.commands.program import main
+from ltca.errors import ConvergenceError
+
+ANGLES = 2.0 * np.pi * np.arange(8) / 8
+
+
+@pytest.fixture
+def failing(monkeypatch):
+    """Let positions 2 and 5 of eight have no answer at one of the torques."""
+    real = engines.solve_at_output
+
+    def fail(which):
+        def solve(model, drive, angle, torque, start=None):
+            light = np.max(torque) < 0.5 * drive.load.torque
+            bad = np.isclose(angle, ANGLES[2]) | np.isclose(angle, ANGLES[5])
+            if np.any(bad) and (which == "both" or light == (which == "light")):
+                raise ConvergenceError("no equilibrium at some crank angle", [1.0, 2.0])
+            return real(model, drive, angle, torque, start)
+
+        monkeypatch.setattr(engines, "solve_at_output", solve)
+
+    return fail
+
+
+@pytest.mark.parametrize("discs", [1, 2])
+def test_a_light_torque_that_fails_keeps_the_full_one(failing, paper_cases, discs):
+    drive = ltca.load_drive("paper").cases["CS-4"]
+    from ltca.reading.changes import with_fields
+
+    drive = with_fields(drive, {"disc.number_of_discs": discs})
+    whole = analyse(drive, ANGLES)
+    failing("light")
+    with pytest.raises(ConvergenceError, match="no equilibrium") as caught:
+        analyse(drive, ANGLES)
+    partial = caught.value.partial
+    np.testing.assert_array_equal(partial.balanced, True)
+    np.testing.assert_array_equal(np.nonzero(~partial.balanced_light)[0], [2, 5])
+    np.testing.assert_array_equal(partial.full.response.pin_load, whole.full.response.pin_load)
+    good = partial.balanced_light
+    # found in other batches: the same to what counts as balance
+    np.testing.assert_allclose(partial.light.pose[good], whole.light.pose[good], rtol=0.0, atol=1e-9)
+    assert np.all(np.isnan(partial.light.pose[~good]))
+
+
+def test_positions_without_an_answer_are_no_numbers(failing):
+    drive = ltca.load_drive("paper").cases["CS-4"]
+    whole = ltca.analyse(drive, 8)
+    failing("full")
+    with pytest.raises(ConvergenceError) as caught:
+        ltca.analyse(drive, 8)
+    partial = caught.value.partial
+    data = partial.dataset
+    assert data.attrs["status"] == "partial"
+    assert whole.dataset.attrs["status"] == "complete"
+    np.testing.assert_array_equal(data["status"].values[0], [0, 0, 1, 0, 0, 1, 0, 0])
+    # at the light torque they have one, found from first contact
+    np.testing.assert_array_equal(data["status_light"].values[0], 0)
+    known = data["status"].values[0] == 0
+    load = data["pin_load"].values[0, 0]
+    np.testing.assert_allclose(load[known], whole.dataset["pin_load"].values[0, 0][known], rtol=0.0, atol=1e-5)
+    assert np.all(np.isnan(load[~known]))
+    summary = partial.summary
+    assert summary.keys() == whole.summary.keys()
+    for key in ("max_pin_load_N", "mean_loaded_pins", "ptp_transmission_error_arcsec", "refined_max_pin_load_N"):
+        assert summary[key] is None, key
+    for key in ("ptp_transmission_error_light_arcsec", "backlash_wheel_arcmin"):
+        assert summary[key] is not None, key
+
+
+def test_nothing_at_all_is_no_partial_result(failing):
+    drive = ltca.load_drive("paper").cases["CS-4"]
+    failing("both")
+    with pytest.raises(ConvergenceError) as caught:
+        ltca.analyse(drive, crank_angle=ANGLES[[2, 5]])
+    assert caught.value.partial is None
+
+
+def test_run_keeps_what_it_has_and_says_so(failing, tmp_path, capsys):
+    failing("full")
+    words = ["run", "paper", "--case", "CS-1", "--case", "CS-4", "--positions", "8", "--out", str(tmp_path)]
+    assert main(words) == 1
+    told = capsys.readouterr()
+    assert "case CS-4: partial: 2 of 16 states have no answer" in told.err
+    data = xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf")
+    assert data.attrs["status"] == "partial"
+    assert int(data["status"].sum()) == 4
+    cases = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["cases"]
+    assert cases["CS-1"]["max_pin_load_N"] is None
+    assert (tmp_path / "figures" / "fig24_pin_load.png").exists()
