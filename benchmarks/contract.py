@@ -28,7 +28,7 @@ import numpy as np
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
-from fem.drive.solution import solve_drive
+from fem.reducer.solution import solve_reducer
 from ltca.commands.program import main as cyclo
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError, DriveError
@@ -83,11 +83,13 @@ def program(words: list[str], answer: str, extra: str = "", study: bool = False)
 
 def full_solution(drive: Drive) -> np.ndarray:
     """Full finite elements, coarse."""
-    found = solve_drive(drive, 0.5, scale=4.0)
-    contacts, pose = found.contacts, found.state.pose
-    arrays = [contacts.pin_load, contacts.roller_load_outer, contacts.pin_shaft_load, contacts.pin_pressure_max]
-    place = pose.disc_displacement
-    return np.concatenate([*arrays, [place.real, place.imag, pose.disc_rotation, pose.wheel_angle]])
+    found = solve_reducer(drive, 0.5, scale=4.0)
+    numbers = [np.array([found.wheel_angle, found.transmission_error, *found.disc_torques])]
+    for disc in found.discs:
+        contacts, pose = disc.contacts, disc.pose
+        numbers += [contacts.pin_load, contacts.roller_load_outer, contacts.pin_shaft_load, contacts.pin_pressure_max]
+        numbers.append(np.array([pose.disc_x, pose.disc_y, pose.disc_rotation]))
+    return np.concatenate(numbers)
 
 
 def optimum(drive: Drive) -> np.ndarray:

@@ -26,7 +26,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
 if TYPE_CHECKING:
-    from fem.drive.solution import FullSolution
+    from fem.drive.full_solution import FullSolution
 
 CASE, ANGLE = "CS-1", 0.5
 STAGES = ("guess", "coarse", "mesh", "assembly and factorisation", "contact and pose", "check")

@@ -8,8 +8,9 @@ shapes        Exact shape of each body of a drive: closed curves with names, in 
 mesh          Meshes of single bodies: size field, triangulation, quality, files
 body          One meshed body: elasticity, its boundary zones, its compliance, its stresses
 contact       Contact between condensed bodies: mortar integrals of a pair and pressures that never pull
-drive         The whole drive at one crank angle: expected contacts, graded meshes, condensed model, loaded pose,
-              results
+drive         One disc with wheel, crank and pin shaft at one crank angle: expected contacts, graded meshes, condensed
+              model, loaded pose, results
+reducer       All discs of a drive on one wheel, either member held, and the files of a solution
 coefficients  Influence coefficients of the bodies: places, loads, derivation
 referee       The same problem given to another code
 pictures      Pictures of meshes and solutions

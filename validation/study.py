@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
-from validation.compare.derived_coefficients import coefficients_of, nominal_coefficients_of
+from validation.compare.derived_coefficients import coefficients_of, disc_coefficients_of, nominal_coefficients_of
 from validation.compare.finite_element_positions import FullPosition, Settings, solve_position
+from validation.compare.model_positions import DiscCoefficients
 from validation.levels.closed_forms import check_closed_forms
 from validation.levels.coefficients import check_file, halved_mesh_row
 from validation.levels.disc_stresses import disc_stress_rows
@@ -75,15 +76,15 @@ class Study:
         By case.
     flexibility : dict of str to FlexibilityEffect
         By case.
-    coefficients : dict of str to InfluenceCoefficients
-        By case.
+    coefficients : dict of str to InfluenceCoefficients or tuple of them
+        By case, of several discs of each.
     """
 
     plan: Plan
     rows: tuple[Row, ...]
     compared: dict[str, list[ComparedPosition]]
     flexibility: dict[str, FlexibilityEffect]
-    coefficients: dict[str, InfluenceCoefficients]
+    coefficients: dict[str, DiscCoefficients]
 
 
 def plan_study(
@@ -164,25 +165,26 @@ def run_validation(plan: Plan, folder: Path, step: Callable[[str], None], say: C
 
 def _before_positions(
     plan: Plan, folder: Path, step: Callable[[str], None], say: Callable[[str], None]
-) -> tuple[list[Row], list[Row], dict[str, InfluenceCoefficients], list[Row]]:
+) -> tuple[list[Row], list[Row], dict[str, DiscCoefficients], list[Row]]:
     """Return the rows of levels 1 and 3, the coefficients of all cases and the rows of level 4."""
     case, drive = next(iter(plan.drives.items()))
     step("closed forms")
     one = check_closed_forms(drive)
     step("printed results")
     three = compare_printed_results()
-    coefficients: dict[str, InfluenceCoefficients] = {}
+    coefficients: dict[str, DiscCoefficients] = {}
     four: list[Row] = []
     for name, own in plan.drives.items():
         step(f"coefficients of {name}")
-        dataset, coefficients[name] = coefficients_of(own, name, folder, progress=say)
-        four += check_file(dataset, name, "strain")
+        datasets, coefficients[name] = disc_coefficients_of(own, name, folder, progress=say)
+        four += [row for label, dataset in datasets.items() for row in check_file(dataset, label, "strain")]
     step("coefficients of the bodies in plane stress")
-    stress, _ = coefficients_of(drive, case, folder, plane="stress", progress=say)
-    four += check_file(stress, case, "stress")
+    label, alone = first_disc(drive, case)
+    stress, _ = coefficients_of(alone, case, folder, plane="stress", progress=say)
+    four += check_file(stress, label, "stress")
     if plan.level == "full":
-        finer, _ = coefficients_of(drive, case, folder, size=0.5, progress=say)
-        four.append(halved_mesh_row(finer, case))
+        finer, _ = coefficients_of(alone, case, folder, size=0.5, progress=say)
+        four.append(halved_mesh_row(finer, label))
     return one, three, coefficients, four
 
 
@@ -190,20 +192,41 @@ def _model_rows(
     plan: Plan,
     compared: dict[str, list[ComparedPosition]],
     full: dict[str, list[FullPosition]],
-    coefficients: dict[str, InfluenceCoefficients],
+    coefficients: dict[str, DiscCoefficients],
     folder: Path,
     say: Callable[[str], None],
 ) -> list[Row]:
-    """Return the rows of level 5."""
+    """Return the rows of level 5; what the models owe each other is shown by the first disc alone."""
     first, last = next(iter(plan.drives)), list(plan.drives)[-1]
     positions = [item for items in compared.values() for item in items]
     rows = [row for item in positions for row in (*compare_position_rows(item), *disc_stress_rows(item))]
-    _, stress = coefficients_of(plan.drives[first], first, folder, plane="stress", progress=say)
-    rows += compare_models(plan.drives[first], first, np.array(plan.crank_angles), coefficients[first], stress)
+    label, alone = first_disc(plan.drives[first], first)
+    _, stress = coefficients_of(alone, first, folder, plane="stress", progress=say)
+    own = coefficients[first]
+    strain = own[0] if isinstance(own, tuple) else own
+    rows += compare_models(alone, label, np.array(plan.crank_angles), strain, stress)
     shared = nominal_coefficients_of(plan.drives[last], last, folder, progress=say)
     if shared is not None:
         rows += shared_file_rows(compare_case(plan.drives[last], full[last], shared))
     return rows
+
+
+def first_disc(drive: Drive, case: str) -> tuple[str, Drive]:
+    """Return the first disc alone under an equal part of the torque, and what rows call it: the drive itself if it is all.
+
+    Parameters
+    ----------
+    drive : Drive
+        In the case.
+    case : str
+        Its name.
+    """
+    single, *others = single_discs(drive)
+    if not others:
+        return case, single
+    count, load = 1 + len(others), drive.load
+    share = replace(load, torque=load.torque / count, light_torque=load.light_torque / count)
+    return f"{case}, disc 0 alone", replace(single, load=share)
 
 
 def _solve_positions(
@@ -215,7 +238,7 @@ def _solve_positions(
         solved[case] = []
         for angle in plan.crank_angles:
             step(f"full FE of {case} at {angle:.4g} rad")
-            solved[case].append(
+            solved[case].extend(
                 solve_position(
                     drive,
                     case,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,7 +55,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out",
         metavar="FILE",
         type=path_argument("--out"),
-        help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}",
+        help=f"file for the coefficients; default {default_folder('<drive>', 'derive') / COEFFICIENTS}; discs cut otherwise "
+        "get one each, its name ending in _disc_ and the number of the first of them",
     )
     parser.add_argument(
         "--check",
@@ -87,10 +89,30 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.reading.coefficient_file import require_replaceable
 
     name, case, drive = chosen_drive(arguments)
-    out = arguments.out or default_folder(name, "derive") / COEFFICIENTS
-    with claimed_file(out, "derive"):
-        require_replaceable(out)
-        return _derive(name, case, drive, arguments, out)
+    out: Path = arguments.out or default_folder(name, "derive") / COEFFICIENTS
+    shapes = _distinct_discs(drive, keep_clearance=not arguments.without_clearance)
+    files = [out if len(shapes) == 1 else out.with_stem(f"{out.stem}_disc_{discs[0]}") for _, discs in shapes]
+    status = 0
+    with ExitStack() as claims:
+        for file in files:
+            claims.enter_context(claimed_file(file, "derive"))
+            require_replaceable(file)
+        for (single, discs), file in zip(shapes, files, strict=True):
+            if drive.disc.number_of_discs > 1:
+                print(f"disc{'s' if len(discs) > 1 else ''} {', '.join(map(str, discs))}:")
+            status = max(status, _derive(name, case, single, arguments, file))
+    return status
+
+
+def _distinct_discs(drive: Drive, *, keep_clearance: bool) -> list[tuple[Drive, list[int]]]:
+    """The drives of one disc whose bodies differ, and the numbers of the discs that each stands for."""
+    from ltca.drive.single_discs import nominal_shape, single_discs
+
+    shapes: dict[str, tuple[Drive, list[int]]] = {}
+    for number, single in enumerate(single_discs(drive)):
+        fingerprint = nominal_shape(single, keep_clearance=keep_clearance).shape_fingerprint()
+        shapes.setdefault(fingerprint, (single, []))[1].append(number)
+    return list(shapes.values())
 
 
 def _derive(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> int:
@@ -137,18 +159,34 @@ def _check_file(arguments: argparse.Namespace) -> int:
             raise CycloError(f"--{option.replace('_', '-')}: has no meaning with --check, which derives nothing")
     if not Path(arguments.check).is_file():
         raise CycloError(f"--check {arguments.check}: no such file")
-    from fem.coefficients.fit import check_against_drive
     from ltca.reading.coefficient_file import read_coefficients
     from ltca.reading.coefficient_laws import check_coefficients
 
     dataset = read_coefficients(Path(arguments.check), lawful=False)
     checks = check_coefficients(dataset)
     if arguments.drive is not None:
-        _, _, drive = chosen_drive(arguments)
-        checks += check_against_drive(dataset, drive, arguments.check)
+        checks += _check_against_discs(dataset, chosen_drive(arguments)[2], arguments.check)
     print(f"{arguments.check}: {dataset.sizes['station']} stations, plane {dataset.attrs['plane']}")
     _print_checks(dataset, checks)
     return 0 if all(check.passed for check in checks) else 1
+
+
+def _check_against_discs(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
+    """Check a file against the disc of a drive that it belongs to; of several it must be one of them."""
+    from fem.coefficients.fit import check_against_drive
+
+    shapes = _distinct_discs(drive, keep_clearance=True)
+    refusals = []
+    for single, discs in shapes:
+        try:
+            found = check_against_drive(dataset, single, source)
+        except CycloError as error:
+            refusals.append(error)
+            continue
+        if len(shapes) > 1:
+            print(f"{source}: belongs to disc {', '.join(map(str, discs))} of {drive.name}")
+        return found
+    raise refusals[0]
 
 
 def _print_checks(dataset: xr.Dataset, checks: tuple[Check, ...]) -> None:

@@ -6,13 +6,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import BODIES, add_position_arguments, chosen_drive
+from fem.commands.position_arguments import add_position_arguments, body_files, chosen_drive, disc_prefix
 from ltca.reading.arguments import add_out_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem.drive.solution import FullSolution
+    from fem.drive.full_solution import FullSolution
+    from fem.reducer.solution import ReducerSolution
     from ltca.drive.parts import Drive
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
@@ -49,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Solve the drive; write ``fem.nc``, ``summary.json``, ``.vtu`` of each body and pictures.
+    """Solve the drive; write ``fem.nc``, ``summary.json``, ``.vtu`` of each body and pictures, those by disc.
 
     Returns
     -------
@@ -66,13 +67,12 @@ def execute(arguments: argparse.Namespace) -> int:
     referee = _referee(arguments.referee)
     name, case, drive = chosen_drive(arguments)
     out = arguments.out or default_folder(name, "fem")
-    writes = ["fem.nc", "fem.vtm", "summary.json", *(f"{body}.vtu" for body in BODIES)]
-    if not arguments.no_pictures:
-        writes += ["von_mises.png", "contacts.png", "deformed.png"]
-    if arguments.export or referee:
-        writes.append("calculix.inp")
-    if referee:
-        writes.append("calculix.dat")
+    discs = drive.disc.number_of_discs
+    writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
+    own = [] if arguments.no_pictures else ["von_mises.png", "contacts.png", "deformed.png"]
+    own += ["calculix.inp"] if arguments.export or referee else []
+    own += ["calculix.dat"] if referee else []
+    writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
     with claimed_folder(out, "fem", writes=writes):
         _solve_and_write(name, case, drive, arguments, out, referee)
     return 0
@@ -87,13 +87,13 @@ def _solve_and_write(
     referee: Callable[[FullSolution, Path], None] | None,
 ) -> None:
     from fem.drive.fields import recover_fields
-    from fem.drive.solution import solve_drive
-    from fem.drive.solution_files import write_solution
+    from fem.reducer.solution import solve_reducer
+    from fem.reducer.solution_files import write_solution
     from ltca.output.progress import steps
 
     title = f"{name}, {case}, {arguments.angle:g} rad"
     with steps() as show:
-        solution = solve_drive(
+        solution = solve_reducer(
             drive,
             arguments.angle,
             torque=arguments.torque,
@@ -104,32 +104,39 @@ def _solve_and_write(
             progress=show,
         )
         show("files")
-        fields = recover_fields(solution.model, solution.state, state=arguments.plane)
+        fields = [recover_fields(disc.model, disc.state, state=arguments.plane) for disc in solution.discs]
         write_solution(solution, fields, case, out)
     load = drive.load_words(arguments.torque)
     print(
         f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
     )
-    _print_contacts(solution)
-    if not arguments.no_pictures:
-        from fem.pictures.solution_pictures import draw_solution
+    count, problem = len(solution.discs), ""
+    for number, disc in enumerate(solution.discs):
+        if count > 1:
+            share = solution.torque_share[number]
+            print(f"disc {number}, {disc.state.wheel_moment / 1e3:.6g} N·m on the wheel, {100.0 * share:.2f} % of it")
+        _print_contacts(disc)
+        if not arguments.no_pictures:
+            from fem.pictures.solution_pictures import draw_solution
 
-        problem = draw_solution(solution, fields, title, out)
-        if problem:
-            print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
-    if arguments.export or referee:
-        from fem.referee.calculix_deck import write_deck
+            headline = title if count == 1 else f"{title}, disc {number}"
+            problem = draw_solution(disc, fields[number], headline, out, prefix=disc_prefix(number, count))
+    _print_drive(solution)
+    if problem:
+        print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
+    for number, disc in enumerate(solution.discs):
+        deck = out / f"{disc_prefix(number, count)}calculix.inp"
+        if arguments.export or referee:
+            from fem.referee.calculix_deck import write_deck
 
-        print(f"CalculiX deck: {write_deck(solution, out / 'calculix.inp')}")
-    if referee:
-        referee(solution, out)
+            print(f"CalculiX deck: {write_deck(disc, deck)}")
+        if referee:
+            referee(disc, deck)
     print(f"written to {out}")
 
 
 def _print_contacts(solution: FullSolution) -> None:
-    from fem.drive.solution_files import bearing_components
-
-    contacts, seconds = solution.contacts, solution.seconds
+    contacts = solution.contacts
     rows = (
         ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
         (
@@ -153,13 +160,16 @@ def _print_contacts(solution: FullSolution) -> None:
                 print(
                     f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}"
                 )
-    radial, tangential = bearing_components(contacts, solution.model.crank_angle)
+    radial, tangential = solution.bearing_components
     print(f"bearing force on the disc: radial {radial:.1f} N, tangential {tangential:.1f} N")
-    print(
-        f"wheel angle {solution.pose.wheel_angle:.6g} rad; "
-        f"largest unbalanced force {contacts.equilibrium_residual:.1e} N"
-    )
-    print(f"{solution.unknowns:,} unknowns, {solution.pose_iterations} pose iterations, {seconds['total']:.1f} s")
+
+
+def _print_drive(solution: ReducerSolution) -> None:
+    if solution.drive.wheel_is_held:
+        print(f"moment on the held wheel {solution.wheel_moment / 1e3:.6g} N·m")
+    print(f"wheel angle {solution.wheel_angle:.6g} rad; largest unbalanced force {solution.equilibrium_residual:.1e} N")
+    iterations = " + ".join(str(disc.pose_iterations) for disc in solution.discs)
+    print(f"{solution.unknowns:,} unknowns, {iterations} pose iterations, {solution.seconds['total']:.1f} s")
 
 
 def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:
@@ -171,8 +181,8 @@ def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:
 
     program = find_calculix()
 
-    def run(solution: FullSolution, out: Path) -> None:
-        for line in compare_with_calculix(solution, out, program):
+    def run(solution: FullSolution, deck: Path) -> None:
+        for line in compare_with_calculix(solution, deck, program):
             print(line)
 
     return run

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import BODIES, add_position_arguments, chosen_drive
+from fem.commands.position_arguments import add_position_arguments, body_files, chosen_drive, disc_prefix
 from ltca.reading.arguments import add_out_argument, count_argument, default_folder
 
 if TYPE_CHECKING:
@@ -49,13 +49,35 @@ def execute(arguments: argparse.Namespace) -> int:
 
     name, case, drive = chosen_drive(arguments)
     out = arguments.out or default_folder(name, "mesh")
-    writes = ("mesh.png", *(f"{body}.{ending}" for body in BODIES for ending in ("msh", "vtu")))
+    discs = drive.disc.number_of_discs
+    writes = [f"{disc_prefix(disc, discs)}mesh.png" for disc in range(discs)]
+    writes += [file for ending in ("msh", "vtu") for file in body_files(ending, discs)]
     with claimed_folder(out, "mesh", writes=writes):
         _mesh_and_write(name, case, drive, arguments, out)
     return 0
 
 
 def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
+    from fem.reducer.solution import expect_shares
+    from ltca.drive.single_discs import single_discs
+
+    print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
+    title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
+    singles = single_discs(drive)
+    if len(singles) == 1:
+        _mesh_disc(singles[0], drive.wheel_moment(), title, (0, 1), arguments, out)
+    else:
+        moments, _ = expect_shares(drive, arguments.angle, drive.wheel_moment())
+        for number, (single, moment) in enumerate(zip(singles, moments.tolist(), strict=True)):
+            print(f"disc {number}, {moment / 1e3:.6g} N·m on the wheel expected", flush=True)
+            _mesh_disc(single, moment, f"{title}, disc {number}", (number, len(singles)), arguments, out)
+    print(f"written to {out}")
+
+
+def _mesh_disc(
+    drive: Drive, wheel_moment: float, title: str, place: tuple[int, int], arguments: argparse.Namespace, out: Path
+) -> None:
+    """Mesh one disc, `place` being its number and how many there are."""
     import time
 
     from fem.drive.expected_contacts import expect_contacts
@@ -63,30 +85,34 @@ def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Name
     from fem.mesh.quality import measure_quality
     from fem.shapes import DriveShapes
 
-    title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
-
     def report(body: BodyMesh) -> None:
         print(f"{body.name}: {measure_quality(body).describe()}", flush=True)
 
-    print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     start = time.perf_counter()
-    contacts = expect_contacts(drive, arguments.angle)
+    contacts = expect_contacts(drive, arguments.angle, wheel_moment=wheel_moment)
     shapes = DriveShapes.of_drive(drive)
     meshes = mesh_drive(shapes, contacts, scale=arguments.size, order=arguments.order, report=report)
     print(
         f"{meshes.unknowns:,} unknowns in {len(meshes.bodies)} bodies, {time.perf_counter() - start:.2f} s", flush=True
     )
-    _write_files(meshes, out)
-    _draw(drive, shapes, contacts, meshes, out / "mesh.png", f"{title}: {meshes.unknowns:,} unknowns")
-    print(f"written to {out}")
+    _write_files(meshes, out, place)
+    _draw(
+        drive,
+        shapes,
+        contacts,
+        meshes,
+        out / f"{disc_prefix(*place)}mesh.png",
+        f"{title}: {meshes.unknowns:,} unknowns",
+    )
 
 
-def _write_files(meshes: DriveMeshes, out: Path) -> None:
-    from fem.mesh.mesh_file import write_msh, write_vtu
+def _write_files(meshes: DriveMeshes, out: Path, place: tuple[int, int]) -> None:
+    from fem.mesh.mesh_file import body_stem, write_msh, write_vtu
 
     for body in meshes.bodies:
-        write_msh(body, out / f"{body.name}.msh")
-        write_vtu(body, out / f"{body.name}.vtu")
+        stem = body_stem(body.name, *place)
+        write_msh(body, out / f"{stem}.msh")
+        write_vtu(body, out / f"{stem}.vtu")
 
 
 def _draw(

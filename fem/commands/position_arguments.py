@@ -20,6 +20,25 @@ BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("pin", "roller",
 """Names of all bodies, those of pins and rollers as patterns."""
 
 
+def disc_prefix(disc: int, discs: int) -> str:
+    """Return what the names of files of one disc begin with: nothing where it is the only one."""
+    return "" if discs == 1 else f"disc_{disc}_"
+
+
+def body_files(ending: str, discs: int) -> list[str]:
+    """Return the names of all files of bodies, those of pins and rollers as patterns.
+
+    Parameters
+    ----------
+    ending : str
+        Of the files.
+    discs : int
+        How many discs have such files.
+    """
+    names = BODIES if discs == 1 else ("disc_[0-9]*",)
+    return [f"{name}.{ending}" for name in names]
+
+
 def add_position_arguments(parser: argparse.ArgumentParser) -> None:
     """Add drive file, case, crank angle and element edge."""
     add_drive_argument(parser)

@@ -1,4 +1,4 @@
-"""The whole drive at one crank angle: expected contacts, graded meshes, condensed model, loaded pose, results.
+"""One disc with wheel, crank and pin shaft at one crank angle: what presses, meshes, model, loaded pose, results.
 
 Modules in the order data passes:
 
@@ -17,10 +17,9 @@ grading            Where the contacts of rigid bodies lie at a given pose, how f
                    meshes for them
 contact_results    From contact unknowns to the numbers of each part: loads, peak pressures, half-widths, forces on
                    the disc
-solution           Full solution of a drive at one crank angle: coarse, graded anew, fine, checked
+full_solution      Solution of one disc with wheel, crank and pin shaft at one crank angle, and what follows from it
+solution           The way to it: coarse, graded anew, fine, checked
 fields             Fields of a full solution on the nodes of every body, in the fixed frame at the loaded pose
 disc_stress        Stress in the disc of a full solution: along flank, bore and hole walls, and below its contacts
-solution_files     Files of a full solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over
-                   them all
 =================  ============================================================
 """

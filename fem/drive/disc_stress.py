@@ -7,6 +7,7 @@ over 5 % of the largest load of their kind.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,8 +18,9 @@ from fem.body.stress import recover_stress
 from fem.body.wall_stress import WallStress, stress_along_wall
 from fem.contact.subsurface_shear import largest_shear_below
 from fem.drive.contact_results import PairResult
+from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair
-from fem.drive.solution import FINE_SHARE, FullSolution
+from fem.drive.solution import FINE_SHARE
 
 FloatArray = NDArray[np.float64]
 
@@ -113,8 +115,8 @@ def _largest(wall: WallStress, among: NDArray[np.bool_]) -> float:
     return float(np.max(wall.stress[among])) if among.any() else float("nan")
 
 
-def summarise_stress(stress: DiscStress) -> dict[str, Any]:
-    """Return what ``summary.json`` says about the stress in the disc: lists by disc, then by part.
+def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
+    """Return what ``summary.json`` says about the stress in each disc: lists by disc, then by part.
 
     None stands for what is no number.
     """
@@ -123,43 +125,49 @@ def summarise_stress(stress: DiscStress) -> dict[str, Any]:
         return [value if np.isfinite(value) else None for value in values.tolist()]
 
     return {
-        "root_stress_MPa": [plain(stress.root_stress)],
-        "bore_stress_MPa": plain(np.array([stress.bore_stress])),
-        "hole_stress_MPa": [plain(stress.hole_stress)],
-        "pin_shear_max_MPa": [plain(stress.pin_shear)],
-        "roller_shear_max_outer_MPa": [plain(stress.roller_shear)],
-        "pin_shaft_shear_max_MPa": [plain(stress.hole_shear)],
+        "root_stress_MPa": [plain(stress.root_stress) for stress in discs],
+        "bore_stress_MPa": plain(np.array([stress.bore_stress for stress in discs])),
+        "hole_stress_MPa": [plain(stress.hole_stress) for stress in discs],
+        "pin_shear_max_MPa": [plain(stress.pin_shear) for stress in discs],
+        "roller_shear_max_outer_MPa": [plain(stress.roller_shear) for stress in discs],
+        "pin_shaft_shear_max_MPa": [plain(stress.hole_shear) for stress in discs],
     }
 
 
-def stress_variables(stress: DiscStress) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
-    """Return the stress in the disc as variables of ``fem.nc``, dimensions as in ``results.nc``."""
-    boundary = np.concatenate([np.full(len(wall.parameter), number) for number, wall in enumerate(stress.walls)])
+def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
+    """Return the stress in each disc as variables of ``fem.nc``, dimensions as in ``results.nc``."""
+    walls = [(disc, number, wall) for disc, stress in enumerate(discs) for number, wall in enumerate(stress.walls)]
 
     def per_node(values: list[Any], unit: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
         return ("wall_node",), np.concatenate(values), {"units": unit, "long_name": text}
 
-    def per_part(dimensions: tuple[str, ...], values: Any, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-        missing = len(dimensions) - np.ndim(values)
-        spread = np.reshape(np.asarray(values, dtype=float), (1,) * missing + np.shape(values))
-        return dimensions, spread, {"units": "MPa", "long_name": text}
+    def per_part(dimensions: tuple[str, ...], name: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
+        values = np.array([getattr(stress, name) for stress in discs], dtype=float)
+        parts = values.shape[1:]
+        single = (1,) * (len(dimensions) - 2 - len(parts))
+        return dimensions, values.reshape(1, len(discs), *single, *parts), {"units": "MPa", "long_name": text}
 
     largest, below = "largest tensile stress along {}, clear of contacts", "largest shear stress in the disc below {}"
     disc, crank = ("case", "disc", "position"), ("case", "disc", "crank", "position")
     return {
-        "lobe": (("lobe",), np.arange(len(stress.root_stress)), {"units": "1", "long_name": "lobe of the flank"}),
-        "wall_boundary": per_node([boundary], "1", "0 flank, 1 bore, 2 + k hole k"),
-        "wall_parameter": per_node([wall.parameter for wall in stress.walls], "rad", "θ of Eq. 1, or polar angle"),
-        "wall_stress": per_node(
-            [wall.stress for wall in stress.walls], "MPa", "stress along the wall, tension positive"
+        "lobe": (("lobe",), np.arange(len(discs[0].root_stress)), {"units": "1", "long_name": "lobe of the flank"}),
+        "wall_disc": per_node(
+            [np.full(len(wall.parameter), number) for number, _, wall in walls], "1", "number of the disc"
         ),
+        "wall_boundary": per_node(
+            [np.full(len(wall.parameter), number) for _, number, wall in walls], "1", "0 flank, 1 bore, 2 + k hole k"
+        ),
+        "wall_parameter": per_node([wall.parameter for *_, wall in walls], "rad", "θ of Eq. 1, or polar angle"),
+        "wall_stress": per_node([wall.stress for *_, wall in walls], "MPa", "stress along the wall, tension positive"),
         "wall_clear": per_node(
-            [clear.astype(int) for clear in stress.clear], "1", "1 beyond four half-widths of contacts"
+            [clear.astype(int) for stress in discs for clear in stress.clear],
+            "1",
+            "1 beyond four half-widths of contacts",
         ),
-        "root_stress": per_part((*disc, "lobe"), stress.root_stress, largest.format("the flank about each lobe root")),
-        "bore_stress": per_part(disc, stress.bore_stress, largest.format("the bore")),
-        "hole_stress": per_part((*disc, "hole"), stress.hole_stress, largest.format("the wall of each hole")),
-        "pin_shear_max": per_part((*disc, "pin"), stress.pin_shear, below.format("wheel pins")),
-        "roller_shear_max_outer": per_part((*crank, "roller"), stress.roller_shear, below.format("rollers")),
-        "pin_shaft_shear_max": per_part((*disc, "hole"), stress.hole_shear, below.format("shaft pins")),
+        "root_stress": per_part((*disc, "lobe"), "root_stress", largest.format("the flank about each lobe root")),
+        "bore_stress": per_part(disc, "bore_stress", largest.format("the bore")),
+        "hole_stress": per_part((*disc, "hole"), "hole_stress", largest.format("the wall of each hole")),
+        "pin_shear_max": per_part((*disc, "pin"), "pin_shear", below.format("wheel pins")),
+        "roller_shear_max_outer": per_part((*crank, "roller"), "roller_shear", below.format("rollers")),
+        "pin_shaft_shear_max": per_part((*disc, "hole"), "hole_shear", below.format("shaft pins")),
     }

@@ -145,7 +145,7 @@ class _RigidDrive:
         in_disc = (self.wheel_pins(pose[WHEEL_ANGLE]) - centre) * np.exp(-1j * pose[DISC_ROTATION])
         count = len(self.placement.wheel_pin_radii)
         start = self.crank_angle / self.placement.reduction_ratio + 2.0 * np.pi * np.arange(count) / count
-        return self.profile.nearest_parameter(in_disc, start)
+        return self.profile.nearest_parameter(in_disc, on_turned_flank(self.profile, start))
 
     def disc_centre(self, pose: FloatArray) -> complex:
         return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[X], pose[Y])
@@ -183,6 +183,36 @@ class _RigidDrive:
         return (
             np.concatenate([flank, bearing, hole]),
             np.vstack([flank_gradient, bearing_gradient, hole_gradient]),
+        )
+
+
+def on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray:
+    """Return about which θ of the flank lies in a direction of the disc frame: θ counts from a root, which may be turned.
+
+    Parameters
+    ----------
+    profile : FlankProfile
+        The flank.
+    direction : array
+        Polar angle in the frame of the disc, rad.
+    """
+    return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
+
+
+def require_one_disc(drive: Drive) -> None:
+    """Refuse a drive of several discs where each is a problem of its own.
+
+    Raises
+    ------
+    DriveError
+        Naming their number.
+    """
+    count = drive.disc.number_of_discs
+    if count != 1:
+        raise DriveError(
+            [
+                f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc; fem.reducer solves all on one wheel"
+            ]
         )
 
 
@@ -236,17 +266,21 @@ def _refuse_wheel_axis(drive: Drive) -> None:
 
 
 @names_unit_mistakes
-def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = None) -> ExpectedContacts:
+def expect_contacts(
+    drive: Drive, crank_angle: float, *, torque: float | None = None, wheel_moment: float | None = None
+) -> ExpectedContacts:
     """Guess places, loads and half-widths of all contacts at a crank angle.
 
     Parameters
     ----------
     drive : Drive
-        The drive in one case.
+        The drive in one case, of one disc.
     crank_angle : float
         φ_C, rad.
     torque : float, optional
-        Output torque of the whole drive, N·mm; the drive's own by default.
+        Output torque, N·mm; the drive's own by default.
+    wheel_moment : float, optional
+        External moment on the wheel that the disc carries, N·mm; that of the torque in the mean over a turn by default.
 
     Returns
     -------
@@ -258,8 +292,10 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
     ConvergenceError
         When nothing can carry the load.
     DriveError
-        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both.
+        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
+        several discs.
     """
+    require_one_disc(drive)
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
     _refuse_wheel_axis(drive)
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
@@ -276,7 +312,8 @@ def expect_contacts(drive: Drive, crank_angle: float, *, torque: float | None = 
     roller_stiffness = np.pi * roller_modulus * roller_length / APPROACH_LOGARITHM
     counts = [pins, rollers, len(placement.hole_radii)]
     stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.pin_shaft.stiffness], counts)
-    pose, approach = _minimise(rigid, stiffness, drive.wheel_moment(torque))
+    moment = drive.wheel_moment(torque) if wheel_moment is None else wheel_moment
+    pose, approach = _minimise(rigid, stiffness, moment)
     ends = np.cumsum(counts)[:-1]
     loads = np.split(stiffness * np.maximum(approach, 0.0), ends)
     nearly = np.split(approach > -OPEN_MARGIN * approach.max(), ends)

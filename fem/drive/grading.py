@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, on_turned_flank
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
@@ -70,7 +70,7 @@ def measure_gaps(
     centre = complex(place.race_centre(np.asarray(crank_angle))) + displacement
     pins = (place.wheel_pin_centres * np.exp(1j * wheel) - centre) / turn
     start = np.angle(place.wheel_pin_centres) + wheel - rotation
-    theta = profile.nearest_parameter(pins, start)
+    theta = profile.nearest_parameter(pins, on_turned_flank(profile, start))
     rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
     holes = place.shaft_pin_centres - (centre + place.hole_centres * turn)
     return RigidGaps(

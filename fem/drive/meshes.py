@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,6 +133,35 @@ def _plan_circles(
         classes = tuple(_class_of(float(group.half_width[index])) for group in groups)
         plan.append((shape, circle_refinements(shape, angles, classes, scale), directions[0]))
     return plan
+
+
+def require_model_memory(models: Sequence[tuple[DriveShapes, ExpectedContacts]], scale: float) -> None:
+    """Refuse models that would not fit into memory together, before any meshing; discs and races alone decide.
+
+    Parameters
+    ----------
+    models : sequence of DriveShapes and ExpectedContacts
+        Of each disc.
+    scale : float
+        Element edge as a multiple of an eighth of each Hertz half-width.
+
+    Raises
+    ------
+    MemoryLimitError
+        With the numbers.
+    MeshError
+        When the scale is no positive number.
+    """
+    if not (np.isfinite(scale) and scale > 0.0):
+        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
+    sizes = []
+    for shapes, guess in models:
+        unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, scale))
+        sizes.append(unknowns + estimate_unknowns(shapes.inner_race, race_refinements(guess, scale)))
+    what = (
+        "the model of disc and inner race" if len(sizes) == 1 else f"the models of {len(sizes)} discs and inner races"
+    )
+    require_memory(sum(sizes), sum(solution_memory(unknowns) for unknowns in sizes), what)
 
 
 def mesh_drive(

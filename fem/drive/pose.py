@@ -72,6 +72,7 @@ def solve_pose(
     start: DrivePose | None = None,
     start_active: NDArray[np.bool_] | None = None,
     limit: int = 60,
+    pose_tolerance: float = POSE_TOLERANCE,
     progress: Callable[[str], None] | None = None,
 ) -> PoseSolution:
     """Solve contact and pose together.
@@ -88,13 +89,15 @@ def solve_pose(
         First active set.
     limit : int
         Pose steps.
+    pose_tolerance : float
+        Largest increment of a pose at rest, mm.
     progress : callable, optional
         Called with one line for each step.
 
     Returns
     -------
     PoseSolution
-        Converged to `POSE_TOLERANCE` and `LOAD_TOLERANCE`.
+        Converged to that tolerance and `LOAD_TOLERANCE`.
 
     Raises
     ------
@@ -120,7 +123,7 @@ def solve_pose(
                 f"pose {iteration}: increment {1e3 * increment:.3g} µm, loads changed by {100 * changes[-1]:.2g} %, "
                 f"{contact.iterations} active-set steps"
             )
-        if increment < POSE_TOLERANCE and changes[-1] < LOAD_TOLERANCE:
+        if increment < pose_tolerance and changes[-1] < LOAD_TOLERANCE:
             return PoseSolution(
                 pose=following,
                 contact=contact,

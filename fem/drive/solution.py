@@ -18,21 +18,20 @@ from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.drive.condensed import condense_drive
-from fem.drive.contact_results import ContactResults, open_gaps, summarise_contacts
-from fem.drive.expected_contacts import ExpectedContacts, expect_contacts
+from fem.drive.contact_results import open_gaps, summarise_contacts
+from fem.drive.expected_contacts import ExpectedContacts, expect_contacts, require_one_disc
+from fem.drive.full_solution import FullSolution
 from fem.drive.grading import grade_contacts, measure_gaps
-from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, disc_refinements, mesh_drive, race_refinements
-from fem.drive.model import DriveModel, DrivePose
-from fem.drive.pose import PoseSolution, solve_pose
+from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, mesh_drive, require_model_memory
+from fem.drive.model import DriveModel
+from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.shaft_pins import mesh_shaft_pins
-from fem.errors import MeshError
-from fem.mesh.memory_need import require_memory, solution_memory
-from fem.mesh.triangulation import estimate_unknowns
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
-from ltca.errors import ConvergenceError
+from ltca.errors import ConvergenceError, DriveError
 
 FloatArray = NDArray[np.float64]
 
@@ -49,51 +48,6 @@ LARGEST_GRADINGS = 5
 SLACK = 1.1
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 RESERVE = 0.96
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FullSolution:
-    """Finite-element solution of a drive at one crank angle.
-
-    Attributes
-    ----------
-    model : DriveModel
-        Condensed bodies, meshes, candidate pairs.
-    state : PoseSolution
-        Pressures at the loaded pose.
-    contacts : ContactResults
-        Loads, peak pressures, half-widths of all parts, and forces on the disc.
-    scale : float
-        Element edge as a multiple of an eighth of each half-width.
-    plane_state : {"strain", "stress"}
-        Plane strain or plane stress.
-    fine_walls : bool
-        Whether the walls of the disc are meshed finely enough for the stress along them.
-    pose_iterations : int
-        Steps on the final meshes.
-    seconds : dict of str to float
-        Wall time of each stage; ``total`` is their sum.
-    """
-
-    model: DriveModel
-    state: PoseSolution
-    contacts: ContactResults
-    scale: float
-    plane_state: PlaneState
-    fine_walls: bool
-    pose_iterations: int
-    seconds: dict[str, float]
-
-    @property
-    def pose(self) -> DrivePose:
-        """Loaded pose."""
-        return self.state.pose
-
-    @property
-    def unknowns(self) -> int:
-        """Displacement unknowns of all bodies and pressure unknowns."""
-        pins = sum(body.unknowns for body in self.model.shaft_pins)
-        return self.model.meshes.unknowns + pins + self.model.unknown_count
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,16 +149,76 @@ def solve_drive(
     start: tuple[float, float, float, float] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
-    """Solve a drive at one crank angle from nothing.
+    """Solve a drive of one disc with the pin shaft held at one crank angle from nothing.
 
     Parameters
     ----------
     drive : Drive
-        The drive in one case.
+        The drive in one case; any drive is solved by `fem.reducer.solution.solve_reducer`.
     crank_angle : float
         φ_C, rad.
     torque : float, optional
-        Output torque of the whole drive, N·mm; the drive's own by default.
+        Output torque, N·mm; the drive's own by default.
+    scale, state, elastic_shaft_pins, fine_walls, start, progress
+        As for `solve_disc`.
+
+    Returns
+    -------
+    FullSolution
+        Accepted solution.
+
+    Raises
+    ------
+    ConvergenceError, MemoryLimitError
+        As for `solve_disc`.
+    DriveError
+        As for `solve_disc`; for several discs, and where the wheel is held: its moment follows from the solution.
+    """
+    require_one_disc(drive)
+    if drive.wheel_is_held:
+        raise DriveError(
+            [
+                f"installation.held = {drive.installation.held}: must be pin-shaft for a moment on the wheel that is known; "
+                "fem.reducer finds it where the wheel is held"
+            ]
+        )
+    (single,) = single_discs(drive)
+    return solve_disc(
+        single,
+        crank_angle,
+        drive.wheel_moment(torque),
+        scale=scale,
+        state=state,
+        elastic_shaft_pins=elastic_shaft_pins,
+        fine_walls=fine_walls,
+        start=start,
+        progress=progress,
+    )
+
+
+@names_unit_mistakes
+def solve_disc(
+    drive: Drive,
+    crank_angle: float,
+    wheel_moment: float,
+    *,
+    scale: float = 1.0,
+    state: PlaneState = "strain",
+    elastic_shaft_pins: bool = False,
+    fine_walls: bool = False,
+    start: tuple[float, float, float, float] | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> FullSolution:
+    """Solve one disc with wheel, crank and pin shaft at one crank angle from nothing.
+
+    Parameters
+    ----------
+    drive : Drive
+        Of one disc (`ltca.drive.single_discs`).
+    crank_angle : float
+        φ_C, rad.
+    wheel_moment : float
+        External moment on the wheel that the disc carries, ccw positive, N·mm.
     scale : float
         Element edge as a multiple of an eighth of each Hertz half-width.
     state : {"strain", "stress"}
@@ -228,26 +242,26 @@ def solve_drive(
     ConvergenceError
         When nothing can carry the load or an iteration does not settle.
     DriveError
-        When the drive is not the same all along its thickness: shorter rollers, crown or relief.
+        When the drive is not the same all along its thickness: shorter rollers, crown or relief; for several discs.
     MemoryLimitError
         When the meshes would not fit into memory.
     """
     require_plane_strain(drive, "full finite elements")
     say, watch = progress or _silent, _Stopwatch()
     shapes = DriveShapes.of_drive(drive)
-    guess = expect_contacts(drive, crank_angle, torque=torque)
+    guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)
     task = _Task(
         drive=drive,
         crank_angle=crank_angle,
         shapes=shapes,
-        moment=drive.wheel_moment(torque),
+        moment=wheel_moment,
         scale=scale,
         state=state,
         elastic_shaft_pins=elastic_shaft_pins,
         approach=_largest_approach(drive, guess),
         say=say,
     )
-    _refuse_too_large(shapes, guess, scale)
+    require_model_memory([(shapes, guess)], scale)
     model, solution = task.solve_guess(guess, start, watch)
     complaint = ""
     for grading in range(1, LARGEST_GRADINGS + 1):
@@ -280,7 +294,35 @@ def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str
     previous : FullSolution
         At the same crank angle.
     torque : float
-        Output torque of the whole drive, N·mm.
+        Output torque, N·mm.
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    FullSolution
+        As `solve_moment` finds it.
+    """
+    return solve_moment(previous, previous.model.drive.wheel_moment(torque), progress=progress)
+
+
+def solve_moment(
+    previous: FullSolution,
+    wheel_moment: float,
+    *,
+    pose_tolerance: float = POSE_TOLERANCE,
+    progress: Callable[[str], None] | None = None,
+) -> FullSolution:
+    """Solve for another moment on the wheel on the meshes and factors of a solution.
+
+    Parameters
+    ----------
+    previous : FullSolution
+        At the same crank angle.
+    wheel_moment : float
+        External moment on the wheel, N·mm.
+    pose_tolerance : float
+        Largest increment of a pose at rest, mm.
     progress : callable, optional
         Called with one line for each step.
 
@@ -293,17 +335,18 @@ def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str
     model = previous.model
     solution = solve_pose(
         model,
-        model.drive.wheel_moment(torque),
+        wheel_moment,
         start=previous.pose,
         start_active=previous.state.contact.active,
+        pose_tolerance=pose_tolerance,
         progress=progress,
     )
     watch.lap("contact and pose")
     if find_shortcoming(model, solution, previous.scale):
-        return solve_drive(
+        return solve_disc(
             model.drive,
             model.crank_angle,
-            torque=torque,
+            wheel_moment,
             scale=previous.scale,
             state=previous.plane_state,
             elastic_shaft_pins=bool(model.shaft_pins),
@@ -372,35 +415,6 @@ def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
         drive, guess.crank_angle, complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
     )
     return float(-min(gaps.pins.min(), gaps.rollers.min(), gaps.holes.min()))
-
-
-def require_solution_memory(drive: Drive, crank_angle: float, scale: float) -> None:
-    """Refuse a full solution that would not fit into memory, before any work that comes first.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    crank_angle : float
-        φ_C, rad.
-    scale : float
-        Element edge as a multiple of an eighth of each Hertz half-width.
-
-    Raises
-    ------
-    MemoryLimitError
-        With the numbers.
-    """
-    _refuse_too_large(DriveShapes.of_drive(drive), expect_contacts(drive, crank_angle), scale)
-
-
-def _refuse_too_large(shapes: DriveShapes, guess: ExpectedContacts, scale: float) -> None:
-    """Refuse a size that would exceed memory before any meshing; disc and race alone decide."""
-    if not (np.isfinite(scale) and scale > 0.0):
-        raise MeshError(f"element size {scale:g}: must be greater than 0 (a multiple of the default edge)")
-    unknowns = estimate_unknowns(shapes.disc, disc_refinements(guess, scale))
-    unknowns += estimate_unknowns(shapes.inner_race, race_refinements(guess, scale))
-    require_memory(unknowns, solution_memory(unknowns), "the model of disc and inner race")
 
 
 def _silent(_: str) -> None:

@@ -40,6 +40,26 @@ _PARSER_ERRORS = (
 )
 
 
+def body_stem(name: str, disc: int, discs: int) -> str:
+    """Return what files of a body are called: of several discs with the number of the disc.
+
+    Parameters
+    ----------
+    name : str
+        Of the body.
+    disc, discs : int
+        Which disc of how many it belongs to.
+
+    Examples
+    --------
+    >>> body_stem("pin_3", 0, 1), body_stem("disc", 1, 2), body_stem("pin_3", 1, 2)
+    ('pin_3', 'disc_1', 'disc_1_pin_3')
+    """
+    if discs == 1:
+        return name
+    return f"disc_{disc}" if name == "disc" else f"disc_{disc}_{name}"
+
+
 def element_nodes(body: BodyMesh) -> IntArray:
     """Return the nodes of each element, shape (elements, 3 or 6): vertices, then mid-sides of (0,1), (1,2), (2,0)."""
     mesh = body.mesh

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.fields import BodyField
+from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair, DriveModel
-from fem.drive.solution import FullSolution
 from fem.pictures.scene import Lines, Panel, Triangles, render
 
 FloatArray = NDArray[np.float64]
@@ -35,7 +35,13 @@ NAMES = {
 
 
 def draw_solution(
-    solution: FullSolution, fields: Sequence[BodyField], headline: str, folder: Path, *, side: int = 1600
+    solution: FullSolution,
+    fields: Sequence[BodyField],
+    headline: str,
+    folder: Path,
+    *,
+    side: int = 1600,
+    prefix: str = "",
 ) -> str:
     """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``.
 
@@ -51,6 +57,8 @@ def draw_solution(
         Where to.
     side : int
         Pixels of each picture of the whole drive; texts keep their size, so they read larger on a smaller one.
+    prefix : str
+        Put before the names of the files.
 
     Returns
     -------
@@ -72,8 +80,8 @@ def draw_solution(
         label="von Mises, MPa",
         limits=(0.0, limit),
     )
-    problem = render(folder / "von_mises.png", [whole], side=side)
-    render(folder / "contacts.png", _zooms(solution, fields))
+    problem = render(folder / f"{prefix}von_mises.png", [whole], side=side)
+    render(folder / f"{prefix}contacts.png", _zooms(solution, fields))
     largest = max(float(np.max(np.abs(field.elastic))) for field in fields)
     scale = _round_down(DEFORMED_SHARE * reach / largest)
     deformed = Panel(
@@ -91,7 +99,7 @@ def draw_solution(
         label="elastic displacement, µm",
         limits=(0.0, 1e3 * largest),
     )
-    render(folder / "deformed.png", [deformed], side=side)
+    render(folder / f"{prefix}deformed.png", [deformed], side=side)
     return problem
 
 

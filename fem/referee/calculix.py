@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drive.solution import FullSolution
+from fem.drive.full_solution import FullSolution
 from fem.referee.calculix_deck import pair_name, slave_faces, write_deck
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
@@ -178,15 +178,15 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
     )
 
 
-def compare_with_calculix(solution: FullSolution, folder: Path, program: str) -> list[str]:
+def compare_with_calculix(solution: FullSolution, deck: Path, program: str) -> list[str]:
     """Run CalculiX and return a table of both answers, line by line.
 
     Parameters
     ----------
     solution : FullSolution
         Ours.
-    folder : Path
-        For ``calculix.inp`` and ``calculix.dat``.
+    deck : Path
+        Where to write it, ends in ``.inp``; what CalculiX prints stands beside it in ``.dat``.
     program : str
         From `fem.referee.calculix_deck.find_calculix`.
 
@@ -195,7 +195,7 @@ def compare_with_calculix(solution: FullSolution, folder: Path, program: str) ->
     CycloError
         When CalculiX fails.
     """
-    return tabulate_answers(solution, ask_calculix(solution, write_deck(solution, folder / "calculix.inp"), program))
+    return tabulate_answers(solution, ask_calculix(solution, write_deck(solution, deck), program))
 
 
 def tabulate_answers(solution: FullSolution, answer: RefereeAnswer) -> list[str]:

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from fem.body.elasticity import unknowns_of_boundary
 from fem.body.surface import OppositeZone
 from fem.contact.coupling import Pose
+from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair
-from fem.drive.solution import FullSolution
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.mesh.mesh_file import element_nodes
 from ltca.drive.parts import Material

@@ -38,6 +38,10 @@ def _write_table(part: Any, path: str, lines: list[str]) -> None:
 
 
 def _literal(value: Any) -> str:
+    if is_dataclass(value):  # an entry of `of`: what a disc has of its own
+        own = ((item.name, getattr(value, item.name)) for item in fields(value))
+        inner = ", ".join(f"{name} = {_literal(held)}" for name, held in own if held is not None and held != ())
+        return f"{{ {inner} }}" if inner else "{}"
     if isinstance(value, tuple):
         return "[" + ", ".join(_literal(item) for item in value) + "]"
     if is_dataclass(value):

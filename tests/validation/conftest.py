@@ -24,6 +24,12 @@ ANGLES = (0.0, 0.2, 0.4)
 NO_STRESS = DiscStressAnswer(parameter=(), stress=(), clear=(), largest={}, shear={})
 
 
+@pytest.fixture(scope="session")
+def no_stress() -> DiscStressAnswer:
+    """What a full solution says of stresses that no model knows."""
+    return NO_STRESS
+
+
 def perturbed(answer, factor):
     """The answer with every load, and so the bearing force, changed by a factor."""
     kinds = {

@@ -40,7 +40,8 @@ def drive():
 @pytest.fixture(scope="module")
 def full(drive, tmp_path_factory):
     """Full FE at the default size."""
-    return solve_position(drive, "nominal", CRANK_ANGLE, tmp_path_factory.mktemp("positions"), Settings())
+    (full,) = solve_position(drive, "nominal", CRANK_ANGLE, tmp_path_factory.mktemp("positions"), Settings())
+    return full
 
 
 @pytest.fixture(scope="module")

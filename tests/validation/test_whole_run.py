@@ -110,7 +110,7 @@ def test_interrupted_and_resumed_gives_the_same_files(tmp_path, monkeypatch):
     def forbidden(*words, **options):
         raise AssertionError("solved again")
 
-    monkeypatch.setattr(validation.compare.finite_element_positions, "solve_drive", forbidden)
+    monkeypatch.setattr(validation.compare.finite_element_positions, "solve_reducer", forbidden)
     monkeypatch.setattr(validation.compare.derived_coefficients, "derive_coefficients", forbidden)
     again = run(tmp_path / "second")
     assert again == status

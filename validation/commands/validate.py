@@ -63,8 +63,8 @@ def execute(arguments: argparse.Namespace) -> int:
     file.select(arguments.case)
     out: Path = arguments.out or default_folder(file.name, "validate")
     require_folder(out)
-    from fem.drive.solution import require_solution_memory
     from fem.errors import MemoryLimitError
+    from fem.reducer.solution import require_solution_memory
     from ltca.errors import CycloError
     from validation.compare.finite_element_positions import Settings
     from validation.study import plan_study

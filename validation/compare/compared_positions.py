@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,21 +13,21 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.geometry.boundary_stations import Boundary
 from validation.compare.comparison import Kind, PositionAnswer, PositionDifference, compare_positions
-from validation.compare.disc_stresses import DiscStressDifference, compare_stresses, stresses_of
+from validation.compare.disc_stresses import DiscStressAnswer, DiscStressDifference, compare_stresses, stresses_of
 from validation.compare.finite_element_positions import FullPosition
-from validation.compare.model_positions import MODELS, answers_of, engine_of
+from validation.compare.model_positions import MODELS, DiscCoefficients, answers_of, engine_of
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparedPosition:
-    """One position in all models.
+    """One disc at one position in all models.
 
     Attributes
     ----------
     drive : Drive
-        In its case.
+        The disc that is compared with wheel, crank and pin shaft, in its case.
     full : FullPosition
         The reference.
     answers : dict of str to PositionAnswer
@@ -49,40 +50,62 @@ class ComparedPosition:
 
 
 def compare_case(
-    drive: Drive, positions: list[FullPosition], coefficients: InfluenceCoefficients
+    drive: Drive, positions: Sequence[FullPosition], coefficients: DiscCoefficients
 ) -> list[ComparedPosition]:
-    """Answer the positions of one case with all models and compare.
+    """Answer the positions of one case with all models and compare disc by disc.
 
     Parameters
     ----------
     drive : Drive
         In the case.
-    positions : list of FullPosition
-        Full solutions.
-    coefficients : InfluenceCoefficients
-        Of the drive's shape.
+    positions : sequence of FullPosition
+        Full solutions, of several discs each by itself.
+    coefficients : InfluenceCoefficients or tuple of them
+        Of the disc, or of each of several.
 
     Returns
     -------
     list of ComparedPosition
         In the order of `positions`.
     """
-    angles = np.array([position.crank_angle for position in positions])
-    analyses = {model: analyse(drive, angles, engine=engine_of(model, coefficients)) for model in MODELS}
-    answers = {model: answers_of(analysis) for model, analysis in analyses.items()}
-    stresses = {model: found for model, analysis in analyses.items() if (found := stresses_of(analysis))}
-    distances = _station_distances(analyses["fe"], coefficients)
-    return [
-        ComparedPosition(
-            drive=drive,
+    angles = list(dict.fromkeys(position.crank_angle for position in positions))
+    analyses = {model: analyse(drive, np.array(angles), engine=engine_of(model, coefficients)) for model in MODELS}
+    of_discs = coefficients if isinstance(coefficients, tuple) else (coefficients,)
+    discs = [
+        _AnsweredDisc.of_analyses({model: analysis.discs[disc] for model, analysis in analyses.items()}, own)
+        for disc, own in enumerate(of_discs)
+    ]
+    return [discs[full.disc].compare(full, angles.index(full.crank_angle)) for full in positions]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _AnsweredDisc:
+    """All positions of one disc by all models: answers, distances from stations and stresses as in `ComparedPosition`."""
+
+    drive: Drive
+    answers: dict[str, list[PositionAnswer]]
+    distances: dict[Kind, FloatArray]
+    stresses: dict[str, list[DiscStressAnswer]]
+
+    @classmethod
+    def of_analyses(cls, analyses: Mapping[str, LoadedAnalysis], coefficients: InfluenceCoefficients) -> _AnsweredDisc:
+        return cls(
+            drive=analyses["fe"].drive,
+            answers={model: answers_of(analysis) for model, analysis in analyses.items()},
+            distances=_station_distances(analyses["fe"], coefficients),
+            stresses={model: found for model, analysis in analyses.items() if (found := stresses_of(analysis))},
+        )
+
+    def compare(self, full: FullPosition, row: int) -> ComparedPosition:
+        answers = self.answers
+        return ComparedPosition(
+            drive=self.drive,
             full=full,
             answers={model: found[row] for model, found in answers.items()},
             differences={model: compare_positions(found[row], full.answer) for model, found in answers.items()},
-            station_distance={kind: values[row] for kind, values in distances.items()},
-            stress={model: compare_stresses(found[row], full.stress) for model, found in stresses.items()},
+            station_distance={kind: values[row] for kind, values in self.distances.items()},
+            stress={model: compare_stresses(found[row], full.stress) for model, found in self.stresses.items()},
         )
-        for row, full in enumerate(positions)
-    ]
 
 
 def _station_distances(analysis: LoadedAnalysis, coefficients: InfluenceCoefficients) -> dict[Kind, FloatArray]:

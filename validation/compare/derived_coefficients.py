@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fem.body.elasticity import PlaneState
 from fem.coefficients.dataset import derive_coefficients
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.drive.parts import Clearance, Drive
+from ltca.drive.single_discs import single_discs
 from ltca.errors import DamagedFileError
 from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_file import read_coefficients, write_coefficients
+from validation.compare.model_positions import DiscCoefficients
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 def nominal_coefficients_of(
     drive: Drive, case: str, folder: Path, *, progress: Callable[[str], None] | None = None
-) -> InfluenceCoefficients | None:
+) -> DiscCoefficients | None:
     """Return the coefficients that all clearance cases could share, lent to this one; None when it has no clearance.
 
     Parameters
@@ -35,10 +37,52 @@ def nominal_coefficients_of(
     progress : callable, optional
         Called with each step.
     """
-    if drive.clearance == Clearance():
+    singles = single_discs(drive)
+    if all(single.clearance == Clearance() for single in singles):
         return None
-    _, nominal = coefficients_of(replace(drive, clearance=Clearance()), case, folder, progress=progress)
-    return nominal.lent_to(drive)
+    found = []
+    for single in singles:
+        _, nominal = coefficients_of(replace(single, clearance=Clearance()), case, folder, progress=progress)
+        found.append(nominal.lent_to(single))
+    return _one_or_each(found)
+
+
+def disc_coefficients_of(
+    drive: Drive, case: str, folder: Path, **options: Any
+) -> tuple[dict[str, xr.Dataset], DiscCoefficients]:
+    """Return the coefficients of all discs of a case, those of each distinct shape once.
+
+    Parameters
+    ----------
+    drive : Drive
+        In the case.
+    case : str
+        Its name, for the record.
+    folder : Path
+        Where files are kept.
+    **options
+        As for `coefficients_of`.
+
+    Returns
+    -------
+    datasets : dict of str to Dataset
+        Of each distinct shape by the case, of several shapes by case and first disc.
+    coefficients : InfluenceCoefficients or tuple of them
+        Of the disc, or of each of several.
+    """
+    singles = single_discs(drive)
+    shapes: dict[str, tuple[str, xr.Dataset]] = {}
+    found = []
+    for number, single in enumerate(singles):
+        dataset, coefficients = coefficients_of(single, case, folder, **options)
+        shapes.setdefault(single.shape_fingerprint(), (f"{case}, disc {number}", dataset))
+        found.append(coefficients)
+    datasets = dict(shapes.values())
+    return (datasets if len(datasets) > 1 else {case: next(iter(datasets.values()))}), _one_or_each(found)
+
+
+def _one_or_each(found: list[InfluenceCoefficients]) -> DiscCoefficients:
+    return found[0] if len(found) == 1 else tuple(found)
 
 
 def coefficients_of(
@@ -50,12 +94,12 @@ def coefficients_of(
     size: float = 1.0,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[xr.Dataset, InfluenceCoefficients]:
-    """Return the coefficients of a case's disc, from its file if there is one that fits.
+    """Return the coefficients of a disc, from its file if there is one that fits.
 
     Parameters
     ----------
     drive : Drive
-        In the case.
+        In the case, of one disc.
     case : str
         Its name, for the record.
     folder : Path

@@ -19,16 +19,19 @@ import numpy as np
 from fem.body.elasticity import PlaneState
 from fem.drive.disc_stress import recover_disc_stress
 from fem.drive.fields import recover_fields
-from fem.drive.solution import FullSolution, solve_drive
-from fem.drive.solution_files import summarise
+from fem.drive.full_solution import FullSolution
 from fem.pictures.solution_pictures import draw_solution
+from fem.reducer.solution import solve_reducer
+from fem.reducer.solution_files import summarise
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.geometry.placement import Placement
 from ltca.output.files import write_json
 from ltca.output.provenance import code_hash, code_version
 from validation.compare.comparison import KindAnswer, PositionAnswer
 from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content, stress_content
 
-FORMAT = 3
+FORMAT = 4
 PICTURES = ("von_mises", "deformed", "contacts")
 PICTURE_SIDE = 1200
 
@@ -51,12 +54,14 @@ class Settings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FullPosition:
-    """Full solution of one position as it is kept.
+    """Full solution of one disc at one position as it is kept.
 
     Attributes
     ----------
     case : str
-        Case of the drive.
+        Case of the drive, of several discs with the number of the disc.
+    disc : int
+        Number of the disc.
     crank_angle : float
         rad.
     answer : PositionAnswer
@@ -64,11 +69,11 @@ class FullPosition:
     stress : DiscStressAnswer
         Stress in the disc.
     residual : float
-        Largest unbalanced force, N.
+        Largest unbalanced force, N, of all discs.
     unknowns : int
-        Of the solution.
+        Of the solution, all discs.
     seconds : float
-        Wall time when it was solved: for the account of costs, never for the report.
+        Wall time when it was solved, all discs: for the account of costs, never for the report.
     pictures : tuple of Path
         von Mises, contacts, deformed; empty when they were not asked for.
     """
@@ -81,6 +86,7 @@ class FullPosition:
     unknowns: int
     seconds: float
     pictures: tuple[Path, ...]
+    disc: int = 0
 
 
 def solve_position(
@@ -93,8 +99,8 @@ def solve_position(
     pictures: bool = False,
     title: str = "",
     progress: Callable[[str], None] | None = None,
-) -> FullPosition:
-    """Return the full solution of a position, from its file if there is one that fits.
+) -> tuple[FullPosition, ...]:
+    """Return the full solution of a position disc by disc, from its file if there is one that fits.
 
     Parameters
     ----------
@@ -117,8 +123,8 @@ def solve_position(
 
     Returns
     -------
-    FullPosition
-        Always as read from the file, so that a resumed run sees the same digits.
+    tuple of FullPosition
+        Of each disc; always as read from the file, so that a resumed run sees the same digits.
 
     Raises
     ------
@@ -127,31 +133,51 @@ def solve_position(
     """
     key = _key(drive, case, crank_angle, settings)
     path = folder / f"{position_name(drive, case, crank_angle, settings)}.json"
-    images = tuple(path.with_suffix("") / f"{name}.png" for name in PICTURES)
+    singles = single_discs(drive)
+    count = len(singles)
+    prefixes = [f"disc_{disc}_" if count > 1 else "" for disc in range(count)]
+    images = [tuple(path.with_suffix("") / f"{prefix}{name}.png" for name in PICTURES) for prefix in prefixes]
     content = _read(path, key)
-    if content is None or (pictures and not all(image.exists() for image in images)):
-        solution = solve_drive(
+    if content is None or (pictures and not all(image.exists() for own in images for image in own)):
+        solution = solve_reducer(
             drive, crank_angle, scale=settings.size, state=settings.plane, fine_walls=True, progress=progress
         )
         if pictures:
-            _draw(solution, settings, title, path.with_suffix(""))
+            for disc, prefix in zip(solution.discs, prefixes, strict=True):
+                _draw(disc, settings, title, path.with_suffix(""), prefix)
         if content is None:
-            answer = {"summary": summarise(solution), "stress": stress_content(recover_disc_stress(solution))}
+            stress = [stress_content(recover_disc_stress(disc)) for disc in solution.discs]
+            answer = {"summary": summarise(solution), "stress": stress}
             content = {"key": key, "checksum": _checksum(answer), **answer}
             write_json(path, content)
             content = _read(path, key)
     assert content is not None
     summary = content["summary"]
-    return FullPosition(
-        case=case,
-        crank_angle=crank_angle,
-        answer=answer_of_summary(summary),
-        stress=answer_of_content(content["stress"]),
-        residual=float(summary["equilibrium_residual_N"]),
-        unknowns=int(summary["dof"]),
-        seconds=float(summary["seconds"]),
-        pictures=images if pictures else (),
+    return tuple(
+        FullPosition(
+            case=disc_case(case, disc, count),
+            crank_angle=crank_angle,
+            answer=answer_of_summary(summary, single, disc),
+            stress=answer_of_content(content["stress"][disc]),
+            residual=float(summary["equilibrium_residual_N"]),
+            unknowns=int(summary["dof"]),
+            seconds=float(summary["seconds"]),
+            pictures=images[disc] if pictures else (),
+            disc=disc,
+        )
+        for disc, single in enumerate(singles)
     )
+
+
+def disc_case(case: str, disc: int, discs: int) -> str:
+    """Return what rows and report call one disc of a case: the case itself where it is the only one.
+
+    Examples
+    --------
+    >>> disc_case("CS-1", 0, 1), disc_case("CS-1", 1, 2)
+    ('CS-1', 'CS-1, disc 1')
+    """
+    return case if discs == 1 else f"{case}, disc {disc}"
 
 
 def position_name(drive: Drive, case: str, crank_angle: float, settings: Settings) -> str:
@@ -188,25 +214,39 @@ def _checksum(answer: object) -> str:
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()
 
 
-def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path) -> None:
+def _draw(solution: FullSolution, settings: Settings, title: str, folder: Path, prefix: str) -> None:
     fields = recover_fields(solution.model, solution.state, state=settings.plane)
     folder.mkdir(parents=True, exist_ok=True)
-    draw_solution(solution, fields, title, folder, side=PICTURE_SIDE)
+    draw_solution(solution, fields, title, folder, side=PICTURE_SIDE, prefix=prefix)
 
 
-def answer_of_summary(summary: dict[str, Any]) -> PositionAnswer:
-    """Return the answer in the summary of a full solution (`fem.drive.solution_files.summarise`)."""
+def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> PositionAnswer:
+    """Return the answer of one disc in the summary of a full solution (`fem.reducer.solution_files.summarise`).
+
+    Parameters
+    ----------
+    summary : dict
+        Of all discs.
+    single : Drive
+        The drive of the disc alone.
+    disc : int
+        Its number.
+    """
 
     def kind(load: str, pressure: str, width: str) -> KindAnswer:
-        # Lists are nested by disc; there is one.
         return KindAnswer(
-            load=np.array(summary[f"{load}_N"][0], dtype=float),
-            pressure=np.array(summary[f"{pressure}_MPa"][0], dtype=float),
-            half_width=np.array(summary[f"{width}_mm"][0], dtype=float),
+            load=np.array(summary[f"{load}_N"][disc], dtype=float),
+            pressure=np.array(summary[f"{pressure}_MPa"][disc], dtype=float),
+            half_width=np.array(summary[f"{width}_mm"][disc], dtype=float),
         )
 
-    disc = summary["disc_displacement"]
-    along = complex(disc["x_mm"], disc["y_mm"]) * np.exp(-1j * summary["crank_angle_rad"])
+    def own(name: str) -> Any:
+        """What a disc has one of is a list only where there are several."""
+        return summary[name][disc] if isinstance(summary[name], list) else summary[name]
+
+    shift = own("disc_displacement")
+    direction = Placement.of_drive(single).eccentric_direction(np.asarray(summary["crank_angle_rad"]))
+    along = complex(shift["x_mm"], shift["y_mm"]) * complex(direction).conjugate()
     return PositionAnswer(
         kinds={
             "pin": kind("pin_load", "pin_pressure_max", "pin_half_width"),
@@ -214,10 +254,10 @@ def answer_of_summary(summary: dict[str, Any]) -> PositionAnswer:
             "roller_inner": kind("roller_load_inner", "roller_pressure_max_inner", "roller_half_width_inner"),
             "hole": kind("pin_shaft_load", "pin_shaft_pressure_max", "pin_shaft_half_width"),
         },
-        bearing_radial=float(summary["bearing_radial_N"]),
-        bearing_tangential=float(summary["bearing_tangential_N"]),
+        bearing_radial=float(own("bearing_radial_N")),
+        bearing_tangential=float(own("bearing_tangential_N")),
         wheel_angle=float(summary["wheel_angle_rad"]),
         disc_radial=float(along.real),
         disc_tangential=float(along.imag),
-        disc_rotation=float(disc["rotation_rad"]),
+        disc_rotation=float(shift["rotation_rad"]),
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,7 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
+from ltca.geometry.pairs import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 FloatArray = NDArray[np.float64]
@@ -17,7 +20,11 @@ FloatArray = NDArray[np.float64]
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
 
 
-def engine_of(compliance: Compliance, coefficients: InfluenceCoefficients | None) -> Engine:
+DiscCoefficients: TypeAlias = InfluenceCoefficients | tuple[InfluenceCoefficients, ...]
+"""Coefficients of the one disc of a drive, or of each of several."""
+
+
+def engine_of(compliance: Compliance, coefficients: DiscCoefficients | None) -> Engine:
     """Return the engine of a compliance model, with the coefficients where it takes them."""
     return HalfSpace() if compliance == "half-space" else engine_named(compliance, coefficients=coefficients)
 
@@ -26,19 +33,19 @@ def answer_positions(
     drive: Drive,
     crank_angles: FloatArray,
     compliance: Compliance,
-    coefficients: InfluenceCoefficients | None = None,
+    coefficients: DiscCoefficients | None = None,
 ) -> list[PositionAnswer]:
     """Analyse positions with one compliance model.
 
     Parameters
     ----------
     drive : Drive
-        In its case.
+        In its case, of one disc.
     crank_angles : array, shape (positions,)
         rad.
     compliance : {"half-space", "fe", "hybrid"}
         The model.
-    coefficients : InfluenceCoefficients, optional
+    coefficients : InfluenceCoefficients or tuple of them, optional
         What ``fe`` and ``hybrid`` need.
 
     Returns
@@ -55,9 +62,17 @@ def answer_positions(
 
 
 def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
-    """Return an analysis position by position."""
+    """Return the analysis of a drive of one disc (`LoadedAnalysis.discs`) position by position.
+
+    Raises
+    ------
+    ValueError
+        For several discs.
+    """
+    (disc,) = analysis.model.discs
     full, response, pressures = analysis.full, analysis.full.response, analysis.pressures
-    displacement = (full.pose[:, 0] + 1j * full.pose[:, 1]) * np.exp(-1j * full.crank_angle)
+    direction = disc.geometry.placement.eccentric_direction(full.crank_angle)
+    displacement = disc_displacement(full.pose) * direction.conjugate()
     hole_pressure, hole_width = _hole_contacts(pressures)
     columns: dict[Kind, tuple[FloatArray, FloatArray, FloatArray]] = {
         "pin": (response.pin_load, pressures.pins.mid, pressures.pins.half_width),
@@ -71,8 +86,8 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
                 kind: KindAnswer(load=load[row], pressure=pressure[row], half_width=width[row])
                 for kind, (load, pressure, width) in columns.items()
             },
-            bearing_radial=float(analysis.bearing_radial[row]),
-            bearing_tangential=float(analysis.bearing_tangential[row]),
+            bearing_radial=float(analysis.bearing_radial[row, 0]),
+            bearing_tangential=float(analysis.bearing_tangential[row, 0]),
             wheel_angle=float(full.pose[row, 3]),
             disc_radial=float(displacement[row].real),
             disc_tangential=float(displacement[row].imag),

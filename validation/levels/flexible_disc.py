@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
-from validation.compare.model_positions import MODELS, engine_of
+from validation.compare.model_positions import MODELS, DiscCoefficients, engine_of
 from validation.rows import Row, relative_row, rounded
 
 FloatArray = NDArray[np.float64]
@@ -105,15 +104,15 @@ class FlexibilityEffect:
     by_torque: dict[float, dict[str, float]]
 
 
-def study_case(drive: Drive, coefficients: InfluenceCoefficients) -> FlexibilityEffect:
+def study_case(drive: Drive, coefficients: DiscCoefficients) -> FlexibilityEffect:
     """Run one turn with every model and several torques with two.
 
     Parameters
     ----------
     drive : Drive
         In the case.
-    coefficients : InfluenceCoefficients
-        Of its disc.
+    coefficients : InfluenceCoefficients or tuple of them
+        Of its disc, or of each of several.
     """
     angles = position_angles(TURN_POSITIONS)
     turn: dict[str, TurnFigures] = {

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drive.solution import FullSolution, solve_drive
+from fem.drive.full_solution import FullSolution
+from fem.drive.solution import solve_drive
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
 from ltca.contact.length_profile import LogarithmicRelief

@@ -8,7 +8,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from ltca.drive.single_discs import single_discs
 from ltca.output.files import whole_file
+from validation.compare.finite_element_positions import disc_case
 from validation.compare.model_positions import MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
@@ -75,7 +77,11 @@ def _context(study: Study) -> dict[str, Any]:
     positions = [position_scene(item) for items in study.compared.values() for item in items]
     data = {
         "models": ["full FE", *MODELS],
-        "drives": {case: drive_scene(drive) for case, drive in plan.drives.items()},
+        "drives": {
+            disc_case(case, disc, drive.disc.number_of_discs): drive_scene(single)
+            for case, drive in plan.drives.items()
+            for disc, single in enumerate(single_discs(drive))
+        },
         "positions": positions,
     }
     head = headline(study)
@@ -202,16 +208,27 @@ def _difference(value: float, unit: str, sign: str = "") -> str:
 def _pictures(study: Study) -> list[dict[str, str]]:
     return [
         {
-            "case": case,
+            "case": item.full.case,
             "angle": f"{item.full.crank_angle:.4g}",
-            "name": path.stem,
-            "title": PICTURE_TITLES[path.stem],
+            "name": picture_name(path),
+            "title": PICTURE_TITLES[picture_name(path)],
             "source": _embedded(path),
         }
-        for case, items in study.compared.items()
+        for items in study.compared.values()
         for item in items
         for path in item.full.pictures
     ]
+
+
+def picture_name(path: Path) -> str:
+    """Return which picture a file is: of several discs its name begins with that of the disc.
+
+    Examples
+    --------
+    >>> picture_name(Path("kept/disc_1_von_mises.png"))
+    'von_mises'
+    """
+    return next(name for name in PICTURE_TITLES if path.stem.endswith(name))
 
 
 def _embedded(path: Path) -> str:
@@ -220,7 +237,7 @@ def _embedded(path: Path) -> str:
 
     with Image.open(path) as opened:
         image = opened.convert("RGB")
-    width = min(PICTURE_WIDTHS[path.stem], image.width)
+    width = min(PICTURE_WIDTHS[picture_name(path)], image.width)
     image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
     stream = io.BytesIO()
     image.save(stream, "WEBP", quality=82, method=4)

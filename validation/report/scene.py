@@ -87,7 +87,7 @@ def _loaded(answers: list[PositionAnswer], kind: Kind) -> list[int]:
 def _disc_centre(compared: ComparedPosition) -> complex:
     angle, answer = compared.full.crank_angle, compared.full.answer
     place = ContactGeometry.of_drive(compared.drive).placement
-    shift = complex(answer.disc_radial, answer.disc_tangential) * np.exp(1j * angle)
+    shift = complex(answer.disc_radial, answer.disc_tangential) * place.eccentric_direction(np.array([angle]))[0]
     return complex(place.race_centre(np.array([angle]))[0] + shift)
 
 

@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,11 +21,13 @@ from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficient_files import find_case_coefficients
 from ltca.compliance.coefficients import load_coefficients
+from ltca.drive.deviations import DiscClearance, OneDisc
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, FaultError
 from ltca.reading.coefficient_file import read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import check_coefficients
 from ltca.reading.drive_file import load_drive
+from ltca.reading.writing import drive_text
 
 COARSE = ("--stations", "0.25", "--size", "1.5")
 
@@ -412,3 +415,32 @@ def test_stresses_of_another_size_or_sign_are_found_out(dataset, factor):
     wrong = dataset.copy(deep=True)
     wrong["disc_stress"].values[:] *= factor
     assert [check.name for check in check_coefficients(wrong) if not check.passed][-1:] == [NAMES[-2]]
+
+
+def test_discs_cut_otherwise_get_a_file_each(dataset, paper_cases, tmp_path, monkeypatch, capsys):
+    """Half a turn apart the paper's discs are one part, a third of a turn apart three; a clearance of its own makes another."""
+    made = []
+
+    def derived(drive, **options):
+        made.append(drive)
+        return dataset
+
+    monkeypatch.setattr("fem.coefficients.dataset.derive_coefficients", derived)
+    drive = paper_cases["CS-1"]
+    other = (OneDisc(), OneDisc(clearance=DiscClearance(bearing=0.02)))
+    for name, discs, of, files in (
+        ("alike", 2, (), {"c.nc": "discs 0, 1:"}),
+        ("cut", 3, (), {f"c_disc_{disc}.nc": f"disc {disc}:" for disc in range(3)}),
+        ("wide", 2, other, {f"c_disc_{disc}.nc": f"disc {disc}:" for disc in range(2)}),
+    ):
+        folder = tmp_path / name
+        folder.mkdir()
+        several = replace(drive, disc=replace(drive.disc, number_of_discs=discs, of=of))
+        (folder / "drive.toml").write_text(drive_text(several), encoding="utf-8")
+        made.clear()
+        assert run(str(folder / "drive.toml"), "--out", str(folder / "c.nc")) == 0
+        assert {path.name for path in folder.iterdir()} == {*files, "drive.toml"}
+        out = capsys.readouterr().out
+        for words in files.values():
+            assert f"{words}\n" in out
+        assert len({single.shape_fingerprint() for single in made}) == len(made) == len(files)

@@ -121,7 +121,7 @@ def test_one_file_opens_all_bodies(folder):
 def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, monkeypatch):
     import shutil
 
-    from fem.drive import solution_files
+    from fem.reducer import solution_files
 
     out = shutil.copytree(folder, tmp_path / "out")
 
@@ -130,11 +130,11 @@ def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, mo
 
     monkeypatch.setattr(solution_files, "build_dataset", lambda solution, case: xr.Dataset())
     monkeypatch.setattr(solution_files, "recover_disc_stress", lambda solution: None)
-    monkeypatch.setattr(solution_files, "stress_variables", lambda stress: {})
+    monkeypatch.setattr(solution_files, "stress_variables", lambda stresses: {})
     monkeypatch.setattr(solution_files, "write_field", fail)
     field = type("Field", (), {"body": type("Body", (), {"name": "disc"})})
     with pytest.raises(OSError, match="No space left"):
-        solution_files.write_solution(None, [field], "CS-3", out)
+        solution_files.write_solution(type("Solution", (), {"discs": (None,)}), [[field]], "CS-3", out)
     assert not (out / "fem.vtm").exists()
 
 

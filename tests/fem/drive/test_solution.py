@@ -8,8 +8,9 @@ import pytest
 from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import recover_fields
 from fem.drive.solution import solve_drive, solve_load
-from fem.drive.solution_files import bearing_components, summarise
 from fem.errors import MemoryLimitError
+from fem.reducer.solution import ReducerSolution
+from fem.reducer.solution_files import summarise
 from ltca.errors import ConvergenceError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -61,7 +62,7 @@ def check_balance(solution):
 
 def test_coarse_drive_balances(coarse):
     check_balance(coarse)
-    _, tangential = bearing_components(coarse.contacts, 0.5)
+    _, tangential = coarse.bearing_components
     assert tangential == pytest.approx(TANGENTIAL, rel=1.5e-3)
 
 
@@ -85,7 +86,7 @@ def test_the_pose_is_at_rest(coarse):
 
 
 def test_arrays_have_full_length(coarse):
-    summary = summarise(coarse)
+    summary = summarise(ReducerSolution.of_disc(coarse))
     for name, count in (("pin_load_N", 14), ("roller_load_outer_N", 11), ("pin_shaft_load_N", 8)):
         assert np.shape(summary[name]) == (1, count)  # by disc, then by part
     contacts = coarse.contacts
@@ -124,7 +125,7 @@ def test_start_pose_does_not_matter(coarse):
 def test_further_load_uses_the_same_factors(coarse):
     more = solve_load(coarse, 1.1 * 377_300.0)
     assert more.model is coarse.model
-    _, tangential = bearing_components(more.contacts, 0.5)
+    _, tangential = more.bearing_components
     assert tangential == pytest.approx(1.1 * TANGENTIAL, rel=1.5e-3)
 
 
@@ -217,7 +218,7 @@ def test_stress_in_the_disc(coarse):
     import xarray as xr
 
     stress = recover_disc_stress(coarse)
-    summary, data = summarise_stress(stress), xr.Dataset(stress_variables(stress))
+    summary, data = summarise_stress([stress]), xr.Dataset(stress_variables([stress]))
     assert data["root_stress"].shape == (1, 1, 1, 13)
     np.testing.assert_array_equal(data["root_stress"].values[0, 0, 0], summary["root_stress_MPa"][0])
     assert data["bore_stress"].item() == summary["bore_stress_MPa"][0]
@@ -291,7 +292,7 @@ def test_nothing_that_can_carry_is_one_error():
 def test_default_drive_balances(case, angle):
     solution = solve_drive(drive(case), angle)
     check_balance(solution)
-    _, tangential = bearing_components(solution.contacts, angle)
+    _, tangential = solution.bearing_components
     # It swings by tens of newtons with the slope of the transmission error; 0.15 % is 10 N.
     assert tangential == pytest.approx(TANGENTIAL, rel=1.5e-3)
     for pair, detail in zip(solution.model.pairs, solution.contacts.details, strict=True):

@@ -36,7 +36,7 @@ def test_table_of_both_answers(monkeypatch, tmp_path):
     )
     monkeypatch.setattr(calculix, "write_deck", lambda solution, path: path)
     monkeypatch.setattr(calculix, "ask_calculix", lambda *words: answer)
-    lines = compare_with_calculix(solution, tmp_path, "ccx")
+    lines = compare_with_calculix(solution, tmp_path / "calculix.inp", "ccx")
     rows = {line[:16].strip(): line[16:].split() for line in lines[2:-2]}
     # change of a load as a part of the largest of its kind, rise of the peak; open in both: not listed
     assert rows == {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -49,18 +50,18 @@ def solved(monkeypatch):
 
     def solve(drive, crank_angle, **options):
         calls.append((crank_angle, options["scale"], options["state"]))
-        return drive, crank_angle
+        return SimpleNamespace(discs=(None,), drive=drive, crank_angle=crank_angle)
 
-    monkeypatch.setattr(kept, "solve_drive", solve)
-    monkeypatch.setattr(kept, "summarise", lambda solution: summary_of(*solution))
+    monkeypatch.setattr(kept, "solve_reducer", solve)
+    monkeypatch.setattr(kept, "summarise", lambda solution: summary_of(solution.drive, solution.crank_angle))
     monkeypatch.setattr(kept, "recover_disc_stress", stress_of)
     return calls
 
 
 def test_a_finished_position_is_not_solved_again(solved, paper_cases, tmp_path):
     drive = paper_cases["CS-1"]
-    first = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
-    again = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    (first,) = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
+    (again,) = solve_position(drive, "CS-1", ANGLE, tmp_path, Settings())
     assert len(solved) == 1
     assert first.seconds == again.seconds == 3.25
     for kind, own in first.answer.kinds.items():
@@ -118,7 +119,7 @@ def test_a_failed_solution_leaves_nothing(monkeypatch, paper_cases, tmp_path):
     def fail(drive, crank_angle, **options):
         raise ConvergenceError("no", [1.0])
 
-    monkeypatch.setattr(kept, "solve_drive", fail)
+    monkeypatch.setattr(kept, "solve_reducer", fail)
     with pytest.raises(ConvergenceError):
         solve_position(paper_cases["CS-1"], "CS-1", ANGLE, tmp_path, Settings())
     assert not list(tmp_path.iterdir())

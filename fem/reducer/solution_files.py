@@ -1,12 +1,12 @@
 """Files of a full solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over them all.
 
 ``fem.nc`` has the dimensions and names of ``results.nc``: case, disc, crank, position, then pin, roller or hole, always
-all of them that a quantity has; so far each of the first four has size 1.
+all of them that a quantity has; case and position have size 1.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
@@ -14,12 +14,11 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
-from fem.drive.contact_results import ContactResults
 from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
-from fem.drive.model import DriveModel
-from fem.drive.solution import FullSolution
-from fem.mesh.mesh_file import write_vtu
+from fem.drive.full_solution import FullSolution
+from fem.mesh.mesh_file import body_stem, write_vtu
+from fem.reducer.solution import ReducerSolution
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
@@ -67,102 +66,134 @@ RIGID_SHAFT_PINS = (
 MULTI_BLOCK = "fem.vtm"
 
 
-def bearing_components(contacts: ContactResults, crank_angle: float) -> tuple[float, float]:
-    """Return the bearing force on the disc along the eccentricity and 90° ahead of it, N."""
-    along = contacts.bearing_force * np.exp(-1j * crank_angle)
-    return float(along.real), float(along.imag)
+def summarise(solution: ReducerSolution) -> dict[str, Any]:
+    """Return the content of ``summary.json``: lists by disc, then by part; of full length, zeros included.
 
-
-def summarise(solution: FullSolution) -> dict[str, Any]:
-    """Return the content of ``summary.json``: lists by disc, then by part; of full length, zeros included."""
-    contacts, model, pose = solution.contacts, solution.model, solution.pose
+    What a disc has one of is a number with one disc, else a list by disc.
+    """
+    discs = solution.discs
     content: dict[str, Any] = {}
     for name, (attribute, _, unit, _) in ARRAYS.items():
-        values = [float(value) for value in getattr(contacts, attribute)]
-        content[f"{SUMMARY_NAMES.get(name, name)}_{unit}"] = [values]
-    bore, bore_rotation = bore_motion(model, solution.state)
-    radial, tangential = bearing_components(contacts, model.crank_angle)
+        values = [[float(value) for value in getattr(disc.contacts, attribute)] for disc in discs]
+        content[f"{SUMMARY_NAMES.get(name, name)}_{unit}"] = values
+    bearings = [disc.bearing_components for disc in discs]
+
+    def each(values: list[Any]) -> Any:
+        return values[0] if len(values) == 1 else values
+
     content |= {
-        "crank_angle_rad": model.crank_angle,
-        "wheel_moment_N_mm": solution.state.wheel_moment,
-        "wheel_angle_rad": pose.wheel_angle,
-        "disc_displacement": {"x_mm": bore.real, "y_mm": bore.imag, "rotation_rad": bore_rotation},
-        "disc_displacement_area": {"x_mm": pose.disc_x, "y_mm": pose.disc_y, "rotation_rad": pose.disc_rotation},
-        "bearing_radial_N": radial,
-        "bearing_tangential_N": tangential,
-        "equilibrium_residual_N": contacts.equilibrium_residual,
-        "pose_iterations": solution.pose_iterations,
+        "crank_angle_rad": solution.crank_angle,
+        "wheel_moment_N_mm": solution.wheel_moment,
+        "disc_torque_N_mm": [float(value) for value in solution.disc_torques],
+        "torque_share": [float(value) for value in solution.torque_share],
+        "wheel_angle_rad": solution.wheel_angle,
+        "transmission_error_rad": solution.transmission_error,
+        "disc_displacement": each([_motion(*bore_motion(disc.model, disc.state)) for disc in discs]),
+        "disc_displacement_area": each(
+            [_motion(disc.pose.disc_displacement, disc.pose.disc_rotation) for disc in discs]
+        ),
+        "bearing_radial_N": each([radial for radial, _ in bearings]),
+        "bearing_tangential_N": each([tangential for _, tangential in bearings]),
+        "equilibrium_residual_N": solution.equilibrium_residual,
+        "pose_iterations": each([disc.pose_iterations for disc in discs]),
         "dof": solution.unknowns,
-        "size": solution.scale,
-        "plane_state": solution.plane_state,
-        "fingerprint": model.drive.fingerprint(),
+        "size": discs[0].scale,
+        "plane_state": discs[0].plane_state,
+        "held": solution.drive.installation.held,
+        "fingerprint": solution.drive.fingerprint(),
         "seconds": solution.seconds["total"],
         "seconds_by_stage": {stage: value for stage, value in solution.seconds.items() if stage != "total"},
     }
     return content
 
 
-def build_dataset(solution: FullSolution, case: str) -> xr.Dataset:
+def _motion(shift: complex, rotation: float) -> dict[str, float]:
+    return {"x_mm": shift.real, "y_mm": shift.imag, "rotation_rad": rotation}
+
+
+def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     """Return the solution as a labelled dataset, with the pressure of every loaded contact."""
     import xarray as xr
 
-    contacts, model, pose = solution.contacts, solution.model, solution.pose
+    discs, first = solution.discs, solution.discs[0]
     data: dict[str, Any] = {}
 
     def add(name: str, values: Any, belongs: str, unit: str, text: str) -> None:
+        """Put values of the drive, or by disc and then by part, in the dimensions of what they belong to."""
         dimensions = ("case", *DIMENSIONS[belongs])
-        missing = len(dimensions) - np.ndim(values)
-        spread = np.reshape(np.asarray(values, dtype=float), (1,) * missing + np.shape(values))
-        data[name] = (dimensions, spread, {"units": unit, "long_name": text})
+        array = np.asarray(values, dtype=float)
+        leading, parts = (array.shape[:1], array.shape[1:]) if "disc" in dimensions else ((), array.shape)
+        single = (1,) * (len(dimensions) - 1 - len(leading) - len(parts))
+        data[name] = (dimensions, array.reshape(1, *leading, *single, *parts), {"units": unit, "long_name": text})
 
     for name, (attribute, belongs, unit, text) in ARRAYS.items():
-        if name == "pin_shaft_pressure_mid" and not model.shaft_pins:
+        if name == "pin_shaft_pressure_mid" and not first.model.shaft_pins:
             text = f"{text}; {RIGID_SHAFT_PINS}"
-        add(name, getattr(contacts, attribute), belongs, unit, text)
-    radial, tangential = bearing_components(contacts, model.crank_angle)
-    bore, bore_rotation = bore_motion(model, solution.state)
+        add(name, [getattr(disc.contacts, attribute) for disc in discs], belongs, unit, text)
+    bearings = np.array([disc.bearing_components for disc in discs])
+    motions = [bore_motion(disc.model, disc.state) for disc in discs]
+    bore, bore_rotation = np.array([shift for shift, _ in motions]), [rotation for _, rotation in motions]
+    poses = [disc.pose for disc in discs]
+    area = "disc from inner-race centre, mean over the area"
     for name, value, belongs, unit, text in (
-        ("wheel_angle", pose.wheel_angle, "drive", "rad", "deviation of the wheel from φ_C/u, ccw positive"),
+        ("wheel_angle", solution.wheel_angle, "drive", "rad", "deviation of the wheel from φ_C/u, ccw positive"),
+        ("transmission_error", solution.transmission_error, "drive", "rad", "deviation of the output, ccw positive"),
+        ("wheel_moment", solution.wheel_moment, "drive", "N mm", "external moment on the wheel, ccw positive"),
+        ("disc_torque", solution.disc_torques, "disc", "N mm", "part of that moment that the disc carries"),
         ("disc_x", bore.real, "disc", "mm", "disc centre from inner-race centre, fixed axes, fitted to the bore"),
         ("disc_y", bore.imag, "disc", "mm", "disc centre from inner-race centre, fixed axes, fitted to the bore"),
         ("disc_rotation", bore_rotation, "disc", "rad", "rotation of the disc, fitted to the bore, ccw positive"),
-        ("disc_area_x", pose.disc_x, "disc", "mm", "disc from inner-race centre, mean over the area"),
-        ("disc_area_y", pose.disc_y, "disc", "mm", "disc from inner-race centre, mean over the area"),
-        ("disc_area_rotation", pose.disc_rotation, "disc", "rad", "rotation of the disc, mean over the area"),
-        ("bearing_radial", radial, "crank", "N", "bearing force on the disc along the eccentricity"),
-        ("bearing_tangential", tangential, "crank", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
-        ("equilibrium_residual", contacts.equilibrium_residual, "drive", "N", "largest unbalanced force"),
+        ("disc_area_x", [pose.disc_x for pose in poses], "disc", "mm", area),
+        ("disc_area_y", [pose.disc_y for pose in poses], "disc", "mm", area),
+        (
+            "disc_area_rotation",
+            [pose.disc_rotation for pose in poses],
+            "disc",
+            "rad",
+            "rotation of the disc, mean over the area",
+        ),
+        ("bearing_radial", bearings[:, 0], "crank", "N", "bearing force on the disc along its eccentricity"),
+        (
+            "bearing_tangential",
+            bearings[:, 1],
+            "crank",
+            "N",
+            "bearing force on the disc, 90° ahead of its eccentricity",
+        ),
+        ("equilibrium_residual", solution.equilibrium_residual, "drive", "N", "largest unbalanced force"),
     ):
         add(name, value, belongs, unit, text)
-    for name, (values, unit, text) in _pressure_profiles(solution).items():
+    for name, (values, unit, text) in _pressure_profiles(discs).items():
         data[name] = ("sample", values, {"units": unit, "long_name": text})
     attributes = {
         "Conventions": "CF-1.11",
-        "title": f"full finite-element solution of {model.drive.name}",
+        "title": f"full finite-element solution of {solution.drive.name}",
         "source": f"cyclo {code_version()}",
         "version": code_version(),
         "code_hash": code_hash("ltca", "fem"),
-        "drive": model.drive.name,
-        "drive_file": drive_text(model.drive),
-        "fingerprint": model.drive.fingerprint(),
-        "model": f"finite elements, plane {solution.plane_state}",
-        "plane": solution.plane_state,
-        "elastic_shaft_pins": int(bool(model.shaft_pins)),
-        "size": solution.scale,
+        "drive": solution.drive.name,
+        "drive_file": drive_text(solution.drive),
+        "fingerprint": solution.drive.fingerprint(),
+        "held": solution.drive.installation.held,
+        "model": f"finite elements, plane {first.plane_state}",
+        "plane": first.plane_state,
+        "elastic_shaft_pins": int(bool(first.model.shaft_pins)),
+        "size": first.scale,
         "unknowns": solution.unknowns,
     }
-    return xr.Dataset(data, coords=_coordinates(model, solution.state.wheel_moment, case), attrs=attributes)
+    return xr.Dataset(data, coords=_coordinates(solution, case), attrs=attributes)
 
 
-def _coordinates(model: DriveModel, wheel_moment: float, case: str) -> dict[str, Any]:
+def _coordinates(solution: ReducerSolution, case: str) -> dict[str, Any]:
     """Return numbers and places of the parts, crank angle and torque: what ``results.nc`` has, for one position."""
-    drive, place = model.drive, model.placement
+    drive, places = solution.drive, [disc.model.placement for disc in solution.discs]
+    place, count = places[0], len(places)
 
     def at(dimensions: tuple[str, ...], values: Any, unit: str, text: str) -> tuple[Any, ...]:
         missing = len(dimensions) - np.ndim(values)
         return dimensions, np.reshape(values, (1,) * missing + np.shape(values)), {"units": unit, "long_name": text}
 
-    found: dict[str, Any] = {"case": [case], "disc": [0], "crank": [0], "position": [0]}
+    found: dict[str, Any] = {"case": [case], "disc": np.arange(count), "crank": [0], "position": [0]}
     for name, radii in (
         ("pin", place.wheel_pin_radii),
         ("roller", place.roller_radii),
@@ -171,43 +202,64 @@ def _coordinates(model: DriveModel, wheel_moment: float, case: str) -> dict[str,
         found[name] = np.arange(len(radii))
     for name, dimensions, centres, frame in (
         ("pin", ("case", "pin"), place.wheel_pin_centres, "wheel pin, in the frame of the wheel"),
-        ("hole", ("case", "disc", "hole"), place.hole_centres, "hole, in the frame of the disc"),
+        (
+            "hole",
+            ("case", "disc", "hole"),
+            np.array([own.hole_centres for own in places]),
+            "hole, in the frame of the disc",
+        ),
         ("shaft_pin", ("case", "hole"), place.shaft_pin_centres, "shaft pin, in the fixed frame"),
     ):
         found[f"{name}_x"] = at(dimensions, centres.real, "mm", frame)
         found[f"{name}_y"] = at(dimensions, centres.imag, "mm", frame)
     cage = "angle of the roller in the cage, which stands at cage_speed · φ_C"
-    torque = wheel_moment / drive.wheel_moment(1.0)
+    cages = np.array([own.roller_cage_angles for own in places])[:, None]
+    phase, plane = "phase of the disc's eccentric against the crank angle", "axial place of the disc's middle"
     return found | {
-        "crank_angle": at(("position",), model.crank_angle, "rad", "crank angle φ_C, held"),
-        "roller_angle": at(("case", "disc", "crank", "roller"), place.roller_cage_angles, "rad", cage),
+        "crank_angle": at(("position",), solution.crank_angle, "rad", "crank angle φ_C, held"),
+        "roller_angle": at(("case", "disc", "crank", "roller"), cages, "rad", cage),
+        "disc_phase": at(("case", "disc"), drive.disc.disc_phases, "rad", phase),
+        "disc_plane": at(("case", "disc"), drive.disc.disc_planes, "mm", plane),
         "cage_speed": at(("case",), float(place.cage_speed), "1", "cage angle by crank angle"),
-        "torque": at(("case",), torque, "N mm", "output torque of the solution"),
+        "torque": at(("case",), solution.torque, "N mm", "output torque of the solution"),
         "driving_sign": at(("case",), drive.driving_sign, "1", "+1: the crank drives ccw, −1: cw"),
     }
 
 
-def _pressure_profiles(solution: FullSolution) -> dict[str, tuple[Any, str, str]]:
-    model, results = solution.model, solution.contacts
-    kinds, indices, places, values = [], [], [], []
-    for pair, detail in zip(model.pairs, results.details, strict=True):
-        if detail.load > 0.0:
-            arc = pair.zone.arc
-            kinds.append(np.full(len(arc), pair.kind))
-            indices.append(np.full(len(arc), pair.index))
-            places.append(arc - detail.middle)
-            own = pair.zone.at_vertices(solution.state.contact.pressure[pair.unknowns])
-            values.append(vertex_means(arc, own))
+def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, str, str]]:
+    numbers, kinds, indices, places, values = [], [], [], [], []
+    for number, disc in enumerate(discs):
+        for pair, detail in zip(disc.model.pairs, disc.contacts.details, strict=True):
+            if detail.load > 0.0:
+                arc = pair.zone.arc
+                numbers.append(np.full(len(arc), number))
+                kinds.append(np.full(len(arc), pair.kind))
+                indices.append(np.full(len(arc), pair.index))
+                places.append(arc - detail.middle)
+                own = pair.zone.at_vertices(disc.state.contact.pressure[pair.unknowns])
+                values.append(vertex_means(arc, own))
     return {
         "pressure_contact": (np.concatenate(kinds).astype(str), "1", "kind of the contact of each sample"),
+        "pressure_disc": (np.concatenate(numbers), "1", "number of its disc"),
         "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller or hole"),
         "pressure_place": (np.concatenate(places), "mm", "arc length from the centre of pressure"),
         "pressure": (np.concatenate(values), "MPa", "mean contact pressure under the shape function of each vertex"),
     }
 
 
-def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: str, folder: Path) -> None:
+def write_solution(solution: ReducerSolution, fields: Sequence[Iterable[BodyField]], case: str, folder: Path) -> None:
     """Write all files of a solution; each appears only when it is complete, ``fem.vtm`` only over bodies of this one.
+
+    Parameters
+    ----------
+    solution : ReducerSolution
+        The solution.
+    fields : sequence of iterables of BodyField
+        Of each disc (`fem.drive.fields.recover_fields`).
+    case : str
+        Name of the case.
+    folder : Path
+        Where to.
 
     Raises
     ------
@@ -220,12 +272,16 @@ def write_solution(solution: FullSolution, fields: Iterable[BodyField], case: st
         index.unlink(missing_ok=True)
     except OSError as error:
         raise CycloError(f"{index}: cannot be written: {error.strerror or error}") from error
-    stress = recover_disc_stress(solution)
+    stresses = [recover_disc_stress(disc) for disc in solution.discs]
     with whole_file(folder / "fem.nc") as part:
-        write_netcdf(build_dataset(solution, case).assign(stress_variables(stress)), part)
-    bodies = [write_field(field, folder / f"{field.body.name}.vtu") for field in fields]
+        write_netcdf(build_dataset(solution, case).assign(stress_variables(stresses)), part)
+    bodies = [
+        write_field(field, folder / f"{body_stem(field.body.name, disc, len(solution.discs))}.vtu")
+        for disc, own in enumerate(fields)
+        for field in own
+    ]
     write_multi_block(bodies, index)
-    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stress))
+    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses))
 
 
 def write_multi_block(bodies: list[Path], path: Path) -> Path:

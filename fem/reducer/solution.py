@@ -1,0 +1,330 @@
+"""Full solution of a drive of any number of discs at one crank angle, whichever member is held.
+
+Each disc with its pins, rollers and race is a finite-element problem of its own (`fem.drive.solution`); they share the
+wheel's angle and its moment (`fem.reducer.shares`). Where the wheel is held, its moment is what balances the output's torque
+and the crank's moment, which follows from the bearing forces found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.body.elasticity import PlaneState
+from fem.drive.expected_contacts import expect_contacts
+from fem.drive.full_solution import FullSolution
+from fem.drive.meshes import require_model_memory
+from fem.drive.solution import solve_disc, solve_moment
+from fem.reducer.shares import SharedAnswer, share_moment
+from fem.shapes import DriveShapes
+from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.drive.unit_mistakes import names_unit_mistakes
+from ltca.errors import ConvergenceError
+
+FloatArray = NDArray[np.float64]
+
+POSE_TOLERANCE = 1e-7
+"""Largest increment of a pose at rest, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
+STEP = 0.01
+"""Part of a moment over which the springs' slope is taken."""
+SPRING_TOLERANCE = 1e-7
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReducerSolution:
+    """Finite-element solution of a drive at one crank angle.
+
+    Attributes
+    ----------
+    drive : Drive
+        All of it.
+    crank_angle : float
+        φ_C, rad.
+    torque : float
+        Output torque, N·mm.
+    discs : tuple of FullSolution
+        Of each disc.
+    spread : tuple of float
+        Largest difference of the discs' wheel angles in each round of moments, rad; empty where nothing is shared.
+    left_over : tuple of float
+        Moment by which wheel, crank and output do not balance in each round, N·mm.
+    seconds : dict of str to float
+        Wall time of each stage, all discs and rounds; ``total`` is their sum.
+    """
+
+    drive: Drive
+    crank_angle: float
+    torque: float
+    discs: tuple[FullSolution, ...]
+    spread: tuple[float, ...]
+    left_over: tuple[float, ...]
+    seconds: dict[str, float]
+
+    @classmethod
+    def of_disc(cls, disc: FullSolution) -> ReducerSolution:
+        """Return the solution of a drive of one disc with the pin shaft held, which shares nothing."""
+        drive, moment = disc.model.drive, disc.state.wheel_moment
+        return cls(
+            drive=drive,
+            crank_angle=disc.model.crank_angle,
+            torque=moment / drive.wheel_moment(1.0),
+            discs=(disc,),
+            spread=(),
+            left_over=(),
+            seconds=disc.seconds,
+        )
+
+    @property
+    def wheel_angle(self) -> float:
+        """Deviation of the wheel from φ_C/u, rad."""
+        return float(np.mean([disc.pose.wheel_angle for disc in self.discs]))
+
+    @property
+    def disc_torques(self) -> FloatArray:
+        """Part of the external moment on the wheel that each disc carries, ccw positive, shape (discs,), N·mm."""
+        return np.array([disc.state.wheel_moment for disc in self.discs])
+
+    @property
+    def wheel_moment(self) -> float:
+        """External moment on the wheel, ccw positive, N·mm."""
+        return float(self.disc_torques.sum())
+
+    @property
+    def torque_share(self) -> FloatArray:
+        """Part of the wheel's moment that each disc carries, shape (discs,)."""
+        return np.asarray(self.disc_torques / self.wheel_moment)
+
+    @property
+    def transmission_error(self) -> float:
+        """Deviation of the output, ccw positive, rad."""
+        return self.drive.output_per_wheel_angle * self.wheel_angle
+
+    @property
+    def equilibrium_residual(self) -> float:
+        """Largest unbalanced force, N."""
+        return max(disc.contacts.equilibrium_residual for disc in self.discs)
+
+    @property
+    def unknowns(self) -> int:
+        """Displacement and pressure unknowns of all discs."""
+        return sum(disc.unknowns for disc in self.discs)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Task:
+    """What stays the same through all rounds."""
+
+    drive: Drive
+    crank_angle: float
+    singles: tuple[Drive, ...]
+    torque: float
+    scale: float
+    state: PlaneState
+    elastic_shaft_pins: bool
+    fine_walls: bool
+    say: Callable[[str], None]
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def start(self, disc: int, moment: float) -> FullSolution:
+        return self.timed(
+            solve_disc(
+                self.singles[disc],
+                self.crank_angle,
+                moment,
+                scale=self.scale,
+                state=self.state,
+                elastic_shaft_pins=self.elastic_shaft_pins,
+                fine_walls=self.fine_walls,
+                progress=self.saying(disc),
+            )
+        )
+
+    def settle(self, disc: int, previous: FullSolution | None, moment: float) -> FullSolution:
+        """Solve one disc under a moment to the last digit that its pose has."""
+        found = self.start(disc, moment) if previous is None else previous
+        while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
+            found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
+        return found
+
+    def left_over(self, discs: list[FullSolution]) -> float:
+        """Moment by which wheel, crank and output do not balance; of a held shaft none."""
+        wheel = sum(disc.state.wheel_moment for disc in discs)
+        if not self.drive.wheel_is_held:
+            return wheel - self.drive.wheel_moment(self.torque)
+        return wheel + sum(disc.crank_moment for disc in discs) + self.drive.driving_sign * self.torque
+
+    def saying(self, disc: int) -> Callable[[str], None]:
+        if len(self.singles) == 1:
+            return self.say
+        return lambda line: self.say(f"disc {disc}: {line}")
+
+    def timed(self, found: FullSolution) -> FullSolution:
+        for stage, value in found.seconds.items():
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + value
+        return found
+
+
+@names_unit_mistakes
+def solve_reducer(
+    drive: Drive,
+    crank_angle: float,
+    *,
+    torque: float | None = None,
+    scale: float = 1.0,
+    state: PlaneState = "strain",
+    elastic_shaft_pins: bool = False,
+    fine_walls: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> ReducerSolution:
+    """Solve a drive at one crank angle.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case, of any number of discs, either member held.
+    crank_angle : float
+        φ_C, rad.
+    torque : float, optional
+        Output torque, N·mm; the drive's own by default.
+    scale : float
+        Element edge as a multiple of an eighth of each Hertz half-width.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+    elastic_shaft_pins : bool
+        Whether shaft pins yield, too; rigid circles on their springs by default.
+    fine_walls : bool
+        Whether the walls of the discs are meshed finely enough for the stress along them, whatever the scale.
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    ReducerSolution
+        All discs at one wheel angle.
+
+    Raises
+    ------
+    ConvergenceError
+        When nothing can carry the load, an iteration does not settle, or a disc carries nothing.
+    DriveError
+        When the drive is not the same all along its thickness.
+    MemoryLimitError
+        When the meshes would not fit into memory.
+    """
+    singles = single_discs(drive)
+    task = _Task(
+        drive=drive,
+        crank_angle=float(crank_angle),
+        singles=singles,
+        torque=drive.load.torque if torque is None else torque,
+        scale=scale,
+        state=state,
+        elastic_shaft_pins=elastic_shaft_pins,
+        fine_walls=fine_walls,
+        say=progress or _silent,
+    )
+    if len(singles) == 1 and not drive.wheel_is_held:
+        return replace(
+            ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque))), drive=drive, torque=task.torque
+        )
+    if len(singles) > 1:
+        require_solution_memory(drive, crank_angle, scale)
+    moment, slope = expect_shares(drive, crank_angle, drive.wheel_moment(torque))
+    discs: list[FullSolution | None] = [None] * len(singles)
+
+    def answer(moments: FloatArray) -> SharedAnswer:
+        found = [task.settle(disc, discs[disc], float(own)) for disc, own in enumerate(moments)]
+        discs[:] = found
+        angle = np.array([disc.pose.wheel_angle for disc in found])
+        shares = ", ".join(f"{share:.4f}" for share in moments / moments.sum())
+        task.say(f"shares {shares}; wheel angles differ by {np.ptp(angle):.2g} rad")
+        return SharedAnswer(wheel_angle=angle, left_over=task.left_over(found))
+
+    rise = 1.0 / abs(drive.output_per_wheel_angle)
+    shares = share_moment(answer, moment, slope, rise=rise)
+    return ReducerSolution(
+        drive=drive,
+        crank_angle=task.crank_angle,
+        torque=task.torque,
+        discs=tuple(disc for disc in discs if disc is not None),
+        spread=shares.spread,
+        left_over=shares.left_over,
+        seconds=task.seconds,
+    )
+
+
+def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tuple[FloatArray, FloatArray]:
+    """Guess the moment that each disc carries, by springs between rigid bodies; equal ones where those leave a disc idle.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    wheel_moment : float
+        External moment on the wheel, N·mm.
+
+    Returns
+    -------
+    moment, slope : arrays, shape (discs,)
+        N·mm, and dθ/dM of each disc there, rad/(N·mm).
+    """
+    singles = single_discs(drive)
+
+    def angles(moments: FloatArray) -> FloatArray:
+        return np.array(
+            [
+                expect_contacts(single, crank_angle, wheel_moment=float(moment)).wheel_angle
+                for single, moment in zip(singles, moments, strict=True)
+            ]
+        )
+
+    def answer(moments: FloatArray) -> SharedAnswer:
+        return SharedAnswer(wheel_angle=angles(moments), left_over=0.0)
+
+    def slopes(moments: FloatArray) -> FloatArray:
+        return (angles((1.0 + STEP) * moments) - angles((1.0 - STEP) * moments)) / (2.0 * STEP * moments)
+
+    equal = np.full(len(singles), wheel_moment / len(singles))
+    try:
+        moment = share_moment(answer, equal, slopes(equal), angle_tolerance=SPRING_TOLERANCE).moment
+        return moment, slopes(moment)
+    except ConvergenceError:
+        return equal, slopes(equal)
+
+
+def require_solution_memory(drive: Drive, crank_angle: float, scale: float) -> None:
+    """Refuse a full solution that would not fit into memory, before any work that comes first.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive in one case.
+    crank_angle : float
+        φ_C, rad.
+    scale : float
+        Element edge as a multiple of an eighth of each Hertz half-width.
+
+    Raises
+    ------
+    MemoryLimitError
+        With the numbers.
+    """
+    singles = single_discs(drive)
+    moment = drive.wheel_moment() / len(singles)
+    require_model_memory(
+        [
+            (DriveShapes.of_drive(single), expect_contacts(single, crank_angle, wheel_moment=moment))
+            for single in singles
+        ],
+        scale,
+    )
+
+
+def _silent(_: str) -> None:
+    pass
