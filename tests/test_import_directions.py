@@ -15,8 +15,8 @@ PACKAGES = ("ltca", "fem", "validation")
 FLOORS = (
     "ltca.errors", "ltca.frozen_arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
     "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.testing", "ltca",
-    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients", "fem.referee",
-    "fem.pictures", "fem.testing", "fem",
+    "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
+    "fem.referee", "fem.pictures", "fem.testing", "fem",
     "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -224,9 +224,7 @@ def first_disc(drive: Drive, case: str) -> tuple[str, Drive]:
     single, *others = single_discs(drive)
     if not others:
         return case, single
-    count, load = 1 + len(others), drive.load
-    share = replace(load, torque=load.torque / count, light_torque=load.light_torque / count)
-    return f"{case}, disc 0 alone", replace(single, load=share)
+    return f"{case}, disc 0 alone", single
 
 
 def _solve_positions(
