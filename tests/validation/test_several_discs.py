@@ -106,6 +106,7 @@ def test_report_of_several_discs(compared, drive, coefficients, tmp_path):
         assert f'"CS-3, disc {disc}":{{"outline"' in page
 
 
+@pytest.mark.slow
 def test_power_balance_of_every_disc(drive, paper_cases):
     rows = _power(drive)
     assert [row.quantity[-6:] for row in rows] == ["disc 0", "disc 1"]

@@ -44,10 +44,9 @@ def test_random_drives_quick():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("chunk", range(2))
-def test_random_drives(chunk):
-    """240 beside five hundred practical ones."""
-    check_seeds(6 + 120 * chunk, 120)
+def test_random_drives():
+    """120 beside five hundred practical ones."""
+    check_seeds(6, 120)
 
 
 def reducer_outcome(seed):
@@ -67,8 +66,8 @@ def test_random_reducers():
 
     ``benchmarks/random_drives.py`` runs 100,000.
     """
-    found = [reducer_outcome(seed) for seed in range(60)]
-    assert found.count("balanced") > 50
+    found = [reducer_outcome(seed) for seed in range(24)]
+    assert found.count("balanced") > 20
 
 
 @pytest.mark.slow
