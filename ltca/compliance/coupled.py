@@ -21,9 +21,8 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +31,14 @@ from ltca.compliance.beyond_near_field import OwnParts
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NearField, NearFieldLaws
 from ltca.compliance.pressures import pressures_of_law
-from ltca.compliance.response import ContactPressures, KindPressures, Response, Start, resultant
+from ltca.compliance.response import (
+    ContactPressures,
+    KindPressures,
+    Response,
+    Start,
+    join_positions,
+    resultant,
+)
 from ltca.compliance.rollers import RollerState
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
@@ -160,7 +166,7 @@ class CoupledCompliance:
             self._solve(crank_angle[rows], pose[rows], _take(flank, rows), _take(holes, rows), start, rows)
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
-        joined: Response = _join(parts)
+        joined: Response = join_positions(parts)
         return joined
 
     def _solve(
@@ -435,14 +441,3 @@ Motion = TypeVar("Motion", FlankMotion, PairMotion)
 
 def _take(motion: Motion, rows: NDArray[np.intp]) -> Motion:
     return replace(motion, **{item.name: getattr(motion, item.name)[rows] for item in fields(motion)})
-
-
-def _join(parts: Sequence[Any]) -> Any:
-    """Join arrays, or dataclasses of arrays, along the positions."""
-    if len(parts) == 1:
-        return parts[0]
-    if isinstance(parts[0], np.ndarray):
-        return np.concatenate(parts)
-    return type(parts[0])(
-        **{item.name: _join([getattr(part, item.name) for part in parts]) for item in fields(parts[0])}
-    )

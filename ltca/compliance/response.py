@@ -6,8 +6,9 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.balance`
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -241,3 +242,16 @@ def resultant(
 def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:
     scaled = stiffness[..., None] * motion.gradient
     return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))
+
+
+def join_positions(parts: Sequence[Any]) -> Any:
+    """Return what belongs to several groups of positions as that of all: arrays, or tuples and dataclasses of them, joined."""
+    if len(parts) == 1:
+        return parts[0]
+    first = parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, tuple):
+        return tuple(join_positions(items) for items in zip(*parts, strict=True))
+    joined = {item.name: join_positions([getattr(part, item.name) for part in parts]) for item in fields(first)}
+    return type(first)(**joined)

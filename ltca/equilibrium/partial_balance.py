@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.compliance.response import join_positions
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError
 
@@ -107,17 +108,7 @@ def balance_what_can_be(balance: Balance, positions: int, start: FloatArray | No
     if not pieces:
         raise failures[0]
     rows = np.concatenate([rows for rows, _ in pieces])
-    found = _joined([piece for _, piece in pieces]) if len(pieces) > 1 else pieces[0][1]
+    found = join_positions([piece for _, piece in pieces])
     # The first failure is that of all positions together, and names the worst of them and how many there are.
     failure = failures[0] if rows.size < positions else None
     return PartlyBalanced(positions=positions, rows=rows, found=found, failure=failure)
-
-
-def _joined(parts: list[Any]) -> Any:
-    """Join arrays, or tuples and dataclasses of them, along the positions."""
-    first = parts[0]
-    if isinstance(first, np.ndarray):
-        return np.concatenate(parts)
-    if isinstance(first, tuple):
-        return tuple(_joined(list(items)) for items in zip(*parts, strict=True))
-    return type(first)(**{item.name: _joined([getattr(part, item.name) for part in parts]) for item in fields(first)})
