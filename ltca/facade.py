@@ -168,6 +168,10 @@ class Plots:
         """Draw the number of loaded shaft pins."""
         return self._drawn("fig36_loaded_shaft_pins")
 
+    def torque_share(self) -> Figure:
+        """Draw the part of the torque that each disc carries over the crank angle; 1 throughout of one disc."""
+        return self._drawn("torque_share")
+
     def __repr__(self) -> str:
         """Name the figures there are."""
         names = [name for name, value in vars(type(self)).items() if isinstance(value, Callable) and name[0] != "_"]  # type: ignore[arg-type]
