@@ -108,7 +108,9 @@ class AnalysisResult:
             value = refined_value(self._summary, key)
             if value is not None and not (positions == 1 and key.startswith("ptp")):
                 rows.append(f"  {title:<34}{form.format(value)} {unit}")
-        shares = [value for key, value in self._summary.items() if key.startswith("max_torque_share") and value is not None]
+        shares = [
+            value for key, value in self._summary.items() if key.startswith("max_torque_share") and value is not None
+        ]
         if len(shares) > 1:
             rows.append(f"  {'largest part of the torque':<34}{max(shares):.3f} on one of {len(shares)} discs")
         return "\n".join(rows)
