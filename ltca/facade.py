@@ -108,6 +108,11 @@ class AnalysisResult:
             value = refined_value(self._summary, key)
             if value is not None and not (positions == 1 and key.startswith("ptp")):
                 rows.append(f"  {title:<34}{form.format(value)} {unit}")
+        shares = [
+            value for key, value in self._summary.items() if key.startswith("max_torque_share") and value is not None
+        ]
+        if len(shares) > 1:
+            rows.append(f"  {'largest part of the torque':<34}{max(shares):.3f} on one of {len(shares)} discs")
         return "\n".join(rows)
 
 
@@ -167,6 +172,10 @@ class Plots:
     def loaded_shaft_pins(self) -> Figure:
         """Draw the number of loaded shaft pins."""
         return self._drawn("fig36_loaded_shaft_pins")
+
+    def torque_share(self) -> Figure:
+        """Draw the part of the torque that each disc carries over the crank angle; 1 throughout of one disc."""
+        return self._drawn("torque_share")
 
     def __repr__(self) -> str:
         """Name the figures there are."""

@@ -197,7 +197,8 @@ def _solve_and_write(
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, limits)
             if not arguments.no_figures:
-                figures += _draw(found, title, out / "figures", f"_{name}" if len(cases) > 1 else "")
+                ending = f"_{name}" if len(cases) > 1 else ""
+                figures += _draw(found, title, drive.disc.number_of_discs, out / "figures", ending)
             advance(name)
     if figures:
         print(f"figures: {out / 'figures'} ({len(figures)} as SVG and PNG)")
@@ -296,7 +297,7 @@ def _range(values: Any) -> str:
     return f"{values.min():.4g} … {values.max():.4g}"
 
 
-def _draw(found: CaseCurves, title: str, folder: Path, ending: str) -> list[Path]:
+def _draw(found: CaseCurves, title: str, discs: int, folder: Path, ending: str) -> list[Path]:
     from dataclasses import replace
 
     from ltca.figures import curve_figures as figures
@@ -310,7 +311,7 @@ def _draw(found: CaseCurves, title: str, folder: Path, ending: str) -> list[Path
         figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),
         figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}"),
         figures.draw_pressure(
-            found.crank_angle[turn], found.pressure[turn], shown, title, folder / f"flank_pressure{ending}"
+            found.crank_angle[turn], found.pressure[turn], shown, title, folder / f"flank_pressure{ending}", discs
         ),
     ]
 

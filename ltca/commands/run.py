@@ -20,7 +20,7 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Mapping
 
     from xarray import Dataset
 
@@ -105,7 +105,12 @@ def execute(arguments: argparse.Namespace) -> int:
         return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
 
 
-def _files(arguments: argparse.Namespace, cases: Iterable[str]) -> Iterator[str]:
+def _discs(cases: Mapping[str, Drive]) -> int:
+    """Number of discs, which all cases of a run have."""
+    return next(iter(cases.values())).disc.number_of_discs
+
+
+def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterator[str]:
     """Names of all files that the run may write."""
     from glob import escape
 
@@ -114,10 +119,10 @@ def _files(arguments: argparse.Namespace, cases: Iterable[str]) -> Iterator[str]
         yield "pressure.nc"
     if not arguments.no_figures:
         from ltca.figures.pressure_figures import PRESSURE_FIGURES
-        from ltca.figures.run_figures import FIGURES
+        from ltca.figures.run_figures import figure_names
         from ltca.output.run_folder import figure_files
 
-        yield from figure_files(*FIGURES)
+        yield from figure_files(*figure_names(_discs(cases)))
         if arguments.pressure is not None:
             yield from figure_files(*PRESSURE_FIGURES)
             yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
@@ -209,13 +214,14 @@ def _analyse(
 
 
 def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path) -> None:
-    from ltca.figures.run_figures import FIGURES, write_figures
+    from ltca.figures.run_figures import figure_names, write_figures
     from ltca.output.progress import progress
 
-    with progress("figures", len(FIGURES)) as advance:
+    names = figure_names(dataset.sizes["disc"])
+    with progress("figures", len(names)) as advance:
         for path in write_figures(dataset, folder):
             advance(path.name)
-    print(f"figures: {folder} ({len(FIGURES)} as SVG and PNG)")
+    print(f"figures: {folder} ({len(names)} as SVG and PNG)")
     if fields is None:
         return
     from ltca.figures.pressure_figures import can_render, write_pressure_figures
@@ -265,15 +271,15 @@ ROWS = (
     ("  at the light torque", "ptp_transmission_error_light_arcsec", "″", "{:.2f}"),
     ("backlash at the disc", "backlash_disc_arcmin", "′", "{:z.2f}"),
     ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
-    ("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),
 )
+RESIDUAL_ROWS = (("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),)
 
 
 RIGID_SHAFT_PINS = (
     "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
     "--no-hole-near-field"
 )
-HELD_ROWS = (("backlash at the output", "backlash_output_arcmin", "′", "{:z.2f}"),)
+OUTPUT_ROWS = (("  at the output", "backlash_output_arcmin", "′", "{:z.2f}"),)
 INTERFERENCE_ROWS = (("  pins and flank overlap at rest by", "interference_mm", "mm", "{:.4f}"),)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
@@ -291,20 +297,26 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str])
         f"{'torque, direction of the crank':<40}" + "".join(f"{load:>{width}}" for load in loads.values()),
     ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
+    shares = _share_rows(summaries)
+    output = (
+        OUTPUT_ROWS
+        if any(row["backlash_output_arcmin"] != row["backlash_wheel_arcmin"] for row in summaries.values())
+        else ()
+    )
     pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
-    keys = next(iter(summaries.values()))
-    shares = [
-        (f"part of the torque on disc {disc}, {name}", f"{key}_torque_share_disc_{disc}", "", "{:.4f}")
-        for disc in range(sum(key.startswith("mean_torque_share") for key in keys))
-        for name, key in (("mean", "mean"), ("largest", "max"))
-    ]
-    shared = shares if len(shares) > 2 else []
-    output = any(case["backlash_output_arcmin"] != case["backlash_wheel_arcmin"] for case in summaries.values())
-    for title, key, unit, form in (*ROWS, *(HELD_ROWS if output else ()), *shared, *pressed, *walls):
+    for title, key, unit, form in (*ROWS, *output, *shares, *RESIDUAL_ROWS, *pressed, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) for case in summaries.values()]
         lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
     return "\n".join(lines)
+
+
+def _share_rows(summaries: dict[str, dict[str, float | None]]) -> Iterator[tuple[str, str, str, str]]:
+    """Parts of the torque, of several discs."""
+    discs = sum(key.startswith("mean_torque_share_disc_") for key in next(iter(summaries.values())))
+    for disc in range(discs if discs > 1 else 0):
+        yield f"part of the torque on disc {disc}, mean", f"mean_torque_share_disc_{disc}", "", "{:.4f}"
+        yield "  largest at the positions", f"max_torque_share_disc_{disc}", "", "{:.4f}"
 
 
 def _many(angles: FloatArray) -> str:

@@ -96,7 +96,7 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     tangential = abs(drive.wheel_moment()) / (len(singles) * drive.reduction_ratio * e)
     hole_wall = profile.root_radius - drive.pin_shaft.pin_circle_radius - single.hole_radius
     bore_wall = drive.pin_shaft.pin_circle_radius - single.hole_radius - single.bore_radius
-    of = "" if len(singles) == 1 else " of disc 0"
+    of, at, held = ("", "the disc", "disc") if len(singles) == 1 else (" of disc 0", "disc 0", "discs")
     return [
         *_installation(drive),
         ("e z_P/R_C", f"{e * drive.reduction_ratio / drive.pin_wheel.pin_circle_radius:.4f} (must be below 1)"),
@@ -105,8 +105,8 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
         ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
         ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
-        (f"backlash at the disc{of}, wheel held", f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)"),
-        ("backlash at the wheel, disc held", f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)"),
+        (f"backlash at {at}, wheel held", f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)"),
+        (f"backlash at the wheel, {held} held", f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)"),
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{between_rollers:.4f} mm"),

@@ -86,15 +86,17 @@ def draw_spectrum(spectrum: Spectrum, title: str, stem: Path) -> Path:
 
 
 def draw_pressure(
-    crank_angle: FloatArray, pressure: FloatArray, safety: PressureSafety, title: str, stem: Path
+    crank_angle: FloatArray, pressure: FloatArray, safety: PressureSafety, title: str, stem: Path, discs: int = 1
 ) -> Path:
     """Draw the largest flank pressure over the crank angle with the limit; return the PNG."""
+    disc, number = divmod(safety.pin, pressure.shape[1] // discs)
+    pin = f"pin {number}" if discs == 1 else f"pin {number} on disc {disc}"
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 3.6))
         axes = figure.subplots()
         degrees = np.degrees(crank_angle)
-        for pin in range(pressure.shape[1]):
-            axes.plot(degrees, pressure[:, pin], color="#b8cfe0", linewidth=0.7)
+        for column in range(pressure.shape[1]):
+            axes.plot(degrees, pressure[:, column], color="#b8cfe0", linewidth=0.7)
         axes.plot(degrees, pressure.max(axis=1), color=COLOURS[1])
         axes.axhline(safety.limit, color=COLOURS[2], linewidth=1.0, linestyle=(0, (4, 2)))
         axes.plot(degrees[safety.position], safety.largest, "o", color=COLOURS[0], markersize=4.0)
@@ -102,5 +104,5 @@ def draw_pressure(
         axes.set_ylim(0.0, 1.12 * max(safety.limit, safety.largest))
         axes.set_xlabel("crank angle φ_C [°]")
         axes.set_ylabel("flank pressure at mid-width [MPa]")
-        axes.set_title(f"{title}: safety {safety.safety:.3f} against {safety.limit:g} MPa (pin {safety.pin})")
+        axes.set_title(f"{title}: safety {safety.safety:.3f} against {safety.limit:g} MPa ({pin})")
         return _save(figure, stem)

@@ -19,7 +19,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.figures.run_figures import COLOURS, STYLE, disc_by_disc, draw_curves
+from ltca.figures.run_figures import COLOURS, STYLE, draw_curves
 from ltca.geometry.flank import FlankProfile
 from ltca.output.files import whole_file
 
@@ -78,7 +78,8 @@ def hardest_roller(fields: xr.Dataset, case: str) -> tuple[str, dict[str, int]]:
 def _named(fields: xr.Dataset, side: str, place: dict[str, int]) -> str:
     angle = float(np.degrees(fields["crank_angle"].values[place["position"]]))
     race = "bore" if side == "outer" else "inner race"
-    return f"roller {place['roller']} on the {race}, crank angle {angle:.4g}°"
+    disc = f" of disc {place['disc']}" if fields.sizes["disc"] > 1 else ""
+    return f"roller {place['roller']} on the {race}{disc}, crank angle {angle:.4g}°"
 
 
 def flank_arc_length(profile: FlankProfile, samples: int = 4001) -> tuple[FloatArray, FloatArray]:
@@ -103,7 +104,6 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
         Any of the cases, for the flank.
     """
     profile = FlankProfile.of_drive(single_discs(drive)[0])
-    results = disc_by_disc(results)
     theta, arc = flank_arc_length(profile)
     half = theta.size // 2
     tip = float(arc[half])
@@ -118,7 +118,7 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     tooth = theta[-1]
     for number, name in enumerate(names):
         colour = COLOURS[number % len(COLOURS)]
-        data = results.isel(case=number)
+        data = results.isel(case=number, crank=0)  # all discs: their flanks are alike
         load = data["pin_load"].values
         loaded = load > LOADED_FRACTION * load.max()
         place = np.interp(np.mod(data["pin_contact_parameter"].values[loaded], tooth), theta, arc)

@@ -1,10 +1,14 @@
-"""Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: six cases per axes, labelled directly."""
+"""Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: six cases per axes, labelled directly.
+
+Several discs have a curve each: dashed from the second on, so that equal ones are both seen; of several cases in the
+colour of their case.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -38,6 +42,44 @@ STYLE: Any = {
 }
 
 
+DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (8, 3)))
+"""Lines of disc after disc."""
+MOST_CURVES = 16
+"""Names beside one axes; more cannot be told apart."""
+
+
+class Line(NamedTuple):
+    """How a curve is drawn.
+
+    Attributes
+    ----------
+    colour : str
+        Of the line and its name.
+    dashes : str or tuple
+        A line style of matplotlib's.
+    """
+
+    colour: str
+    dashes: Any = "-"
+
+
+def plain_lines(count: int) -> list[Line]:
+    """Return lines of curves that differ in colour alone."""
+    return [Line(COLOURS[number % len(COLOURS)]) for number in range(count)]
+
+
+def _lines(dataset: xr.Dataset) -> list[Line]:
+    """Lines of what `disc_by_disc` has put side by side."""
+    if "of_case" not in dataset.coords:
+        return plain_lines(dataset.sizes["case"])
+    discs = [int(disc) for disc in dataset["disc"].values]
+    colours = discs if len(set(dataset["of_case"].values)) == 1 else dataset["of_case"].values
+    return [
+        Line(COLOURS[int(colour) % len(COLOURS)], DASHES[disc % len(DASHES)])
+        for colour, disc in zip(colours, discs, strict=True)
+    ]
+
+
 def _degrees(dataset: xr.Dataset) -> FloatArray:
     return np.asarray(np.degrees(dataset["crank_angle"].values))
 
@@ -51,6 +93,7 @@ def draw_curves(
     x_label: str,
     y_label: str,
     limits: tuple[float, float] | None = None,
+    lines: Sequence[Line] | None = None,
 ) -> None:
     """Draw one curve for each case and put its name at its right end, moved apart where ends coincide.
 
@@ -58,9 +101,10 @@ def draw_curves(
     """
     order = np.argsort(x, kind="stable")
     few = x.size < 40
-    for number, curve in enumerate(curves):
-        colour = COLOURS[number % len(COLOURS)]
-        axes.plot(x[order], curve[order], color=colour, marker="o" if few else None, markersize=3.0)
+    lines = plain_lines(len(curves)) if lines is None else lines
+    for curve, line in zip(curves, lines, strict=True):
+        marker = "o" if few else None
+        axes.plot(x[order], curve[order], color=line.colour, linestyle=line.dashes, marker=marker, markersize=3.0)
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
     axes.margins(x=0.0)
@@ -69,7 +113,7 @@ def draw_curves(
     elif np.nanmin(curves) >= 0.0:
         axes.set_ylim(bottom=0.0)
     _mark_a_turn(axes, x[order])
-    _label_ends(axes, x[order], curves[:, order], names)
+    _label_ends(axes, x[order], curves[:, order], names, lines)
 
 
 def _mark_a_turn(axes: Any, x: FloatArray) -> None:
@@ -79,7 +123,7 @@ def _mark_a_turn(axes: Any, x: FloatArray) -> None:
         axes.set_xticks(np.arange(0.0, 361.0, 60.0))
 
 
-def _label_ends(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str]) -> None:
+def _label_ends(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str], lines: Sequence[Line]) -> None:
     low, high = axes.get_ylim()
     ends = (curves[:, -1] - low) / (high - low)
     order = np.argsort(ends, kind="stable")
@@ -98,8 +142,7 @@ def _label_ends(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[st
     places += max(0.0, -places[0]) if places[-1] <= 1.0 else min(0.0, 1.0 - places[-1])
     right = (x[-1] - axes.get_xlim()[0]) / (axes.get_xlim()[1] - axes.get_xlim()[0])
     for place, number in zip(places, order, strict=True):
-        colour = COLOURS[number % len(COLOURS)]
-        frame = {"color": colour, "transform": axes.transAxes, "clip_on": False}
+        frame = {"color": lines[number].colour, "transform": axes.transAxes, "clip_on": False}
         axes.text(1.045, place, names[number], va="center", fontsize=8.5, **frame)
         # A plain line: an arrow to the text is clipped at its frame by bisection, a quarter of the time of a figure.
         axes.add_artist(Line2D([right, 1.038], [ends[number], place], linewidth=0.6, **frame))
@@ -136,7 +179,7 @@ def _one_quantity(
         if element is not None:
             values = values[:, :, element]
         axes = figure.subplots()
-        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label)
+        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label, lines=_lines(data))
         axes.set_title(title)
 
     return draw
@@ -144,16 +187,17 @@ def _one_quantity(
 
 def _number_loaded(name: str, title: str) -> Callable[[Figure, xr.Dataset], None]:
     def draw(figure: Figure, data: xr.Dataset) -> None:
-        names, x, counts = _cases(data), _degrees(data), _loaded(data, name)
+        names, x, counts, lines = _cases(data), _degrees(data), _loaded(data, name), _lines(data)
         # Whole numbers of six cases would lie on each other: one narrow axes each.
+        figure.set_figheight(max(figure.get_figheight(), 0.6 * len(names)))
         axes = np.atleast_1d(figure.subplots(len(names), 1, sharex=True, sharey=True))
         for number, (axis, case) in enumerate(zip(axes, names, strict=True)):
-            axis.step(x, counts[number], where="mid", color=COLOURS[number % len(COLOURS)])
+            axis.step(x, counts[number], where="mid", color=lines[number].colour)
             axis.set_ylim(counts.min() - 0.5, counts.max() + 0.5)
             axis.yaxis.set_major_locator(mpl.ticker.MaxNLocator(integer=True, nbins=3))
             axis.text(
                 1.01, 0.5, f"{case}\nmean {counts[number].mean():.2f}", transform=axis.transAxes, va="center",
-                color=COLOURS[number % len(COLOURS)], fontsize=8.5,
+                color=lines[number].colour, fontsize=8.5,
             )  # fmt: skip
             axis.margins(x=0.0)
         _mark_a_turn(axes[-1], x)
@@ -168,7 +212,9 @@ def _bearing(figure: Figure, data: xr.Dataset) -> None:
     total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
     axes = figure.subplots()
     limits = (0.98 * total.min(), 1.01 * total.max())
-    draw_curves(figure, axes, _degrees(data), total, _cases(data), CRANK, "total bearing load [N]", limits)
+    draw_curves(
+        figure, axes, _degrees(data), total, _cases(data), CRANK, "total bearing load [N]", limits, _lines(data)
+    )
     axes.set_title("Bearing load of the crank (Fig. 28)")
 
 
@@ -178,10 +224,20 @@ def _bearing_component(name: str, label: str, title: str) -> Callable[[Figure, x
         axes = figure.subplots()
         room = 0.06 * max(np.ptp(values), 1e-6)
         limits = (values.min() - room, values.max() + room)
-        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label, limits)
+        draw_curves(figure, axes, _degrees(data), values, _cases(data), CRANK, label, limits, _lines(data))
         axes.set_title(title)
 
     return draw
+
+
+def _torque_share(figure: Figure, data: xr.Dataset) -> None:
+    share, equal = data["torque_share"].values, 1.0 / (1 + int(data["disc"].values.max()))
+    room = max(0.02, 1.1 * float(np.max(np.abs(share - equal))))
+    axes = figure.subplots()
+    axes.axhline(equal, color="#7a7a7a", linewidth=0.6)
+    limits = (equal - room, equal + room)
+    draw_curves(figure, axes, _degrees(data), share, _cases(data), CRANK, "part of the torque", limits, _lines(data))
+    axes.set_title(f"Part of the torque that each disc carries (largest {share.max():.3f}, equal parts {equal:.3f})")
 
 
 def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
@@ -201,10 +257,12 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
         order = np.argsort(place.ravel(), kind="stable")
         x, curves = place.ravel()[order], load.reshape(len(names), -1)[:, order]
     else:
-        count = np.maximum(np.bincount(bins.ravel(), minlength=centres.size), 1)
-        x = centres
-        curves = np.stack([np.bincount(bins.ravel(), case.ravel(), minlength=centres.size) / count for case in load])
-    draw_curves(figure, axes, x, curves, names, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
+        count = np.bincount(bins.ravel(), minlength=centres.size)
+        met = count > 0  # at few positions rollers pass some places never
+        x, sums = centres[met], [np.bincount(bins.ravel(), case.ravel(), minlength=centres.size) for case in load]
+        curves = np.stack([total[met] / count[met] for total in sums])
+    label = "angle of the roller from the eccentricity [°]"
+    draw_curves(figure, axes, x, curves, names, label, "load on the bore [N]", lines=_lines(data))
     axes.set_xlim(0.0, 360.0)
     axes.set_xticks(np.arange(0.0, 361.0, 60.0))
     axes.set_title("Load distribution over the rollers (Fig. 34)")
@@ -227,11 +285,19 @@ FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
     "fig34_roller_load": _roller_distribution,
     "fig35_pin_shaft_load": _one_quantity("pin_shaft_load", 0, "load [N]", "Load of shaft pin 0 (Fig. 35)"),
     "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins (Fig. 36)"),
+    "torque_share": _torque_share,
 }
 
 
 OF_THE_DRIVE = ("fig23_transmission_error",)
 """What is no disc's own."""
+OF_SEVERAL_DISCS = ("torque_share",)
+"""What a drive of one disc has not."""
+
+
+def figure_names(number_of_discs: int) -> list[str]:
+    """Return the names of the figures of a run, keys of `FIGURES`."""
+    return [name for name in FIGURES if number_of_discs > 1 or name not in OF_SEVERAL_DISCS]
 
 
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
@@ -245,10 +311,14 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
         Of `ltca.analysis.results.build_dataset`; of several discs each has a curve of its own.
     """
     dataset = _answered(dataset)
+    if name in OF_SEVERAL_DISCS:
+        dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
     shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else disc_by_disc(dataset)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         FIGURES[name](figure, shown)
+        if "of_case" in shown.coords and (drawn := int(shown["of_case"].max()) + 1) < dataset.sizes["case"]:
+            figure.text(0.005, 0.005, f"{drawn} of {dataset.sizes['case']} cases", fontsize=7.0)
     return figure
 
 
@@ -260,7 +330,7 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
-    """Return every disc of every case as a case of its own, as far as there are colours; without disc and crank.
+    """Return every disc of every case as a case of its own; where they are too many, the cases that have room.
 
     Parameters
     ----------
@@ -270,16 +340,16 @@ def disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
     discs = dataset.sizes["disc"]
     if discs == 1:
         return dataset.isel(disc=0, crank=0)
-    cases = [
-        (case, disc, f"{dataset['case'].values[case]}, disc {disc}" if dataset.sizes["case"] > 1 else f"disc {disc}")
-        for case in range(dataset.sizes["case"])
-        for disc in range(discs)
-    ][: len(COLOURS)]
+    shown = range(min(dataset.sizes["case"], max(1, MOST_CURVES // discs)))
+    curves = [(case, disc) for case in shown for disc in range(discs)]
+    several = dataset.sizes["case"] > 1
     index = {
-        "case": xr.DataArray([case for case, _, _ in cases], dims="case"),
-        "disc": xr.DataArray([disc for _, disc, _ in cases], dims="case"),
+        "case": xr.DataArray([case for case, _ in curves], dims="case"),
+        "disc": xr.DataArray([disc for _, disc in curves], dims="case"),
     }
-    return dataset.isel(crank=0).isel(index).assign_coords(case=[name for _, _, name in cases])
+    names = [f"{dataset['case'].values[case]}, disc {disc}" if several else f"disc {disc}" for case, disc in curves]
+    of_case = ("case", [case for case, _ in curves])
+    return dataset.isel(crank=0).isel(index).assign_coords(case=names, of_case=of_case)
 
 
 def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
@@ -298,7 +368,7 @@ def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
         The PNG of each figure when both files are written.
     """
     with mpl.rc_context(STYLE):
-        for name in FIGURES:
+        for name in figure_names(dataset.sizes["disc"]):
             figure = draw_figure(name, dataset)
             # One layout serves both files: to find it takes as long as to draw.
             layout = figure.get_layout_engine()
