@@ -126,7 +126,7 @@ def _mark_a_turn(axes: Any, x: FloatArray) -> None:
 def _label_ends(axes: Any, x: FloatArray, curves: FloatArray, names: Sequence[str], lines: Sequence[Line]) -> None:
     low, high = axes.get_ylim()
     ends = (curves[:, -1] - low) / (high - low)
-    order = np.argsort(ends, kind="stable")
+    order = np.argsort(np.round(ends, 6), kind="stable")  # ends that coincide keep the order of the names
     gap = 0.062
     places = ends[order].copy()
     for _ in range(200):  # push overlapping labels apart, half each way
