@@ -35,6 +35,7 @@ from ltca.drive.materials import (
 )
 from ltca.drive.names import Name
 from ltca.drive.units import COUNT, quantity
+from ltca.errors import DriveError
 
 SAME_PART = 1e-9
 """Angle between two flanks that are cut alike, rad: round-off of a phase, far below what moves a flank by a nanometre."""
@@ -128,6 +129,14 @@ class Disc:
         """ζ of every disc, rad."""
         count = self.number_of_discs
         return self.phases or tuple(2.0 * pi * disc / count for disc in range(count))
+
+    @property
+    def phase(self) -> float:
+        """ζ of the one disc, rad; DriveError where there are several."""
+        if self.number_of_discs != 1:
+            told = f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, see ltca.drive.single_discs"
+            raise DriveError([told])
+        return self.disc_phases[0]
 
     @property
     def disc_planes(self) -> tuple[float, ...]:
@@ -305,10 +314,7 @@ class Drive:
         return -self.pin_wheel.number_of_pins / self.disc.number_of_teeth
 
     def wheel_moment(self, torque: float | None = None) -> float:
-        """Return the external moment on the wheel, ccw positive, in the mean over a turn, N·mm.
-
-        With the pin shaft held it is the same at every position. With the pin wheel held it is what holds the wheel, which
-        follows the crank's moment (`ltca.equilibrium.output_torque`).
+        """Return the external moment on the wheel, ccw positive, N·mm: of a held one the mean (`ltca.equilibrium.output_torque`).
 
         Parameters
         ----------
@@ -337,14 +343,12 @@ class Drive:
     @property
     def flank_turn(self) -> float:
         """How far the flank of a drive of one disc is turned against its holes, −Δz ζ/z_C, rad."""
-        (phase,) = self.disc.disc_phases
-        return -self.tooth_number_difference * phase / self.disc.number_of_teeth
+        return -self.tooth_number_difference * self.disc.phase / self.disc.number_of_teeth
 
     @property
     def eccentric_phase(self) -> float:
         """Actual phase of the eccentric of a drive of one disc, ζ and its error, rad."""
-        (phase,) = self.disc.disc_phases
-        return phase + (self.crank.of[0].phase_error if self.crank.of else 0.0)
+        return self.disc.phase + (self.crank.of[0].phase_error if self.crank.of else 0.0)
 
     @property
     def part_turn(self) -> tuple[float, int, int]:

@@ -95,7 +95,6 @@ class Placement:
         holes = shaft.number_of_pins
         rollers = bearing.number_of_rollers
         pitch_radius = bearing.inner_race_radius + bearing.roller_radius
-        (phase,) = drive.disc.disc_phases
         pocket_error = _filled(bearing.roller_errors.tangential, rollers) / pitch_radius
         return cls(
             wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
@@ -104,7 +103,7 @@ class Placement:
             hole_radii=drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, holes),
             shaft_pin_centres=_circle(shaft.pin_circle_radius, holes, shaft.pin_errors),
             shaft_pin_radii=shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, holes),
-            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error + phase,
+            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error + drive.disc.phase,
             roller_radii=bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers),
             inner_race_radius=bearing.inner_race_radius,
             bore_radius=drive.bore_radius,
