@@ -299,10 +299,7 @@ class Drive:
 
     @property
     def transmission_ratio(self) -> float:
-        """Turns of the crank for one of the output, negative where they turn against each other.
-
-        z_P/Δz with the pin shaft held, −z_C/Δz with the pin wheel held.
-        """
+        """Turns of the crank for one of the output: z_P/Δz with the pin shaft held, −z_C/Δz with the pin wheel held."""
         teeth = self.disc.number_of_teeth if self.wheel_is_held else self.pin_wheel.number_of_pins
         return (-1.0 if self.wheel_is_held else 1.0) * teeth / self.tooth_number_difference
 
