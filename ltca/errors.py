@@ -77,9 +77,19 @@ class ConvergenceError(CycloError):
 
     def __init__(self, message: str, history: Sequence[float] = ()) -> None:
         self.partial: Any = None
+        self.cause = ""
         self.history = tuple(float(value) for value in history)
         tail = ", ".join(f"{value:.3g}" for value in self.history[-8:])
         super().__init__(f"{message}; last residuals: {tail}" if tail else message)
+
+    def add(self, cause: str) -> None:
+        """Put before the message what was asked for: field, value, unit."""
+        self.cause = cause
+
+    def __str__(self) -> str:
+        """Say what did not converge."""
+        told = super().__str__()
+        return f"{self.cause}: {told}" if self.cause else told
 
 
 def shortened(value: Any, most: int = 60) -> str:

@@ -16,6 +16,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ContactPressures, Response
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
+from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.interference import ROUNDING, drawn_interference
@@ -96,6 +97,42 @@ def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ..
         if overlap > 0.5 * approach[worst]:
             return f"{field} = {value:g} mm: an overlap of {overlap:.4g} mm as drawn"
     return "load.torque" if torque is None else f"load.torque = {torque:g} N·mm"
+
+
+def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
+    """Return what to say where shaft pins lie wider in their holes than half-spaces stand for, None where they do not.
+
+    Their loads go through springs and stay what they are; the pressures are those of bodies less curved.
+
+    Parameters
+    ----------
+    drive : Drive
+        For the radius.
+    pressures : ContactPressures
+        Of the solved positions.
+    """
+    radius, widest = drive.pin_shaft.pin_radius, float(np.nanmax(pressures.holes.half_width))
+    if widest <= HALF_WIDTH_BOUND * radius:
+        return None
+    return (
+        f"shaft pins touch their holes over a half-width of {widest:.4g} mm, more than {HALF_WIDTH_BOUND:g} of their radius "
+        f"(pin_shaft.pin_radius = {radius:g} mm): their pressures are not to be trusted, loads are"
+    )
+
+
+def unborne_warning(pressures: ContactPressures) -> str | None:
+    """Return what to say of pressures that no gear bears, None below them.
+
+    Parameters
+    ----------
+    pressures : ContactPressures
+        Of the solved positions.
+    """
+    kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
+    largest = max(float(np.nanmax(kind.mid)) for kind in kinds)
+    if largest <= BORNE:
+        return None
+    return f"contacts are pressed with up to {largest:.4g} MPa, more than any steel bears (some {BORNE:g} MPa)"
 
 
 def separation_warning(

@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.analysis.half_width_guard import check_half_widths, separation_warning
+from ltca.analysis.half_width_guard import (
+    check_half_widths,
+    separation_warning,
+    unborne_warning,
+    wide_holes_warning,
+)
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures
@@ -18,7 +23,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.unit_table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
-from ltca.equilibrium.partial_balance import balance_what_can_be
+from ltca.equilibrium.partial_balance import balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import (
     bearing_forces,
     disc_pressures,
@@ -26,7 +31,7 @@ from ltca.equilibrium.reducer import (
     disc_torques,
     geometries,
 )
-from ltca.errors import DriveError, shortened
+from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.frozen_arrays import freeze
 from ltca.geometry.interference import preload_warning
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_pose
@@ -127,6 +132,12 @@ class LoadedAnalysis:
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
         found = [stiffness_warning(self.drive), preload_warning(self.drive)]
+        if self.drive.load.light_torque > self.torque:
+            found.append(
+                f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
+                "that it is light against"
+            )
+        found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             if isinstance(disc.model, HalfSpaceCompliance):
@@ -189,7 +200,12 @@ def analyse(
     check_half_widths(drive, full.found.response, pressures, torque)
     start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
     start[full.rows] = full.found.pose
-    light = balance_what_can_be(at_light_torque, angle.size, start)
+    try:
+        light = balance_what_can_be(at_light_torque, angle.size, start)
+    except ConvergenceError as error:
+        light = nothing_balanced(full.found, angle.size, error)
+    if light.failure is not None:
+        light.failure.add(f"load.light_torque = {drive.load.light_torque:g} N·mm")
     push = bearing_forces(full.found.response) * np.stack(
         [disc.placement.eccentric_direction(angle[full.rows]).conjugate() for disc in geometries(prepared.model)],
         axis=1,

@@ -148,6 +148,13 @@ def _solve_and_write(
 
     file, cases, engine, torque = chosen
     analyses, failures = _analyse(cases, angles, torque, engine, "cases")
+    cases = {name: cases[name] for name in analyses}
+    shown: dict[str, LoadedAnalysis] = {}
+    also: dict[str, ConvergenceError] = {}
+    if pressure_angles is not None:
+        shown, also = _analyse(cases, pressure_angles, torque, engine, "pressure fields")
+    if also:  # a field of a position without an answer is no field
+        raise next(iter(also.values()))
     summaries = {name: summarise(analysis) for name, analysis in analyses.items()}
     dataset = build_dataset(file.name, analyses, file.text)
     with whole_file(out / "results.nc") as part:
@@ -157,9 +164,6 @@ def _solve_and_write(
     if pressure_angles is not None:
         from ltca.analysis.pressure_fields import build_pressure_dataset
 
-        shown, also = _analyse(cases, pressure_angles, torque, engine, "pressure fields")
-        if also:  # a field of a position without an answer is no field
-            raise next(iter(also.values()))
         fields = build_pressure_dataset(file.name, shown, drive_file=file.text)
         packed = {name: {"zlib": True} for name in fields if str(name).endswith(("_pressure", "_outer", "_inner"))}
         with whole_file(out / "pressure.nc") as part:
@@ -172,11 +176,11 @@ def _solve_and_write(
     print(_sampling(analyses, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
-        count = sum(int((~known).sum()) for known in (failure.partial.balanced, failure.partial.balanced_light))
-        print(
-            f"cyclo: error: case {name}: partial: {count} of {2 * angles.size} states have no answer: {failure}",
-            file=sys.stderr,
-        )
+        left = 2 * angles.size
+        if failure.partial is not None:
+            left = sum(int((~known).sum()) for known in (failure.partial.balanced, failure.partial.balanced_light))
+        told = f"case {name}: partial: {left} of {2 * angles.size} states have no answer"
+        print(f"cyclo: error: {told}: {failure}", file=sys.stderr)
     if figures:
         _draw(dataset, fields, cases, out / "figures")
     return ConvergenceError.exit_status if failures else 0
@@ -206,10 +210,12 @@ def _analyse(
             try:
                 analyses[name] = analyse(drive, angles, torque, engine)
             except ConvergenceError as error:
-                if error.partial is None:
-                    raise
-                analyses[name], failures[name] = error.partial, error
+                failures[name] = error
+                if error.partial is not None:
+                    analyses[name] = error.partial
             advance(name)
+    if not analyses:
+        raise next(iter(failures.values()))
     return analyses, failures
 
 

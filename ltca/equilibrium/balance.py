@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance.response import BatchModel, ComplianceModel, Response
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
-from ltca.equilibrium.newton import Search
+from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import disc_responses, geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.first_contact import turn_to_contact
@@ -142,7 +142,7 @@ def solve_equilibrium(
         elif start is None:
             pose[rest] = _at_first_contact(_rows_of(model, rest, angle.size), angle[rest], moment[rest])
         left = np.union1d(left, search.iterate(ITERATIONS, rest, inner))
-    if left.size:
+    if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
     if left.size:
         raise _failure(search, left)
@@ -215,6 +215,12 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.asarray(rows[level != 1.0])
 
 
+def _below_round_off(search: Search, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Whether loads are so small that round-off of the approaches, times their stiffness, is no small part of them."""
+    _, _, tangent = search.evaluate(rows, search.pose[rows], None)
+    return np.asarray(search.round_off(tangent) > ROUND_OFF_BOUND * search.load[rows])
+
+
 def _failure(search: Search, rows: NDArray[np.intp]) -> ConvergenceError:
     """What to say of positions that do not balance."""
     residual, count = search.history[-1], search.angle.size
@@ -226,6 +232,13 @@ def _failure(search: Search, rows: NDArray[np.intp]) -> ConvergenceError:
         return ConvergenceError(
             f"{place}): the teeth slip, wheel or disc turns by more than half a pin pitch ({search.half_pitch:.4g} rad) "
             f"under {abs(search.moment[worst]):.4g} N·mm; residual in N",
+            history,
+        )
+    if np.all(_below_round_off(search, rows[rows == worst])):
+        return ConvergenceError(
+            f"{place}, {rows.size} unbalanced): {abs(search.moment[worst]):.4g} N·mm on the wheel are a load of "
+            f"{search.load[worst]:.3g} N, too small to be balanced: approaches are known to round-off of the pin circle "
+            "alone, and their stiffness makes more of it; residual in N",
             history,
         )
     return ConvergenceError(

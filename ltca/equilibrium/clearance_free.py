@@ -36,6 +36,9 @@ from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
+WHEEL = 3
+"""Place of the wheel angle in the unknowns: behind the disc, before the rollers."""
+
 CELLS = 12
 PASSES = 4
 FACTORISATIONS = 60
@@ -211,13 +214,13 @@ class _System:
         wheel_lever = place.eccentricity * place.reduction_ratio
         self.lever = np.array([1.0, 1.0, wheel_lever - place.eccentricity, wheel_lever])
         self.load = np.zeros(4 + self.rollers)
-        self.load[WHEEL_ANGLE] = wheel_moment / wheel_lever
+        self.load[WHEEL] = wheel_moment / wheel_lever
         self.displacement = np.zeros(4 + self.rollers)
         self.cells = cells
         # Some ten elastic approaches. A longer step comes from too few carrying cells: followed in parts, it meets
         # the cells that will carry before the disc has left the others.
         modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
-        self.step_bound = abs(self.load[WHEEL_ANGLE]) / (0.1 * modulus * drive.disc.thickness)
+        self.step_bound = abs(self.load[WHEEL]) / (0.1 * modulus * drive.disc.thickness)
 
         parts, bearing = drive.materials, drive.crank_bearing
         flank = geometry.flank(angle, self.start)
@@ -227,7 +230,7 @@ class _System:
             direction[:4] = flank.gradient[0, pin] / self.lever
             # Pins that the load presses on the flank start; without backlash the radial displacement of the disc
             # loads pins behind the pitch line as well, which then overlap and are taken in.
-            effective = direction[WHEEL_ANGLE] * self.load[WHEEL_ANGLE] > 0.0
+            effective = direction[WHEEL] * self.load[WHEEL] > 0.0
             modulus = contact_modulus(parts.disc, parts.wheel_pin)
             radius, approach = float(flank.effective_radius[0, pin]), float(flank.approach[0, pin])
             self._add(("pin", pin), modulus, radius, drive.disc.thickness, approach, direction, effective)
@@ -261,7 +264,7 @@ class _System:
         direction: FloatArray,
         effective: bool,
     ) -> None:
-        guess = 0.5 * abs(self.load[WHEEL_ANGLE])  # a few contacts share the load; grids are laid anew anyway
+        guess = 0.5 * abs(self.load[WHEEL])  # a few contacts share the load; grids are laid anew anyway
         self.patches[key] = _Patch(
             contact_modulus=modulus,
             radius=radius,

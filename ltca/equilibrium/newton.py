@@ -142,11 +142,14 @@ class Search:
             self.known = self.known.replaced(active, start)
         return np.union1d(active, asked[self.slipped[asked]])
 
+    def round_off(self, tangent: FloatArray) -> FloatArray:
+        """Return what round-off of the approaches makes of the residual, N."""
+        size = float(np.max(np.abs(self.place.wheel_pin_centres)))
+        return np.asarray(ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2)))
+
     def accepted(self, rows: NDArray[np.intp], tangent: FloatArray) -> FloatArray:
         """Return the largest residual that counts as balance, N."""
-        size = float(np.max(np.abs(self.place.wheel_pin_centres)))
-        round_off = ROUND_OFF * size * np.abs(np.trace(tangent, axis1=1, axis2=2))
-        load = self.load[rows]
+        round_off, load = self.round_off(tangent), self.load[rows]
         return np.asarray(np.maximum(TOLERANCE * load, np.minimum(round_off, ROUND_OFF_BOUND * load)))
 
     def walk(

@@ -73,6 +73,33 @@ class PartlyBalanced:
         return value
 
 
+def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceError) -> PartlyBalanced:
+    """Return positions of which none has an answer.
+
+    Parameters
+    ----------
+    like : Equilibrium
+        Whose arrays tell how many coordinates and pairs there are.
+    positions : int
+        How many were asked for.
+    failure : ConvergenceError
+        Why.
+    """
+    none = np.zeros(0, dtype=np.intp)
+    return PartlyBalanced(positions=positions, rows=none, found=_first(like, 0), failure=failure)
+
+
+def _first(value: Any, count: int) -> Any:
+    """The first few positions."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        return value[:count]
+    if isinstance(value, tuple):
+        return tuple(_first(item, count) for item in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{item.name: _first(getattr(value, item.name), count) for item in fields(value)})
+    return value
+
+
 def balance_what_can_be(balance: Balance, positions: int, start: FloatArray | None = None) -> PartlyBalanced:
     """Balance positions together, and where that fails find out which of them have an answer.
 

@@ -15,6 +15,7 @@ from ltca.commands.program import main
 from ltca.errors import ConvergenceError
 from ltca.figures.run_figures import draw_figure
 from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import shipped_drive
 
 ANGLES = 2.0 * np.pi * np.arange(8) / 8
 
@@ -78,6 +79,35 @@ def test_positions_without_an_answer_are_no_numbers(failing):
         assert summary[key] is None, key
     for key in ("ptp_transmission_error_light_arcsec", "backlash_wheel_arcmin"):
         assert summary[key] is not None, key
+
+
+def test_a_light_torque_without_any_answer_keeps_the_full_one(tmp_path, capsys):
+    """So light that round-off is a load: it was "no equilibrium", after minutes, and nothing was written."""
+    text = shipped_drive().replace("light_torque = 10000.0", "light_torque = 1e-6").split("[[case]]")[0]
+    cases = '[[case]]\nname = "tiny"\n[[case]]\nname = "good"\nload = { light_torque = 1e4 }\n'
+    (tmp_path / "tiny.toml").write_text(
+        text + '[[case]]\nname = "tiny"\n[[case]]\nname = "good"\nload = { light_torque = 1e4 }\n'
+    )
+    words = [
+        "run",
+        str(tmp_path / "tiny.toml"),
+        "--angles",
+        "0.3",
+        "1.7",
+        "--no-figures",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    assert main(words) == 1
+    told = capsys.readouterr().err
+    assert "case tiny: partial: 2 of 4 states have no answer: load.light_torque = 1e-06 N·mm: no equilibrium" in told
+    assert "too small to be balanced" in told
+    data = xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf")
+    np.testing.assert_array_equal(data["status_light"], [[1, 1], [0, 0]])
+    np.testing.assert_array_equal(data["status"], 0)
+    cases = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["cases"]
+    assert cases["tiny"]["max_pin_load_N"] == cases["good"]["max_pin_load_N"]
+    assert cases["tiny"]["ptp_transmission_error_light_arcsec"] is None
 
 
 def test_nothing_at_all_is_no_partial_result(failing):
