@@ -85,20 +85,9 @@ def test_a_light_torque_without_any_answer_keeps_the_full_one(tmp_path, capsys):
     """So light that round-off is a load: it was "no equilibrium", after minutes, and nothing was written."""
     text = shipped_drive().replace("light_torque = 10000.0", "light_torque = 1e-6").split("[[case]]")[0]
     cases = '[[case]]\nname = "tiny"\n[[case]]\nname = "good"\nload = { light_torque = 1e4 }\n'
-    (tmp_path / "tiny.toml").write_text(
-        text + '[[case]]\nname = "tiny"\n[[case]]\nname = "good"\nload = { light_torque = 1e4 }\n'
-    )
-    words = [
-        "run",
-        str(tmp_path / "tiny.toml"),
-        "--angles",
-        "0.3",
-        "1.7",
-        "--no-figures",
-        "--out",
-        str(tmp_path / "out"),
-    ]
-    assert main(words) == 1
+    drive, out = tmp_path / "tiny.toml", tmp_path / "out"
+    drive.write_text(text + cases)
+    assert main(["run", str(drive), "--angles", "0.3", "1.7", "--no-figures", "--out", str(out)]) == 1
     told = capsys.readouterr().err
     assert "case tiny: partial: 2 of 4 states have no answer: load.light_torque = 1e-06 N·mm: no equilibrium" in told
     assert "too small to be balanced" in told
