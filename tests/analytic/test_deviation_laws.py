@@ -72,6 +72,7 @@ def test_one_pin_moved_inward_takes_load_by_the_stiffness_of_the_pairs(paper_cas
         assert after.response.force[0, 3] == pytest.approx(drive.wheel_moment(), rel=1e-8)
 
 
+@pytest.mark.slow
 def test_ten_micrometres_are_the_sum_of_their_small_steps(paper_cases):
     """10 µm is as much as the approaches, other pins lift off on the way: the rates of all steps add up."""
     drive, angle = paper_cases["CS-6"], np.array([0.3])

@@ -39,6 +39,7 @@ def spots(points, width):
     return [Refinement(point.real, point.imag, 0.4 * width, 1.2 * width) for point in points]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("state", ["strain", "stress"])
 def test_lame_ring_by_patches(state):
     """Even pressure by 24 patches on one wall: the wall opposite, and this one but for the pressure right under it."""

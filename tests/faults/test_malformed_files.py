@@ -33,6 +33,7 @@ def is_clear(message):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("generate", "load"), [(malformed_drives, load_drive), (malformed_studies, load_sweep)])
 def test_malformed_files_are_refused_in_clear_lines(generate, load, tmp_path):
     refused = 0

@@ -86,6 +86,7 @@ def test_meshes_half_a_period_apart_even_out_the_order_of_the_teeth(odd):
     assert order(two, odd.load.torque) < 0.1 * order(odd, 0.5 * odd.load.torque)
 
 
+@pytest.mark.slow
 def test_two_models_of_one_disc_put_in_parallel_by_hand(odd):
     """Each disc alone under a part of the torque, parts moved until both turn the wheel alike: no code of several discs."""
     two = with_fields(odd, {"disc.number_of_discs": 2, "disc.of.1.runout.amount": 0.004})

@@ -59,6 +59,7 @@ def compared(drive, positions, coefficients):
     return compare_case(drive, positions, coefficients)
 
 
+@pytest.mark.slow
 def test_every_disc_meets_its_own_answer(compared, drive):
     """The half-space's answer to a disc is its own at every position, and not that of the other disc."""
     assert [item.full.case for item in compared] == ["CS-3, disc 0", "CS-3, disc 1"]
@@ -79,6 +80,7 @@ def test_an_analysis_of_several_discs_has_no_one_answer(drive):
         answers_of(analyse(drive, np.array(ANGLES)))
 
 
+@pytest.mark.slow
 def test_parts_stand_on_the_eccentric_of_their_disc(compared, drive):
     """The race of the second disc lies half a turn from that of the first; loaded pins touch its flank."""
     first, second = (position_scene(item) for item in compared)
@@ -90,6 +92,7 @@ def test_parts_stand_on_the_eccentric_of_their_disc(compared, drive):
                 assert np.dot(away / np.linalg.norm(away), contact["to"]) > 0.9
 
 
+@pytest.mark.slow
 def test_report_of_several_discs(compared, drive, coefficients, tmp_path):
     analysis = analyse(drive, np.array(ANGLES))
     figures = turn_figures(analysis)

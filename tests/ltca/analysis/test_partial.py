@@ -107,6 +107,7 @@ def test_nothing_at_all_is_no_partial_result(failing):
     assert caught.value.partial is None
 
 
+@pytest.mark.slow
 def test_run_keeps_what_it_has_and_says_so(failing, tmp_path, capsys):
     failing("full")
     words = [

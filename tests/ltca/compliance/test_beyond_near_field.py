@@ -105,6 +105,7 @@ def test_plane_strain_is_johnsons_whatever_the_patches(half_width, mixed, closed
         np.testing.assert_allclose(approach, closed_forms(kind, load, radius, drive), rtol=1e-7, err_msg=kind)
 
 
+@pytest.mark.slow
 def test_half_spaces_tend_to_plane_strain_with_the_width(mixed, closed_form):
     """What is taken off is what the law holds: approaches differ by end effects alone, less the wider the drive.
 

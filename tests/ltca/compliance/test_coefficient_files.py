@@ -72,6 +72,7 @@ def test_every_case_has_the_coefficients_of_its_own_bodies(paper_cases, derived)
     assert np.ptp([analysis.full.response.pin_load.max() for analysis in together.values()]) > 100.0
 
 
+@pytest.mark.slow
 def test_files_are_given_to_the_cases_they_belong_to(paper_cases, derived, tmp_path, capsys):
     cases = {name: paper_cases[name] for name in ("CS-1", "CS-6")}
     files = [write(drive, tmp_path / f"{name}.nc") for name, drive in cases.items()]
@@ -106,6 +107,7 @@ def test_files_of_other_bodies_are_refused_by_what_differs(paper_cases, tmp_path
     assert "thickness" not in str(refused.value)
 
 
+@pytest.mark.slow
 def test_files_of_other_clearances_are_used_only_if_they_say_so(paper_cases, tmp_path, capsys):
     nominal, clear = paper_cases["CS-1"], paper_cases["CS-6"]
     path = write(nominal, tmp_path / "nominal.nc")

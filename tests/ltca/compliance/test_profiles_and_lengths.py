@@ -68,6 +68,7 @@ def test_without_a_body_part_it_is_the_half_space_with_its_profiles(fields, pape
     assert np.max(np.abs(found["pose"] - even["pose"])) > 1e-3  # the fields are felt
 
 
+@pytest.mark.slow
 def test_crown_is_felt_on_a_body_part(paper_cases, closed_form, coarse_tables):
     """Uncrowned in silence before: at about the same load a crown of 10 µm presses a third higher, as on half-spaces."""
     drive = paper_cases["CS-1"]

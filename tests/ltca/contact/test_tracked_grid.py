@@ -115,6 +115,7 @@ def sweep(profile):
     return kind, approaches, np.array(shared)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("profile", PROFILES)
 def test_loads_are_continuous_where_grids_change(profile):
     """About a boundary of rungs both grids share the contact: stiffness is the slope of the load there too.

@@ -16,6 +16,7 @@ def all_of(modulus):
     return {part: {"youngs_modulus": modulus} for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")}
 
 
+@pytest.mark.slow
 def test_gigapascals_as_plain_number(vary):
     """E = 206 ended in 'the teeth slip'."""
     with pytest.raises(DriveError) as caught:
@@ -25,6 +26,7 @@ def test_gigapascals_as_plain_number(vary):
     assert "slip" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_torque_a_thousand_times_too_large(vary):
     with pytest.raises(
         DriveError, match=r"^load.torque = 3.773e\+08 N·mm is 377300 N·m and would press .*\"377.3 N m\""

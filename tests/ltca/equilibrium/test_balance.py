@@ -119,6 +119,7 @@ def test_loads_that_are_no_numbers_do_not_pass_for_balanced(models):
         solve_equilibrium(broken, np.array([0.1]), -1e5)
 
 
+@pytest.mark.slow
 def test_stagnation_is_an_error_with_its_history(models):
     """A bearing whose push turns round at every look: nothing balances, and the error says where."""
 

@@ -129,6 +129,7 @@ def test_derivatives_against_finite_differences(deviated):
         np.testing.assert_allclose(here.bend(load)[..., column] / lever / lever[column], bend, atol=1e-4 * size)
 
 
+@pytest.mark.slow
 def test_zero_deviations_change_nothing_to_the_last_bit(paper_cases):
     zeros = {
         "crank.eccentricity_error": 0.0,
@@ -236,6 +237,7 @@ def test_batch_of_real_drives_against_one_by_one():
         np.testing.assert_allclose(pressure, own_pressure, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_batch_of_far_off_drives_against_one_by_one(paper_cases, deviated):
     """Parts that interfere in their nominal place, orders, axes and design differing: equal to the residuals' 1e-9."""
     form = {name: value for name, value in DEVIATED.items() if "profile_errors" in name}

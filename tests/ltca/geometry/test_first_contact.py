@@ -119,6 +119,7 @@ def test_pins_larger_than_their_flank_interfere_by_what_they_are_larger(paper_ca
     np.testing.assert_allclose(found, growth, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_flanks_that_overlap_every_pin_have_no_backlash(paper_cases):
     """The pins whose normals point at the axis were followed: a backlash of −179506′."""
     geometry = ContactGeometry.of_drive(with_offsets(paper_cases["CS-1"], -0.01, 0.0))

@@ -68,6 +68,7 @@ def test_a_wide_play_is_walked_to_its_end(vary):
         assert np.all(np.abs(turned) * 56.0 > 0.8)  # mm; 2e-3 of e z_P a round, eight rounds: 0.9
 
 
+@pytest.mark.slow
 def test_drives_of_other_kinds_have_an_answer(vary, paper_cases):
     """A flank as designed with pins all round, plastic clearances, deviations of every part."""
     angles = np.array([0.1, 1.7, 4.0])

@@ -50,6 +50,7 @@ def test_crowned_patch_is_hertz_point_contact(ratio):
     assert solution.half_width == pytest.approx(reference.half_axis_short, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("approach", [1e-9, 1e-7, 1e-5, 1e-3])
 def test_crowned_law_is_hertz_at_light_load(approach):
     law = law_at(CROWN)
@@ -64,6 +65,7 @@ def test_crowned_law_is_hertz_at_light_load(approach):
     assert float(law.half_width(approach, 2.0)) == pytest.approx(reference.half_axis_short, rel=tolerance)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("profile", [CROWN, LOGARITHMIC, RELIEVED])
 def test_load_and_stiffness_are_exact_derivatives(profile):
     law = law_at(profile)

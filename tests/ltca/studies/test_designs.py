@@ -21,6 +21,7 @@ def tolerance_design(factors, sequence, samples=60):
     return ToleranceDesign(factors=factors, samples=samples, seed=11, sequence=sequence)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sequence", ["random", "sobol", "saltelli"])
 def test_rows_do_not_depend_on_where_they_are_cut(factors, sequence):
     design = tolerance_design(factors, sequence)

@@ -27,6 +27,7 @@ def drive():
     return load_drive("paper").cases["CS-1"]
 
 
+@pytest.mark.slow
 def test_every_quantity_finely(drive):
     """Means over the positions, extremes of the search, the backlash over many more positions."""
     found = solve_finely(drive, tuple(QUANTITIES), HalfSpace(), 60)

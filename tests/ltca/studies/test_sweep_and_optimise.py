@@ -155,6 +155,7 @@ def test_optimum_of_a_parabola(drive):
     assert found.drive(found.best).disc.equidistant_offset == found.variables[found.best, 0]
 
 
+@pytest.mark.slow
 def test_limit_is_kept_and_met(drive):
     """Least of the first with the second at most 2e-3: on the line between both centres, where the circle cuts it."""
     limits = (Limit(quantity="max_roller_load", sense=1, value=2e-3),)

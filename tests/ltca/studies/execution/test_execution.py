@@ -54,6 +54,7 @@ def same_files(one, other):
         assert (one.path / name).read_bytes() == (other.path / name).read_bytes(), name
 
 
+@pytest.mark.slow
 def test_every_quantity_against_the_run_of_its_sample(paper):
     """The worst sample re-run by index gives what the study says of it."""
     study = small_study(paper, samples=3, quantities=("all",), positions=24)
