@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from ltca.equilibrium.reducer import disc_responses, reducer_of
 from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, disc_pose
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 # analyse balances to 1e-9 of a load of some 7000 N, over stiffnesses above 1e5 N/mm
@@ -231,3 +232,41 @@ def test_turning_the_whole_drive_by_a_phase(joint, discs):
         np.testing.assert_allclose(np.roll(first.pin_load, 5, axis=1), second.pin_load, rtol=0.0, atol=LOAD)
         np.testing.assert_allclose(np.roll(first.hole_load, 1, axis=1), second.hole_load, rtol=0.0, atol=LOAD)
         np.testing.assert_allclose(first.rollers.outer_load, second.rollers.outer_load, rtol=0.0, atol=LOAD)
+
+
+LENGTHS = {
+    "eccentricity", "pin_circle_radius", "pin_radius", "thickness", "equidistant_offset", "shifting_offset", "planes",
+    "inner_race_radius", "outer_race_radius", "roller_radius", "roller_length", "hole_radius", "bearing", "pin_hole", "amount",
+}  # fmt: skip
+
+
+def in_other_units(table, length, stress):
+    """Every field in a unit of length 1/length mm and of stress 1/stress MPa."""
+    factors = dict.fromkeys(LENGTHS, length) | {"youngs_modulus": stress, "stiffness": stress * length}
+    factors |= dict.fromkeys(("torque", "light_torque"), stress * length**3)
+
+    def changed(key, value):
+        if isinstance(value, dict):
+            return {name: changed(name, own) for name, own in value.items()}
+        if isinstance(value, list):
+            return [changed(key, own) for own in value]
+        return value * factors[key] if key in factors else value
+
+    return changed("", table)
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+@pytest.mark.parametrize(("length", "stress"), [(25.4, 1.0), (1e-2, 1e-3)])
+def test_units_are_a_matter_of_names(discs, length, stress):
+    """In inches or GPa a reducer has the same loads in its units, whichever member is held."""
+    table = tomllib.loads(shipped_drive("robot-joint"))
+    del table["tolerances"]
+    table["load"] = {"torque": 4e5, "light_torque": 1e4}
+    table["disc"] |= {"number_of_discs": discs, "phases": [], "planes": []}
+    table["disc"]["of"] = [{"runout": {"amount": 0.003, "angle": 1.0}}, *[{}] * (discs - 1)]
+    plain, other = (analyse(build_drive(one), ANGLES[:2]) for one in (table, in_other_units(table, length, stress)))
+    # residuals of 1e-9 of the load
+    loads = other.full.response.pin_load / (stress * length**2)
+    np.testing.assert_allclose(loads, plain.full.response.pin_load, rtol=0.0, atol=1e-4)
+    np.testing.assert_allclose(other.full.pose[:, WHEEL_ANGLE], plain.full.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(other.torque_share, plain.torque_share, rtol=0.0, atol=1e-8)
