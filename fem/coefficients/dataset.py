@@ -27,7 +27,6 @@ from fem.coefficients.bodies import (
     require_element_size,
 )
 from fem.coefficients.stations import DiscStations
-from fem.drive.expected_contacts import require_one_disc
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive, Materials
@@ -102,7 +101,6 @@ def derive_coefficients(
     MemoryLimitError
         When mesh and solution would not fit into memory.
     """
-    require_one_disc(drive)
     require_element_size(size, LARGEST_SIZE / COARSER)
     nominal = nominal_shape(drive, keep_clearance=keep_clearance)
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)

@@ -295,7 +295,6 @@ def expect_contacts(
         When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
         several discs.
     """
-    require_one_disc(drive)
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
     _refuse_wheel_axis(drive)
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))

@@ -132,10 +132,10 @@ class Disc:
 
     @property
     def phase(self) -> float:
-        """ζ of the one disc, rad; DriveError where there are several."""
-        if self.number_of_discs != 1:
-            told = f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, see ltca.drive.single_discs"
-            raise DriveError([told])
+        """ζ of the one disc, rad; DriveError where there are several, or one has something of its own."""
+        if self.number_of_discs != 1 or self.of:
+            told = f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"
+            raise DriveError([f"{told}, see ltca.drive.single_discs"])
         return self.disc_phases[0]
 
     @property

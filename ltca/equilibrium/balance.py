@@ -9,15 +9,14 @@ down to their own.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import BatchModel, ComplianceModel, Response
+from ltca.compliance.response import ComplianceModel, Response
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
-from ltca.equilibrium.reducer import disc_responses, geometries
+from ltca.equilibrium.reducer import at_rows, disc_responses, geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, ContactGeometry, disc_pose
@@ -123,7 +122,7 @@ def solve_equilibrium(
     first = leading_positions(model.discs[0].geometry, angle, moment)
     pose = np.zeros((angle.size, lever.shape[-1]))
     if start is None:
-        pose[first] = _at_first_contact(_rows_of(model, first, angle.size), angle[first], moment[first])
+        pose[first] = _at_first_contact(at_rows(model, first), angle[first], moment[first])
     else:
         pose[:] = start
     search = Search(model, angle, moment, lever, load, pose)
@@ -132,15 +131,14 @@ def solve_equilibrium(
     if rest.size:
         # A start that leads somewhere in a few steps is as good as what lies between neighbours.
         between = start is None or np.median(search.iterations[first]) > FEW
-        lost = np.zeros(0, dtype=np.intp) if left.size == 0 else left
-        known = np.setdiff1d(first, lost)
+        known = np.setdiff1d(first, left)
         inner = None
         if between and known.size:
             pose[rest] = pose_between(angle[known], pose[known], angle[rest])
             ratio = model.discs[0].geometry.placement.reduction_ratio
             inner = start_between(angle[known], search.known.take(known), angle[rest], ratio)
         elif start is None:
-            pose[rest] = _at_first_contact(_rows_of(model, rest, angle.size), angle[rest], moment[rest])
+            pose[rest] = _at_first_contact(at_rows(model, rest), angle[rest], moment[rest])
         left = np.union1d(left, search.iterate(ITERATIONS, rest, inner))
     if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
@@ -168,25 +166,16 @@ def _at_first_contact(model: ComplianceModel, angle: FloatArray, moment: FloatAr
     return pose
 
 
-def _rows_of(model: ComplianceModel, rows: NDArray[np.intp], positions: int) -> ComplianceModel:
-    batch = model.discs[0].geometry.placement.is_batch and rows.size != positions
-    return cast(BatchModel, model).take(rows) if batch else model
-
-
-def _taken(search: Search, rows: NDArray[np.intp]) -> ComplianceModel:
-    return cast(BatchModel, search.model).take(rows) if search.batch else search.model
-
-
 def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: FloatArray) -> Search:
     """The search for some positions under other torques."""
-    model = _taken(search, rows)
+    model = at_rows(search.model, rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Solve positions from heavier torques down to their own; return those that have no balance there either."""
-    pose = _at_first_contact(_taken(search, rows), search.angle[rows], search.moment[rows])
+    pose = _at_first_contact(at_rows(search.model, rows), search.angle[rows], search.moment[rows])
     level = np.full(rows.size, np.nan)
     for power in range(1, HEAVIEST + 1):
         new = np.nonzero(np.isnan(level))[0]
@@ -227,7 +216,8 @@ def _failure(search: Search, rows: NDArray[np.intp]) -> ConvergenceError:
     slipped = rows[search.slipped[rows]]
     worst = int(slipped[0] if slipped.size else rows[np.argmax((residual / search.load)[rows])])
     place = f"no equilibrium at crank angle {search.angle[worst]:.6g} rad (position {worst} of {count}"
-    history = [float(values[worst]) for values in search.history]
+    # Infinite before it was its turn.
+    history = [float(values[worst]) for values in search.history if not np.isinf(values[worst])]
     if slipped.size:
         return ConvergenceError(
             f"{place}): the teeth slip, wheel or disc turns by more than half a pin pitch ({search.half_pitch:.4g} rad) "

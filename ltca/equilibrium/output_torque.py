@@ -8,15 +8,14 @@ moment of every position. Contacts do not care who is held.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import BatchModel, ComplianceModel, Response
+from ltca.compliance.response import ComplianceModel, Response
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.equilibrium.reducer import disc_responses
+from ltca.equilibrium.reducer import at_rows, disc_responses
 from ltca.errors import ConvergenceError
 from ltca.geometry.pairs import disc_displacement, disc_pose
 
@@ -97,7 +96,7 @@ def solve_at_output(
     signed = np.repeat([drive.driving_sign for drive in each], repeats) * loads
 
     def balance(rows: NDArray[np.intp], moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
-        part = model if rows.size == angle.size else _taken(model, rows)
+        part = model if rows.size == angle.size else at_rows(model, rows)
         return solve_equilibrium(part, angle[rows], moment, begin)
 
     return _at_output(model, balance, angle, mean, signed, held, start)
@@ -169,7 +168,7 @@ def _at_output(
         before = left[open_rows]
         pose[open_rows] = part.pose
         iterations[open_rows] += part.iterations
-        model_part = model if open_rows.size == angle.size else _taken(model, open_rows)
+        model_part = model if open_rows.size == angle.size else at_rows(model, open_rows)
         left[open_rows] = (
             moment[open_rows] + crank_moment(model_part, angle[open_rows], part.pose, part.response) + signed[open_rows]
         )
@@ -191,10 +190,3 @@ def _at_output(
         residual=final.residual,
         iterations=iterations + final.iterations,
     )
-
-
-def _taken(model: ComplianceModel, rows: NDArray[np.intp]) -> ComplianceModel:
-    """The model at some positions: rows of a batch, itself where all are of one drive."""
-    if not model.discs[0].geometry.placement.is_batch:
-        return model
-    return cast(BatchModel, model).take(rows)

@@ -60,7 +60,7 @@ class Reducer:
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
         """Return the model of some positions of a batch."""
-        return Reducer(discs=tuple(take_rows(disc, rows) for disc in self.discs))
+        return Reducer(discs=tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs))
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
         """Return the contact forces of all discs.
@@ -163,11 +163,11 @@ def geometries(model: ComplianceModel) -> tuple[ContactGeometry, ...]:
     return tuple(disc.geometry for disc in model.discs)
 
 
-def take_rows(model: DiscModel, rows: NDArray[np.intp] | NDArray[np.bool_]) -> DiscModel:
-    """Return the model of a disc at some positions: these rows of a batch, itself where all are of one drive."""
-    if not model.geometry.placement.is_batch:
+def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ComplianceModel:
+    """Return the model at some positions: these rows of a batch, itself where all are of one drive."""
+    if not model.discs[0].geometry.placement.is_batch:
         return model
-    return cast(DiscModel, cast(BatchModel, model).take(rows))
+    return cast(BatchModel, model).take(rows)
 
 
 def _split_start(start: Start, count: int) -> list[Start]:

@@ -69,7 +69,7 @@ def plain_lines(count: int) -> list[Line]:
 
 
 def _lines(dataset: xr.Dataset) -> list[Line]:
-    """Lines of what `disc_by_disc` has put side by side."""
+    """Lines of what `_disc_by_disc` has put side by side."""
     if "of_case" not in dataset.coords:
         return plain_lines(dataset.sizes["case"])
     discs = [int(disc) for disc in dataset["disc"].values]
@@ -313,7 +313,7 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
-    shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else disc_by_disc(dataset)
+    shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else _disc_by_disc(dataset)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         FIGURES[name](figure, shown)
@@ -329,14 +329,8 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.isel(position=known) if np.any(known) and not np.all(known) else dataset
 
 
-def disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
-    """Return every disc of every case as a case of its own; where they are too many, the cases that have room.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`.
-    """
+def _disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
+    """Every disc of every case as a case of its own; where they are too many, the cases that have room."""
     discs = dataset.sizes["disc"]
     if discs == 1:
         return dataset.isel(disc=0, crank=0)
