@@ -29,7 +29,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.tolerances import Factors, Tolerances
-from ltca.drive.units import ARCSEC
+from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import disc_torques
 from ltca.geometry.pairs import WHEEL_ANGLE

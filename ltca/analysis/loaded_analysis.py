@@ -21,7 +21,7 @@ from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
-from ltca.drive.unit_table import range_of
+from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.partial_balance import balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import (

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.drive.units import ARCMIN, ARCSEC
+from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.reducer import geometries
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE

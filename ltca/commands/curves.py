@@ -266,7 +266,7 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     import numpy as np
 
     from ltca.analysis.engines import describe_engine
-    from ltca.drive.units import ARCMIN, ARCSEC
+    from ltca.drive.units.quantities import ARCMIN, ARCSEC
 
     curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
     discs, output = drive.disc.number_of_discs, "output" if drive.wheel_is_held else "wheel"

@@ -73,7 +73,7 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     import numpy as np
 
     from ltca.drive.single_discs import single_discs
-    from ltca.drive.units import ARCMIN
+    from ltca.drive.units.quantities import ARCMIN
     from ltca.geometry.first_contact import backlash
     from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
     from ltca.geometry.placement import position_angles
@@ -144,7 +144,7 @@ def _installation(drive: Drive) -> list[tuple[str, str]]:
 def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     import numpy as np
 
-    from ltca.drive.units import ARCMIN
+    from ltca.drive.units.quantities import ARCMIN
     from ltca.geometry.pairs import WHEEL_ANGLE
 
     def loaded(load: FloatArray) -> str:

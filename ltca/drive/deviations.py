@@ -11,11 +11,12 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.units import COUNT, quantity
+from ltca.drive.units.quantities import COUNT, quantity
 
 SignedLength = Annotated[float, quantity("mm")]
 NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
 Angle = Annotated[float, quantity("rad")]
+Number = Annotated[int, Field(ge=0, le=100), COUNT]
 Errors = tuple[SignedLength, ...]
 
 STRICT = ConfigDict(extra="forbid", strict=False)
@@ -56,6 +57,20 @@ class RollerErrors:
 
     tangential: Errors = ()
     diameter: Errors = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class BoreErrors:
+    """Errors of the places of the bores of a disc for several cranks; an empty tuple means zero for all.
+
+    Attributes
+    ----------
+    radial, tangential : tuple of float
+        Outward along the radius of the crank circle, and counter-clockwise at a right angle to it, mm.
+    """
+
+    radial: Errors = ()
+    tangential: Errors = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -146,7 +161,9 @@ class OneDisc:
     clearance : DiscClearance or None
         Its clearances.
     roller_errors : RollerErrors or None
-        In the place of ``crank_bearing.roller_errors``.
+        In the place of ``crank_bearing.roller_errors``, at every crank.
+    bore_errors : BoreErrors or None
+        Places of its bores, one number a bore.
     """
 
     runout: Runout | None = None
@@ -154,19 +171,24 @@ class OneDisc:
     hole_errors: PlacementErrors | None = None
     clearance: DiscClearance | None = None
     roller_errors: RollerErrors | None = None
+    bore_errors: BoreErrors | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class OneEccentric:
-    """An entry of ``[[crank.of]]``: the eccentric of one disc.
+    """An entry of ``[[crank.of]]``: the eccentric of one disc on one crank.
 
     Attributes
     ----------
+    disc, crank : int or None
+        Whose it is. Left out, entry k is that of disc k on a central crank.
     eccentricity_error : float or None
         In the place of ``crank.eccentricity_error``, mm.
     phase_error : float
         Actual less nominal phase of the eccentric, counter-clockwise, rad.
     """
 
+    disc: Number | None = None
+    crank: Number | None = None
     eccentricity_error: SignedLength | None = None
     phase_error: Angle = 0.0

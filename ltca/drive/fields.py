@@ -17,7 +17,7 @@ from pydantic.functional_validators import BeforeValidator
 
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.drive.units import QuantityCheck
+from ltca.drive.units.quantities import QuantityCheck
 from ltca.errors import DriveError, did_you_mean
 
 

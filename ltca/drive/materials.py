@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, NonNegativeLength
-from ltca.drive.units import quantity
+from ltca.drive.units.quantities import quantity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from ltca.drive.unit_table import label
+from ltca.drive.units.table import label
 from ltca.errors import did_you_mean, nearest, printable, shortened
 
 

@@ -34,7 +34,7 @@ from ltca.drive.materials import (
     contact_modulus as contact_modulus,
 )
 from ltca.drive.names import Name
-from ltca.drive.units import COUNT, quantity
+from ltca.drive.units.quantities import COUNT, quantity
 from ltca.errors import DriveError
 
 SAME_PART = 1e-9

@@ -19,7 +19,7 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.fields import element_count, field_kind, field_kinds, own_path, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.drive.units import quantity
+from ltca.drive.units.quantities import quantity
 from ltca.errors import DriveError, did_you_mean, printable, shortened
 
 FloatArray = NDArray[np.float64]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.torque_curve import LOST_MOTION, TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
-from ltca.drive.units import ARCMIN, ARCSEC
+from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.figures.run_figures import COLOURS, STYLE
 from ltca.output.files import whole_file
 

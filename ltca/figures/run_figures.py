@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ltca.analysis.summary import LOADED_FRACTION
-from ltca.drive.units import ARCSEC
+from ltca.drive.units.quantities import ARCSEC
 from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]

@@ -150,7 +150,7 @@ def quantity_argument(
     option : str
         For messages.
     unit : str
-        Unit of the result and of plain numbers, see `ltca.drive.units.quantity`.
+        Unit of the result and of plain numbers, see `ltca.drive.units.quantities.quantity`.
     gt, ge, le : float, optional
         Bounds (greater than, at least, at most) in that unit.
 
@@ -161,7 +161,7 @@ def quantity_argument(
     """
 
     def read(text: str) -> float:
-        from ltca.drive.units import parse_quantity
+        from ltca.drive.units.quantities import parse_quantity
 
         return parse_quantity(text, unit, option, gt=gt, ge=ge, le=le)
 
@@ -176,7 +176,7 @@ def torque_argument(text: str) -> float:
     DriveError
         When it is none.
     """
-    from ltca.drive.units import parse_quantity
+    from ltca.drive.units.quantities import parse_quantity
     from ltca.errors import DriveError
 
     try:

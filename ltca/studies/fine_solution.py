@@ -12,7 +12,7 @@ from ltca.analysis.engines import Engine
 from ltca.analysis.extremes import refine_extremes
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import Drive
-from ltca.drive.units import ARCSEC
+from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.reducer import geometries
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import WHEEL_ANGLE

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.fields import ANY, field_kind, field_kinds, read_field
 from ltca.drive.parts import Drive
-from ltca.drive.units import label, parse_quantity
+from ltca.drive.units.quantities import label, parse_quantity
 from ltca.errors import CycloError, DriveError, did_you_mean, shortened
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.drive.parts import Drive
-from ltca.drive.units import ARCMIN, ARCSEC
+from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import bearing_forces, geometries
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice

@@ -34,7 +34,7 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.drive.fields import field_kind, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.drive.units import quantity
+from ltca.drive.units.quantities import quantity
 from ltca.errors import MOST_TOLD, DriveError, did_you_mean, shortened
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import listed, load_drive

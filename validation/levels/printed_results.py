@@ -12,7 +12,7 @@ import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.analysis.summary import summarise
-from ltca.drive.units import ARCSEC
+from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.first_contact import unloaded_transmission_error
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles

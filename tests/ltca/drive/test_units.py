@@ -11,8 +11,8 @@ from typing import Annotated
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from ltca.drive.unit_table import UNITS, label, shown_units, spellings_of
-from ltca.drive.units import parse_quantity, quantity
+from ltca.drive.units.quantities import parse_quantity, quantity
+from ltca.drive.units.table import UNITS, label, shown_units, spellings_of
 from ltca.errors import DriveError
 
 

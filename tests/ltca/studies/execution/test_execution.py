@@ -65,7 +65,7 @@ def test_every_quantity_against_the_run_of_its_sample(paper):
     assert set(found) == set(QUANTITIES)
     alone = analyse(drive, position_angles(24))
     from ltca.analysis.summary import summarise
-    from ltca.drive.units import ARCSEC
+    from ltca.drive.units.quantities import ARCSEC
 
     told = summarise(alone)
     pairs = {

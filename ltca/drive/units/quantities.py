@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
-from ltca.drive.unit_table import QuantityError, is_plain_number, label as label, range_of, read_quantity
+from ltca.drive.units.table import QuantityError, is_plain_number, label as label, range_of, read_quantity
 from ltca.errors import DriveError, shortened
 
 ARCMIN = 180.0 / math.pi * 60.0
