@@ -32,7 +32,7 @@ from ltca.drive.tolerances import Factors, Tolerances
 from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import disc_torques
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive

@@ -53,7 +53,7 @@ def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple
     if fit is None:
         raise CycloError(
             f"{source}: has stations on {len(np.unique(dataset['station_boundary'].values))} boundaries; flank, bore and "
-            f"holes of {drive.name} are {2 + drive.pin_shaft.number_of_pins}"
+            f"holes of {drive.name} are {2 + drive.number_of_holes}"
         )
     return (
         Check(

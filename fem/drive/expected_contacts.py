@@ -310,7 +310,7 @@ def expect_contacts(
     roller_modulus = 1.0 / (1.0 / outer_modulus + 1.0 / inner_modulus)
     roller_stiffness = np.pi * roller_modulus * roller_length / APPROACH_LOGARITHM
     counts = [pins, rollers, len(placement.hole_radii)]
-    stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.pin_shaft.stiffness], counts)
+    stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.hole_stiffness], counts)
     moment = drive.wheel_moment(torque) if wheel_moment is None else wheel_moment
     pose, approach = _minimise(rigid, stiffness, moment)
     ends = np.cumsum(counts)[:-1]

@@ -69,7 +69,7 @@ class FullSolution:
         forces = pair_forces(model, list(self.state.integrals), self.state.contact.pressure)
         on_disc = -sum(force for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "roller_outer")
         push = complex(on_disc[0], on_disc[1])
-        lever = model.race_centre - complex(place.crank_axis)
+        lever = model.race_centre - complex(place.crank_axes[0])
         about_race = float(on_disc[2]) - (model.race_centre.conjugate() * push).imag
         return (lever.conjugate() * push).imag + float(place.cage_speed) * about_race
 

@@ -247,7 +247,7 @@ class DriveModel:
         motions = np.zeros((count, 4 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre
-        spring = self.drive.pin_shaft.stiffness
+        spring = self.drive.hole_stiffness
         by_roller: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
         for pair, integral in zip(self.pairs, integrals, strict=True):
             own = pair.unknowns

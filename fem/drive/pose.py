@@ -160,7 +160,7 @@ def _move(
     pins = np.zeros_like(pose.shaft_pin_displacements)
     for pair, force in zip(model.pairs, forces, strict=True):
         if pair.kind == "hole":
-            pins[pair.index] = complex(force[0], force[1]) / model.drive.pin_shaft.stiffness
+            pins[pair.index] = complex(force[0], force[1]) / model.drive.hole_stiffness
     increment = max(largest, float(np.max(np.abs(pins - pose.shaft_pin_displacements))))
     moved = DrivePose(
         disc_x=pose.disc_x + float(motion[0]),

@@ -222,7 +222,7 @@ def _add_contact(deck: _Deck, solution: FullSolution, pair: ContactPair, penalty
     if pair.kind == "hole":
         opposite = _add_rigid_arc(
             deck, pair, model.disc_pose(pose), model.circle_centre("hole", pair.index, pose),
-            drive.pin_shaft.stiffness, drive.disc.thickness, complex(pose.shaft_pin_displacements[pair.index]),
+            drive.hole_stiffness, drive.disc.thickness, complex(pose.shaft_pin_displacements[pair.index]),
         )  # fmt: skip
     else:
         body, _, first = deck.placed[_body_name(pair)]

@@ -28,6 +28,7 @@ from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
 from ltca.equilibrium.reducer import reducer_of
+from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
 
@@ -181,10 +182,11 @@ class HalfSpace:
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         singles = single_discs(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles])
+        supports = support_stiffness(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
         model = tables
         if self.contacts == "grids":
-            model = reducer_of([GridCompliance.of_drive(single) for single in singles])
+            model = reducer_of([GridCompliance.of_drive(single) for single in singles], supports)
         if self.method == "paper":
             if len(singles) > 1:
                 raise DriveError(
@@ -198,7 +200,8 @@ class HalfSpace:
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
         """Return the tables of several drives, each at the same number of positions."""
         discs = zip(*(single_discs(drive) for drive in drives), strict=True)
-        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs])
+        supports = support_stiffnesses(drives, positions)
+        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs], supports)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,12 +288,14 @@ class _Coupled:
             [
                 CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)
                 for single, own in zip(singles, each, strict=True)
-            ]
+            ],
+            support_stiffness(drive),
         )
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in single_discs(drive)])
+        singles, supports = single_discs(drive), support_stiffness(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
         return _FromTables(drive=drive, tables=tables, model=self.model(drive))
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:

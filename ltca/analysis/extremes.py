@@ -21,8 +21,8 @@ from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.neighbours import pose_between
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import bearing_forces, geometries
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.equilibrium.reducer import bearing_forces
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.placement import Placement, position_angles
 
 FloatArray = NDArray[np.float64]
@@ -145,7 +145,7 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = T
         the holes, too.
     """
     found = sampling(drive, crank_angle)
-    teeth, holes = drive.disc.number_of_teeth, drive.pin_shaft.number_of_pins
+    teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes
     needed = RESOLVED if refined else 2 * RESOLVED
     seen, what = found.distinct_mesh_phases, f"mesh of {teeth} teeth"
     if not refined and seen >= needed:
@@ -253,7 +253,7 @@ def passages_per_turn(drive: Drive) -> int:
     rollers = drive.crank_bearing.number_of_rollers * (
         1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
     )
-    return max(drive.disc.number_of_teeth, drive.pin_shaft.number_of_pins, ceil(rollers))
+    return max(drive.disc.number_of_teeth, drive.number_of_holes, ceil(rollers))
 
 
 def scan_angles(positions: int, passages: int) -> FloatArray:
@@ -353,6 +353,7 @@ class _Stage:
     angle: FloatArray
     pose: FloatArray
     torque: float
+    coordinates: Coordinates
 
     @classmethod
     def of(cls, found: Equilibrium, torque: float, signals: dict[str, FloatArray], passages: int) -> _Stage:
@@ -366,11 +367,13 @@ class _Stage:
             groups=groups,
             nearest=NEAREST * TURN / passages,
         )
-        return cls(search=search, angle=found.crank_angle, pose=found.pose, torque=torque)
+        return cls(
+            search=search, angle=found.crank_angle, pose=found.pose, torque=torque, coordinates=found.coordinates
+        )
 
     def start(self, angle: FloatArray) -> FloatArray:
         """Poses between those known."""
-        return pose_between(self.angle, self.pose, angle)
+        return pose_between(self.angle, self.pose, angle, self.coordinates)
 
     def add(self, angle: FloatArray, pose: FloatArray, signals: dict[str, FloatArray]) -> None:
         self.search.add(angle, np.hstack(list(signals.values())))
@@ -408,13 +411,12 @@ def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, Fl
 
 def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: ContactPressures) -> dict[str, FloatArray]:
     rollers, outer, inner = found.response.rollers, pressures.outer, pressures.inner
-    push = bearing_forces(found.response)
-    ahead = [disc.placement.eccentric_direction(found.crank_angle) for disc in geometries(analysis.model)]
-    tangential = (push * np.stack(ahead, axis=1).conjugate()).imag
+    push = bearing_forces(analysis.model, found.crank_angle, found.response).reshape(found.crank_angle.size, -1)
+    tangential = push.imag
     return {
         **_wheel_signals(analysis, found),
-        **{f"tangential_{disc}": column[:, None] for disc, column in enumerate(tangential.T)},
-        **{f"tangential_negative_{disc}": -column[:, None] for disc, column in enumerate(tangential.T)},
+        **{f"tangential_{bearing}": column[:, None] for bearing, column in enumerate(tangential.T)},
+        **{f"tangential_negative_{bearing}": -column[:, None] for bearing, column in enumerate(tangential.T)},
         "bearing": np.abs(push),
         "pin": found.response.pin_load,
         "roller": rollers.outer_load,

@@ -111,6 +111,8 @@ def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
     pressures : ContactPressures
         Of the solved positions.
     """
+    if drive.pin_shaft is None:
+        return None
     radius, widest = drive.pin_shaft.pin_radius, float(np.nanmax(pressures.holes.half_width))
     if widest <= HALF_WIDTH_BOUND * radius:
         return None

@@ -29,12 +29,11 @@ from ltca.equilibrium.reducer import (
     disc_pressures,
     disc_responses,
     disc_torques,
-    geometries,
 )
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.frozen_arrays import freeze
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import preload_warning
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_pose
 
 FloatArray = NDArray[np.float64]
 
@@ -57,7 +56,7 @@ class LoadedAnalysis:
         The compliance behind both.
     pressures : ContactPressures
         Pressures and half-widths at that torque.
-    bearing_radial, bearing_tangential : array, shape (positions, discs)
+    bearing_radial, bearing_tangential : array, shape (positions, discs, cranks)
         Bearing force on each disc along its own eccentricity and 90° ahead, N.
     wall_stresses : tuple of WallStresses
         Stresses along the walls of each disc at that torque; empty where bodies are half-spaces and have no walls.
@@ -182,7 +181,7 @@ def analyse(
     >>> import numpy as np
     >>> from ltca.reading.drive_file import load_drive
     >>> result = analyse(load_drive("paper").cases["CS-1"], np.array([0.5]))
-    >>> print(f"{result.bearing_tangential[0, 0]:.0f} N")
+    >>> print(f"{result.bearing_tangential[0, 0, 0]:.0f} N")
     6738 N
     """
     angle, torque = check_positions(crank_angle), check_torque(drive, torque)
@@ -206,10 +205,7 @@ def analyse(
         light = nothing_balanced(full.found, angle.size, error)
     if light.failure is not None:
         light.failure.add(f"load.light_torque = {drive.load.light_torque:g} N·mm")
-    push = bearing_forces(full.found.response) * np.stack(
-        [disc.placement.eccentric_direction(angle[full.rows]).conjugate() for disc in geometries(prepared.model)],
-        axis=1,
-    )
+    push = bearing_forces(prepared.model, angle[full.rows], full.found.response)
     analysis = LoadedAnalysis(
         drive=drive,
         torque=torque,
@@ -235,7 +231,7 @@ def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: Contact
     count = len(model.discs)
     parts = zip(model.discs, disc_responses(full.response), disc_pressures(pressures, count), strict=True)
     return tuple(
-        wall_stresses(disc, response, own, disc_pose(full.pose, number)[:, DISC_ROTATION])
+        wall_stresses(disc, response, own, full.pose[:, full.coordinates.columns(number)[DISC_ROTATION]])
         for number, (disc, response, own) in enumerate(parts)
         if isinstance(disc, CoupledCompliance)
     )

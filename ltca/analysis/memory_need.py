@@ -35,7 +35,11 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
     """
     pairs = sum(
         drive.disc.number_of_discs
-        * (drive.pin_wheel.number_of_pins + drive.crank_bearing.number_of_rollers + drive.pin_shaft.number_of_pins)
+        * (
+            drive.pin_wheel.number_of_pins
+            + drive.crank.number * drive.crank_bearing.number_of_rollers
+            + drive.number_of_holes
+        )
         for drive in drives
     )
     require_room(

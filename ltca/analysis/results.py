@@ -21,7 +21,7 @@ from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -101,7 +101,10 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
     full, light = analysis.full, analysis.light
     per_disc = [_disc_values(disc) for disc in analysis.discs]
     values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]}
-    return {name: _spread(value, VARIABLES.get(name) or WALL_VARIABLES[name]) for name, value in values.items()} | {
+    cranks = analysis.drive.crank.number
+    return {
+        name: _by_crank(value, VARIABLES.get(name) or WALL_VARIABLES[name], cranks) for name, value in values.items()
+    } | {
         "wheel_moment": full.wheel_moment,
         "wheel_angle": full.pose[:, WHEEL_ANGLE],
         "wheel_angle_light": light.pose[:, WHEEL_ANGLE],
@@ -165,9 +168,12 @@ def _wall_values(walls: WallStresses, pressures: ContactPressures) -> dict[str, 
     }
 
 
-def _spread(values: FloatArray, described: tuple[str, str, str]) -> FloatArray:
-    """Put the axis of the one crank behind that of the discs where a quantity has one."""
-    return values[:, None] if "crank" in DIMENSIONS[described[0]] else values
+def _by_crank(values: FloatArray, described: tuple[str, str, str], cranks: int) -> FloatArray:
+    """Put the axis of the cranks behind that of the discs where a quantity has one: pairs come crank after crank."""
+    if "crank" not in DIMENSIONS[described[0]]:
+        return values
+    parts = values.reshape(*values.shape[:2], cranks, -1).swapaxes(1, 2)
+    return parts[..., 0] if described[0] == "crank" else parts
 
 
 def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
@@ -175,7 +181,8 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
     discs = [[disc.geometry.placement for disc in analysis.model.discs] for analysis in analyses.values()]
     places = [each[0] for each in discs]
     first = next(iter(analyses.values()))
-    counts = {"pin": places[0].wheel_pin_radii.size, "roller": places[0].roller_radii.size}
+    cranks = places[0].cranks
+    counts = {"pin": places[0].wheel_pin_radii.size, "roller": places[0].roller_radii.size // cranks}
     counts["hole"] = places[0].hole_radii.size
     wheel_pins, shaft_pins = (
         np.stack([getattr(place, name) for place in places]) for name in ("wheel_pin_centres", "shaft_pin_centres")
@@ -192,7 +199,7 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
     return {
         "case": list(analyses),
         "disc": np.arange(len(discs[0])),
-        "crank": [0],
+        "crank": np.arange(places[0].cranks),
         "position": np.arange(first.full.crank_angle.size),
         **{name: np.arange(count) for name, count in counts.items()},
         **({} if not first.wall_stresses else {"lobe": np.arange(first.drive.disc.number_of_teeth)}),
@@ -213,7 +220,7 @@ def coordinates(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, Any]:
         "shaft_pin_y": (("case", "hole"), shaft_pins.imag, {**mm, "long_name": "shaft pin, in the fixed frame"}),
         "roller_angle": (
             ("case", "disc", "crank", "roller"),
-            cages[:, :, None],
+            cages.reshape(*cages.shape[:2], cranks, -1),
             {**rad, "long_name": "angle of the roller in the cage, which stands at cage_speed · φ_C"},
         ),
         "disc_phase": (
@@ -249,13 +256,14 @@ def check_common_shape(cases: Mapping[str, Drive]) -> None:
         name: (
             d.pin_wheel.number_of_pins,
             d.crank_bearing.number_of_rollers,
-            d.pin_shaft.number_of_pins,
+            d.number_of_holes,
             d.disc.number_of_discs,
+            d.crank.number,
         )
         for name, d in cases.items()
     }
     first = next(iter(shapes))
-    things = ("wheel pins", "rollers", "shaft pins", "discs")
+    things = ("wheel pins", "rollers", "shaft pins", "discs", "cranks")
     problems = [
         f"case {name}: has {_counted(shape, things)}: must be {_counted(shapes[first], things)} as in case {first} to share "
         "one result (run it alone with --case)"

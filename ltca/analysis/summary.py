@@ -11,8 +11,8 @@ from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, samp
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.reducer import geometries
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 

@@ -72,7 +72,7 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
         Multiples of each origin.
     """
     flank, pins = drive.disc.number_of_teeth, drive.pin_wheel.number_of_pins
-    holes, rollers = drive.pin_shaft.number_of_pins, drive.crank_bearing.number_of_rollers
+    holes, rollers = drive.number_of_holes, drive.crank_bearing.number_of_rollers
     cage = 1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
     names: list[Order] = []
     for multiple in range(1, harmonics + 1):

@@ -74,8 +74,9 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
 
     from ltca.drive.single_discs import single_discs
     from ltca.drive.units.quantities import ARCMIN
+    from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
     from ltca.geometry.first_contact import backlash
-    from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
+    from ltca.geometry.pairs import ContactGeometry
     from ltca.geometry.placement import position_angles
 
     singles = single_discs(drive)
@@ -88,14 +89,16 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
     disc = backlash(first, position_angles(360), DISC_ROTATION) * ARCMIN
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
-    e = place.eccentricity
+    e = float(place.mean_eccentricity[0])
     bearing = drive.crank_bearing
     pitch = bearing.inner_race_radius + bearing.roller_radius
     between_rollers = 2.0 * (pitch * np.sin(np.pi / bearing.number_of_rollers) - bearing.roller_radius)
     roller_play = single.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius
     tangential = abs(drive.wheel_moment()) / (len(singles) * drive.reduction_ratio * e)
-    hole_wall = profile.root_radius - drive.pin_shaft.pin_circle_radius - single.hole_radius
-    bore_wall = drive.pin_shaft.pin_circle_radius - single.hole_radius - single.bore_radius
+    hole_wall = bore_wall = float("inf")
+    if drive.pin_shaft is not None:
+        hole_wall = profile.root_radius - drive.pin_shaft.pin_circle_radius - single.hole_radius
+        bore_wall = drive.pin_shaft.pin_circle_radius - single.hole_radius - single.bore_radius
     of, at, held = ("", "the disc", "disc") if len(singles) == 1 else (" of disc 0", "disc 0", "discs")
     return [
         *_installation(drive),
@@ -145,7 +148,7 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     import numpy as np
 
     from ltca.drive.units.quantities import ARCMIN
-    from ltca.geometry.pairs import WHEEL_ANGLE
+    from ltca.geometry.coordinates import WHEEL_ANGLE
 
     def loaded(load: FloatArray) -> str:
         values = load[0]

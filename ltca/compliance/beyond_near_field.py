@@ -73,7 +73,7 @@ class OwnParts:
         """
         parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
         place = geometry.placement
-        load = 0.5 * abs(drive.wheel_moment()) / (place.eccentricity * place.reduction_ratio)
+        load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
 
         def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
             if body == 0.0:
@@ -101,8 +101,9 @@ class OwnParts:
             effective_radius(bearing.roller_radius, bearing.inner_race_radius),
             contact_modulus(parts.inner_race, parts.roller),
         )
+        shaft = drive.pin_shaft
         in_hole = (
-            effective_radius(drive.pin_shaft.pin_radius, -drive.hole_radius),
+            1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
             1.0 / parts.disc.plane_strain_compliance,
         )
         disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm

@@ -106,10 +106,10 @@ class InfluenceCoefficients:
         DriveError
             When the numbers of holes differ.
         """
-        if drive.pin_shaft.number_of_pins != len(self.holes):
+        if drive.number_of_holes != len(self.holes):
             raise DriveError(
                 [
-                    f"pin_shaft.number_of_pins = {drive.pin_shaft.number_of_pins}: must be {len(self.holes)}, that of the "
+                    f"pin_shaft.number_of_pins = {drive.number_of_holes}: must be {len(self.holes)}, that of the "
                     "drive whose influence coefficients are shared"
                 ]
             )
@@ -255,10 +255,10 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     data = read_coefficients(path)
     shared = _require_same_bodies(path, data, drive)
     boundaries = len(np.unique(data["station_boundary"].values))
-    if boundaries != 2 + drive.pin_shaft.number_of_pins:
+    if boundaries != 2 + drive.number_of_holes:
         raise DamagedFileError(
             f"{path}: has stations on {boundaries} boundaries; flank, bore and holes of {drive.name} are "
-            f"{2 + drive.pin_shaft.number_of_pins}"
+            f"{2 + drive.number_of_holes}"
         )
     _require_places(path, data, nominal_shape(drive, keep_clearance=not shared))
     found = _coefficients_of_dataset(data, drive, shared=shared)
@@ -358,7 +358,7 @@ def _self_logarithm(half_width: FloatArray) -> FloatArray:
 
 def without_coupling(drive: Drive) -> InfluenceCoefficients:
     """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
-    holes = drive.pin_shaft.number_of_pins
+    holes = drive.number_of_holes
     return InfluenceCoefficients(
         fingerprint=drive.shape_fingerprint(),
         shared=False,

@@ -36,6 +36,7 @@ from ltca.compliance.response import (
     KindPressures,
     Response,
     Start,
+    bearing_bend,
     join_positions,
     resultant,
 )
@@ -43,6 +44,7 @@ from ltca.compliance.rollers import RollerState
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, disc_displacement
 from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
 from ltca.laws.contact_law import ContactLaw, LoadLaw
 from ltca.laws.series import SpringLaw, approach_at_load
@@ -138,8 +140,8 @@ class CoupledCompliance:
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=laws.hole if hole_near_field else SpringLaw(stiffness=drive.pin_shaft.stiffness),
-            hole_spring=1.0 / drive.pin_shaft.stiffness if hole_near_field else 0.0,
+            hole_law=laws.hole if hole_near_field else SpringLaw(stiffness=drive.hole_stiffness),
+            hole_spring=1.0 / drive.hole_stiffness if hole_near_field else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
             inner_radius=place.inner_effective_radii,
@@ -151,6 +153,11 @@ class CoupledCompliance:
     def discs(self) -> tuple[CoupledCompliance, ...]:
         """The model itself: it is that of one disc."""
         return (self,)
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """What its poses are made of."""
+        return self.geometry.coordinates
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
@@ -224,10 +231,12 @@ class _Bodies:
     ) -> None:
         self.model, self.flank, self.holes = model, flank, holes
         place = model.geometry.placement
-        self.displacement = (pose[:, 0] + 1j * pose[:, 1])[:, None]
-        self.rays = model.geometry.rollers(crank_angle)
+        self.bores, self.rays = model.geometry.bores(crank_angle, pose), model.geometry.rollers(crank_angle)
+        rollers = self.rays.direction.shape[1]
+        self.displacement = self.bores.each(self.bores.displacement, rollers)
+        self.moved = self.bores.each(self.bores.gradient, rollers)
         turn = pose[:, 2, None]
-        play = place.shaft_pin_centres - (place.race_centre(crank_angle)[:, None] + self.displacement)
+        play = place.shaft_pin_centres - (place.race_centre(crank_angle) + disc_displacement(pose))[:, None]
         play = play - place.hole_centres * np.exp(1j * turn)
         length, outward, _ = self.rollers_at(0.0)
         self.bore_places, self.hole_places = np.angle(outward) - turn, np.angle(play) - turn
@@ -390,19 +399,22 @@ class _Batch:
         # dF = k (1 + C k)⁻¹ dδ: symmetric, and zero in rows and columns of open contacts.
         root = np.sqrt(self.stiffness)
         inside = np.eye(near.shape[1]) + root[:, :, None] * matrix * root[:, None, :]
-        gradient = np.zeros((*near.shape, 4))
+        gradient = np.zeros((*near.shape, bodies.flank.gradient.shape[-1]))
         gradient[:, : outer.start] = np.take_along_axis(bodies.flank.gradient, on_flank[..., None], axis=1)
         outward = np.take_along_axis(self.outward, in_bore, axis=1)
-        gradient[:, outer, 0], gradient[:, outer, 1] = -outward.real, -outward.imag
+        moved = np.take_along_axis(
+            np.broadcast_to(bodies.moved, (*self.outward.shape, gradient.shape[-1])), in_bore[..., None], axis=1
+        )
+        gradient[:, outer] = -(outward.conjugate()[..., None] * moved).real
         gradient[:, outer.stop :] = np.take_along_axis(bodies.holes.gradient, in_holes[..., None], axis=1)
         gradient *= root[..., None]
         tangent = np.matmul(gradient.swapaxes(1, 2), np.linalg.solve(inside, gradient))
         load = self.of_all(self.load, self.chosen, contacts)
         pin_load, outer_load, hole_load = np.split(load, (pins, pins + rollers), axis=1)
         tangent += bodies.flank.bend(pin_load) + bodies.holes.bend(hole_load)
-        across = np.stack((-outward.imag, outward.real), axis=-1)
+        across = (outward.conjugate()[..., None] * moved).imag
         bend = self.load[:, outer] / np.take_along_axis(self.length, in_bore, axis=1)
-        tangent[:, :2, :2] += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
+        tangent += np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
         # A pair's approach: the overlap less what the other pairs' loads take of it. Negative is open.
         approach = everywhere + self.of_all(np.einsum("bii->bi", self.among) * self.load, self.chosen, contacts)
         inner_load = self.of_all(self.inner_load, in_bore, rollers)
@@ -420,12 +432,13 @@ class _Batch:
             outer_direction=self.outward,
             tangent=np.zeros((*free.shape, 2, 2)),
         )
+        tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(state, bodies.bores)
         flank = replace(bodies.flank, approach=approach[:, :pins])
         holes = replace(bodies.holes, approach=approach[:, pins + rollers :])
         warm_start = np.empty(near.shape[0], dtype=object)
         warm_start[:] = list(everywhere)
         return Response(
-            force=resultant(flank, pin_load, holes, hole_load, state),
+            force=resultant(flank, pin_load, holes, hole_load, state, bodies.bores),
             tangent=tangent,
             flank=flank,
             holes=holes,

@@ -28,6 +28,7 @@ from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
+from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry, FlankMotion
 from ltca.geometry.separation import circle_departure, flank_departure
 
@@ -120,13 +121,18 @@ class GridCompliance:
             kinds=kinds,
             inner_radius=place.inner_effective_radii,
             outer_radius=place.outer_effective_radii,
-            hole_stiffness=drive.pin_shaft.stiffness,
+            hole_stiffness=drive.hole_stiffness,
         )
 
     @property
     def discs(self) -> tuple[GridCompliance, ...]:
         """The model itself: it is that of one disc."""
         return (self,)
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """What its poses are made of."""
+        return self.geometry.coordinates
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`."""
@@ -137,9 +143,10 @@ class GridCompliance:
         pin_load, pin_stiffness = pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
         hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
+        bores, rays = self.geometry.bores(crank_angle, pose), self.geometry.rollers(crank_angle)
         rollers = balance_rollers(
-            self.geometry.rollers(crank_angle),
-            pose[:, 0] + 1j * pose[:, 1],
+            rays,
+            bores.each(bores.displacement, rays.direction.shape[1]),
             RollerLaws(inner=inner, outer=outer, inner_radius=self.inner_radius, outer_radius=self.outer_radius),
             None if start is None else start.share,
         )
@@ -147,7 +154,7 @@ class GridCompliance:
         for row, kept in enumerate(zip(pins.pieces, inner.pieces, outer.pieces, strict=True)):
             warm_start[row] = PositionContacts(*(tuple(pieces) for pieces in kept))
         return assemble_response(
-            flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, warm_start=warm_start
+            flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, bores, warm_start=warm_start
         )
 
     def pressures(self, response: Response) -> ContactPressures:

@@ -19,8 +19,9 @@ from ltca.compliance.response import (
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, Material, contact_modulus
+from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.pairs import ContactGeometry, disc_displacement
+from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 
@@ -65,7 +66,7 @@ class HalfSpaceCompliance:
             lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
             turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
             pin_radii = _effective_radii(geometry.profile, geometry.placement.wheel_pin_radii, turn)
-        return cls._of_geometry(geometry, drive, pin_radii, drive.pin_shaft.stiffness)
+        return cls._of_geometry(geometry, drive, pin_radii, drive.hole_stiffness)
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
@@ -79,7 +80,7 @@ class HalfSpaceCompliance:
             Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
         """
         geometry = ContactGeometry.of_drives(drives, positions)
-        stiffness = np.repeat([[drive.pin_shaft.stiffness] for drive in drives], positions, axis=0)
+        stiffness = np.repeat([[drive.hole_stiffness] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
         pin_radii = np.ones(1)
         if not drives[0].pin_wheel.pin_profile.is_cylinder:
@@ -148,6 +149,11 @@ class HalfSpaceCompliance:
         """The model itself: it is that of one disc."""
         return (self,)
 
+    @property
+    def coordinates(self) -> Coordinates:
+        """What its poses are made of."""
+        return self.geometry.coordinates
+
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces at the poses of a batch of positions.
 
@@ -155,8 +161,8 @@ class HalfSpaceCompliance:
         ----------
         crank_angle : array, shape (positions,)
             φ_C, rad.
-        pose : array, shape (positions, 4)
-            q of `ltca.geometry.pairs`.
+        pose : array, shape (positions, coordinates)
+            q of `ltca.geometry.coordinates`.
         start : Start, optional
             Inner unknowns of a neighbouring pose.
 
@@ -175,13 +181,14 @@ class HalfSpaceCompliance:
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
         hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
+        bores, rays = self.geometry.bores(crank_angle, pose), self.geometry.rollers(crank_angle)
         rollers = balance_rollers(
-            self.geometry.rollers(crank_angle),
-            disc_displacement(pose),
+            rays,
+            bores.each(bores.displacement, rays.direction.shape[1]),
             self.roller_laws,
             None if start is None else start.share,
         )
-        return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers)
+        return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, bores)
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures from the laws."""
@@ -201,9 +208,20 @@ def batch_signature(drive: Drive) -> tuple[object, ...]:
     # A logarithmic profile scales with the diameter of its part.
     pin = None if wheel.pin_profile.is_cylinder else (wheel.pin_profile, wheel.pin_radius)
     roller = None if bearing.roller_profile.is_cylinder else (bearing.roller_profile, bearing.roller_radius)
-    numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.pin_shaft.number_of_pins)
+    numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.number_of_holes)
     lengths = (disc.thickness, bearing.roller_length)
-    return (*numbers, *lengths, pin, roller, drive.materials, errors.orders, errors.parameter, errors.deviation)
+    yields = (drive.crank.number, drive.crank.support is None, wheel.support_stiffness is None)
+    return (
+        *numbers,
+        *lengths,
+        *yields,
+        pin,
+        roller,
+        drive.materials,
+        errors.orders,
+        errors.parameter,
+        errors.deviation,
+    )
 
 
 def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:

@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.pairs import DISC_PLACE, ContactGeometry, FlankMotion, PairMotion, X, Y
+from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
+from ltca.geometry.pairs import BoreMotion, ContactGeometry, FlankMotion, PairMotion
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,9 +27,9 @@ class Response:
 
     Attributes
     ----------
-    force : array, shape (positions, 4)
-        Generalised contact force Σ F ∂δ/∂q: N, N, N·mm, N·mm; three more coordinates for each further disc.
-    tangent : array, shape (positions, 4, 4)
+    force : array, shape (positions, coordinates)
+        Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
+    tangent : array, shape (positions, coordinates, coordinates)
         Its derivative by the pose.
     flank : FlankMotion
         Kinematics of the wheel pins.
@@ -100,6 +102,11 @@ class ContactPressures:
 
 class ComplianceModel(Protocol):
     """What `ltca.equilibrium.balance` needs of the compliance of one or several discs."""
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """What its poses are made of."""
+        ...
 
     @property
     def discs(self) -> tuple[DiscModel, ...]:
@@ -194,22 +201,23 @@ def assemble_response(
     hole_load: FloatArray,
     hole_stiffness: FloatArray,
     rollers: RollerState,
+    bores: BoreMotion,
     warm_start: NDArray[np.object_] | None = None,
 ) -> Response:
     """Put the loads of uncoupled pairs together: generalised force and tangent.
 
     Parameters
     ----------
-    flank, holes, rollers : FlankMotion, PairMotion, RollerState
-        Kinematics of the pairs, balanced rollers.
+    flank, holes, rollers, bores : FlankMotion, PairMotion, RollerState, BoreMotion
+        Kinematics of the pairs, balanced rollers and their bores.
     pin_load, pin_stiffness, hole_load, hole_stiffness : array, shape (positions, pairs)
         N and N/mm.
     warm_start : array of object, shape (positions,), optional
         See `Response`.
     """
-    force = resultant(flank, pin_load, holes, hole_load, rollers)
+    force = resultant(flank, pin_load, holes, hole_load, rollers, bores)
     tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
-    tangent[:, DISC_PLACE, DISC_PLACE] += rollers.tangent.sum(axis=1)
+    tangent += _roller_tangent(rollers, bores)
     return Response(
         force=force,
         tangent=tangent,
@@ -228,15 +236,39 @@ def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArra
 
 
 def resultant(
-    flank: FlankMotion, pin_load: FloatArray, holes: PairMotion, hole_load: FloatArray, rollers: RollerState
+    flank: FlankMotion,
+    pin_load: FloatArray,
+    holes: PairMotion,
+    hole_load: FloatArray,
+    rollers: RollerState,
+    bores: BoreMotion,
 ) -> FloatArray:
-    """Return the generalised force of all contacts, Σ F ∂δ/∂q, shape (positions, 4); N and N·mm."""
+    """Return the generalised force of all contacts, Σ F ∂δ/∂q, shape (positions, coordinates); N and N·mm."""
     force = np.einsum("bi,bij->bj", pin_load, flank.gradient)
     force += np.einsum("bi,bij->bj", hole_load, holes.gradient)
-    push = (rollers.outer_load * rollers.outer_direction).sum(axis=1)
-    force[:, X] -= push.real
-    force[:, Y] -= push.imag
+    force -= np.einsum("bc,bcj->bj", bearing_pushes(rollers, bores.arm.shape[1]).conjugate(), bores.gradient).real
     return np.asarray(force)
+
+
+def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
+    """Return the force of every crank bearing on the disc in the fixed frame, shape (positions, cranks), N."""
+    each = rollers.outer_load * rollers.outer_direction
+    return np.asarray(each.reshape(each.shape[0], cranks, -1).sum(axis=2))
+
+
+def bearing_bend(rollers: RollerState, bores: BoreMotion) -> FloatArray:
+    """Return what the bearings' forces add to the tangent because bores off the centre turn with the disc, N·mm."""
+    push = bearing_pushes(rollers, bores.arm.shape[1])
+    return np.asarray((push.conjugate() * bores.arm).real.sum(axis=1))
+
+
+def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
+    positions, cranks = bores.arm.shape
+    stiffness = rollers.tangent.reshape(positions, cranks, -1, 2, 2).sum(axis=2)
+    moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
+    tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
+    tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(rollers, bores)
+    return np.asarray(tangent)
 
 
 def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:

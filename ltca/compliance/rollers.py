@@ -33,7 +33,7 @@ class RollerLaws(Generic[Law]):
     ----------
     inner, outer : LoadLaw
         Laws on the inner race and in the bore.
-    inner_radius, outer_radius : array, shape (n_BR,)
+    inner_radius, outer_radius : array, shape (rollers,)
         Effective radii of curvature, mm.
     """
 
@@ -45,20 +45,20 @@ class RollerLaws(Generic[Law]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollerState:
-    """Balanced rollers.
+    """Balanced rollers, crank after crank.
 
     Attributes
     ----------
-    share : array, shape (positions, n_BR)
+    share : array, shape (positions, rollers)
         Part of the total interference taken by the inner contact; the start of the next solution.
-    inner_approach, outer_approach : array, shape (positions, n_BR)
+    inner_approach, outer_approach : array, shape (positions, rollers)
         mm, negative where open; a free roller rests on the inner race.
-    inner_load, outer_load : array, shape (positions, n_BR)
+    inner_load, outer_load : array, shape (positions, rollers)
         N.
-    outer_direction : array of complex, shape (positions, n_BR)
-        Unit vector from the disc centre to the roller, the direction of the load on the disc.
-    tangent : array, shape (positions, n_BR, 2, 2)
-        Second derivative of the eliminated energy by the displacement (x, y) of the disc, N/mm.
+    outer_direction : array of complex, shape (positions, rollers)
+        Unit vector from the bore centre to the roller, the direction of the load on the disc.
+    tangent : array, shape (positions, rollers, 2, 2)
+        Second derivative of the eliminated energy by the displacement (x, y) of the bore, N/mm.
     """
 
     share: FloatArray
@@ -82,11 +82,11 @@ def balance_rollers(
     ----------
     rays : RollerRays
         Cage rays of the positions.
-    displacement : array of complex, shape (positions,)
-        Disc centre from inner-race centre, mm.
+    displacement : array of complex, shape (positions, rollers) or (positions, 1)
+        Bore centre from inner-race centre, mm.
     laws : RollerLaws
         Laws of the inner and the outer contacts.
-    start : array, shape (positions, n_BR), optional
+    start : array, shape (positions, rollers), optional
         Shares of a neighbouring solution.
 
     Returns
@@ -107,7 +107,7 @@ def balance_rollers(
     pressed = np.nonzero(interference > 0.0)
     balanced = _balance_pressed(rays, displacement, laws, pressed, interference[pressed], share[pressed])
     # A free roller rests on the inner race; its outer gap follows from there.
-    arm = rays.outermost * direction - displacement[:, None]
+    arm = rays.outermost * direction - displacement
     length = np.abs(arm)
     outward, outer_approach = arm / length, length - rays.bore_play
     inner_approach, inner_load, outer_load = (np.zeros(direction.shape) for _ in range(3))
@@ -137,10 +137,10 @@ def _balance_pressed(
 ) -> tuple[NDArray[Any], ...]:
     """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last."""
 
-    def each(values: FloatArray) -> FloatArray:
+    def each(values: NDArray[Any]) -> NDArray[Any]:
         return np.broadcast_to(values, rays.direction.shape)[pressed]
 
-    direction, moved = rays.direction[pressed], displacement[pressed[0]]
+    direction, moved = rays.direction[pressed], each(displacement)
     outermost, bore_play = each(rays.outermost), each(rays.bore_play)
 
     def loads(law: Law, approach: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:

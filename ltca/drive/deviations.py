@@ -14,6 +14,7 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.units.quantities import COUNT, quantity
 
 SignedLength = Annotated[float, quantity("mm")]
+PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
 NonNegativeLength = Annotated[float, quantity("mm", ge=0.0)]
 Angle = Annotated[float, quantity("rad")]
 Number = Annotated[int, Field(ge=0, le=100), COUNT]
@@ -172,6 +173,11 @@ class OneDisc:
     clearance: DiscClearance | None = None
     roller_errors: RollerErrors | None = None
     bore_errors: BoreErrors | None = None
+
+    @property
+    def of_bores_alone(self) -> bool:
+        """Whether nothing but places of bores is said, which take the place of nothing that all discs have."""
+        return (self.runout, self.profile_errors, self.hole_errors, self.clearance, self.roller_errors) == (None,) * 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -139,8 +139,8 @@ def element_count(drive: Drive, path: str) -> int | None:
     counts = {
         "pin_wheel.pin_errors": drive.pin_wheel.number_of_pins,
         "disc": drive.disc.number_of_discs,
-        "disc.hole_errors": drive.pin_shaft.number_of_pins,
-        "pin_shaft.pin_errors": drive.pin_shaft.number_of_pins,
+        "disc.hole_errors": drive.number_of_holes,
+        "pin_shaft.pin_errors": drive.number_of_holes,
         "crank_bearing.roller_errors": drive.crank_bearing.number_of_rollers,
         "disc.profile_errors": len(errors.parameter) if path.endswith(".deviation") else len(errors.orders),
     }

@@ -41,6 +41,7 @@ class Materials:
     roller: Material = field(default_factory=Material)
     inner_race: Material = field(default_factory=Material)
     shaft_pin: Material = field(default_factory=Material)
+    crankshaft: Material = field(default_factory=Material)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -8,20 +8,21 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import asdict, field
-from math import pi
+from math import gcd, pi
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from ltca.drive.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport, Stiffness
 from ltca.drive.deviations import (
     STRICT,
     Angle,
     AxisOffset,
     NonNegativeLength,
     OneDisc,
-    OneEccentric,
     PlacementErrors as PlacementErrors,
+    PositiveLength,
     ProfileErrors as ProfileErrors,
     RollerErrors as RollerErrors,
     Runout as Runout,
@@ -40,37 +41,14 @@ from ltca.errors import DriveError
 SAME_PART = 1e-9
 """Angle between two flanks that are cut alike, rad: round-off of a phase, far below what moves a flank by a nanometre."""
 
-PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class Crank:
-    """Crankshaft.
-
-    Attributes
-    ----------
-    eccentricity : float
-        e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
-    eccentricity_error : float
-        Actual less design eccentricity, mm.
-    axis_offset : AxisOffset
-        Crank axis against the centre of the pin shaft.
-    of : tuple of OneEccentric
-        What differs per disc, one entry each; empty where nothing does.
-    """
-
-    eccentricity: PositiveLength
-    eccentricity_error: SignedLength = 0.0
-    axis_offset: AxisOffset = field(default_factory=AxisOffset)
-    of: tuple[OneEccentric, ...] = ()
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class PinWheel:
     """Pin wheel: `number_of_pins` z_P, `pin_circle_radius` R_C and `pin_radius` r_P in mm.
 
     `axis_offset` is the axis the wheel turns about against the centre of the pin shaft; a pin circle eccentric to
-    that axis is a matter of `pin_errors`.
+    that axis is a matter of `pin_errors`. `support_stiffness` is the radial stiffness of the wheel's main bearing,
+    N/mm, rigid when left out.
     """
 
     number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
@@ -79,6 +57,7 @@ class PinWheel:
     pin_profile: LengthProfile = field(default_factory=LengthProfile)
     pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
     axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    support_stiffness: Stiffness | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -133,7 +112,7 @@ class Disc:
     @property
     def phase(self) -> float:
         """ζ of the one disc, rad; DriveError where there are several, or one has something of its own."""
-        if self.number_of_discs != 1 or self.of:
+        if self.number_of_discs != 1 or not all(entry.of_bores_alone for entry in self.of):
             told = f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"
             raise DriveError([f"{told}, see ltca.drive.single_discs"])
         return self.disc_phases[0]
@@ -146,35 +125,8 @@ class Disc:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class CrankBearing:
-    """Cylindrical-roller bearing between crank and disc; the disc bore is its outer race.
-
-    Attributes
-    ----------
-    inner_race_radius, outer_race_radius : float
-        r_i and the nominal r_o (without clearance), mm.
-    number_of_rollers : int
-        n_BR.
-    roller_radius, roller_length : float
-        mm.
-    roller_profile : LengthProfile
-        Crown and relief of the rollers.
-    roller_errors : RollerErrors
-        Diameter and pocket errors of the rollers.
-    """
-
-    inner_race_radius: PositiveLength
-    outer_race_radius: PositiveLength
-    number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
-    roller_radius: PositiveLength
-    roller_length: PositiveLength
-    roller_profile: LengthProfile = field(default_factory=LengthProfile)
-    roller_errors: RollerErrors = field(default_factory=RollerErrors)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class PinShaft:
-    """Pin shaft, fixed in the housing.
+    """Pins of the pin shaft, the carrier of the cranks.
 
     Attributes
     ----------
@@ -194,7 +146,7 @@ class PinShaft:
     pin_circle_radius: PositiveLength
     pin_radius: PositiveLength
     hole_radius: PositiveLength
-    stiffness: Annotated[float, quantity("N/mm", gt=0.0)]
+    stiffness: Stiffness
     pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
 
 
@@ -241,9 +193,12 @@ class Installation:
     ----------
     held : {"pin-shaft", "pin-wheel"}
         The member that stands still; ``load.torque`` acts on the other one, which is the output.
+    first_stage_ratio : float or None
+        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are turned in the carrier.
     """
 
     held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"
+    first_stage_ratio: Annotated[float, quantity("dimensionless", gt=0.0)] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -254,8 +209,10 @@ class Drive:
     ----------
     name : str
         Name of the drive.
-    crank, pin_wheel, disc, crank_bearing, pin_shaft : dataclass
+    crank, pin_wheel, disc, crank_bearing : dataclass
         The parts.
+    pin_shaft : PinShaft or None
+        Its pins, of which drives with several cranks need none.
     load : Load
         Torque and direction.
     installation : Installation
@@ -271,7 +228,7 @@ class Drive:
     pin_wheel: PinWheel
     disc: Disc
     crank_bearing: CrankBearing
-    pin_shaft: PinShaft
+    pin_shaft: PinShaft | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
     clearance: Clearance = field(default_factory=Clearance)
@@ -299,16 +256,35 @@ class Drive:
 
     @property
     def transmission_ratio(self) -> float:
-        """Turns of the crank for one of the output: z_P/Δz with the pin shaft held, −z_C/Δz with the pin wheel held."""
+        """Turns of the input for one of the output.
+
+        A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks turned in the carrier, as
+        seen from there: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
+        """
+        stage = self.installation.first_stage_ratio
+        if stage is not None:
+            return 1.0 + stage * self.reduction_ratio if self.wheel_is_held else -stage * self.reduction_ratio
+        if self.crank.number > 1:
+            return -self.reduction_ratio if self.wheel_is_held else self.reduction_ratio
         teeth = self.disc.number_of_teeth if self.wheel_is_held else self.pin_wheel.number_of_pins
         return (-1.0 if self.wheel_is_held else 1.0) * teeth / self.tooth_number_difference
 
     @property
+    def input_per_crank_moment(self) -> float:
+        """External moment of the input by that of all cranks: 1, −1/i₁ behind a first stage, 0 where the carrier turns them."""
+        if self.crank.number == 1:
+            return 1.0
+        stage = self.installation.first_stage_ratio
+        return 0.0 if stage is None else -1.0 / stage
+
+    @property
     def output_per_wheel_angle(self) -> float:
-        """Deviation of the output by the deviation `wheel_angle`: 1, or −z_P/z_C with the pin wheel held."""
+        """Deviation of the output by `wheel_angle`: 1; with the wheel held −z_P/z_C, of several cranks −1 or (1 − i)/i."""
         if not self.wheel_is_held:
             return 1.0
-        return -self.pin_wheel.number_of_pins / self.disc.number_of_teeth
+        if self.crank.number == 1:
+            return -self.pin_wheel.number_of_pins / self.disc.number_of_teeth
+        return -1.0 / (1.0 - self.input_per_crank_moment / self.reduction_ratio)
 
     def wheel_moment(self, torque: float | None = None) -> float:
         """Return the external moment on the wheel, ccw positive, N·mm: of a held one the mean (`ltca.equilibrium.output_torque`).
@@ -321,7 +297,7 @@ class Drive:
         Returns
         -------
         float
-            For a crank driving counter-clockwise −T_out, with the pin wheel held −T_out z_P/z_C.
+            For a crank driving counter-clockwise −T_out, with the pin wheel held that by `output_per_wheel_angle`.
         """
         total = self.load.torque if torque is None else torque
         return -self.driving_sign * total * abs(self.output_per_wheel_angle)
@@ -343,14 +319,24 @@ class Drive:
         return -self.tooth_number_difference * self.disc.phase / self.disc.number_of_teeth
 
     @property
-    def eccentric_phase(self) -> float:
-        """Actual phase of the eccentric of a drive of one disc, ζ and its error, rad."""
-        return self.disc.phase + (self.crank.of[0].phase_error if self.crank.of else 0.0)
+    def number_of_holes(self) -> int:
+        """z_PS, the pins of the pin shaft and their holes; 0 without a pin shaft."""
+        return 0 if self.pin_shaft is None else self.pin_shaft.number_of_pins
+
+    @property
+    def hole_stiffness(self) -> float:
+        """k_PS of one shaft pin, N/mm; without a pin shaft that of none, 1."""
+        return 1.0 if self.pin_shaft is None else self.pin_shaft.stiffness
+
+    @property
+    def pattern(self) -> int:
+        """Steps of a turn after which holes and bores of the disc look the same."""
+        return gcd(self.number_of_holes, 0 if self.crank.number == 1 else self.crank.number)
 
     @property
     def part_turn(self) -> tuple[float, int, int]:
         """Which part the disc of a drive of one disc is (`part_turn`)."""
-        return part_turn(self.flank_turn, self.disc.number_of_teeth, self.pin_shaft.number_of_pins)
+        return part_turn(self.flank_turn, self.disc.number_of_teeth, self.pattern)
 
     @property
     def bore_radius(self) -> float:
@@ -359,8 +345,8 @@ class Drive:
 
     @property
     def hole_radius(self) -> float:
-        """Pin-hole radius with the pin-hole clearance, mm."""
-        return self.pin_shaft.hole_radius + self.clearance.pin_hole
+        """Pin-hole radius with the pin-hole clearance, mm; 0 without a pin shaft."""
+        return 0.0 if self.pin_shaft is None else self.pin_shaft.hole_radius + self.clearance.pin_hole
 
     def fingerprint(self) -> str:
         """Return a hash of everything that defines the drive in this case (hex, 16 digits)."""
@@ -390,10 +376,19 @@ class Drive:
             "crank_bearing.inner_race_radius": bearing.inner_race_radius,
             "crank_bearing.roller_radius": bearing.roller_radius,
             "bore_radius": self.bore_radius,
-            "pin_shaft.number_of_pins": float(shaft.number_of_pins),
-            "pin_shaft.pin_circle_radius": shaft.pin_circle_radius,
-            "hole_radius": self.hole_radius,
         }
+        if shaft is not None:
+            shape |= {
+                "pin_shaft.number_of_pins": float(shaft.number_of_pins),
+                "pin_shaft.pin_circle_radius": shaft.pin_circle_radius,
+                "hole_radius": self.hole_radius,
+            }
+        if self.crank.number > 1:
+            shape |= {
+                "crank.number": float(self.crank.number),
+                "crank.circle_radius": self.crank.circle_radius or 0.0,
+                "crank.angle": self.crank.angle,
+            }
         turn = self.part_turn[0]
         if turn:
             shape["flank_turn"] = turn
@@ -413,23 +408,23 @@ def _hash(definition: dict[str, Any]) -> str:
     return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 
-def part_turn(turned: float, teeth: int, holes: int) -> tuple[float, int, int]:
+def part_turn(turned: float, teeth: int, pattern: int) -> tuple[float, int, int]:
     """Return which part a disc is, and how that part stands in it.
 
     Parameters
     ----------
     turned : float
-        How far the flank is turned against the holes, rad.
-    teeth, holes : int
-        z_C and z_PS.
+        How far the flank is turned against holes and bores, rad.
+    teeth, pattern : int
+        z_C, and the steps of a turn after which holes and bores look the same: z_PS of a disc on a central crank.
 
     Returns
     -------
     turn : float
-        Of the flank of the part, from 0 to a tooth pitch, the least that turning by hole pitches leaves, rad.
-    hole_pitches, tooth_pitches : int
-        The flank is turned by ``turn + 2π (hole_pitches/holes + tooth_pitches/teeth)``: the part stands in the disc turned
-        by that many hole pitches, and its teeth are counted from that many later.
+        Of the flank of the part, from 0 to a tooth pitch, the least that turning by steps of the pattern leaves, rad.
+    steps, tooth_pitches : int
+        The flank is turned by ``turn + 2π (steps/pattern + tooth_pitches/teeth)``: the part stands in the disc turned
+        by that many steps, and its teeth are counted from that many later.
 
     Examples
     --------
@@ -439,9 +434,9 @@ def part_turn(turned: float, teeth: int, holes: int) -> tuple[float, int, int]:
     pitch = 2.0 * pi / teeth
 
     def left(step: int) -> float:
-        rest = (turned - 2.0 * pi * step / holes) % pitch
+        rest = (turned - 2.0 * pi * step / pattern) % pitch
         return 0.0 if min(rest, pitch - rest) < SAME_PART else rest
 
-    step = min(range(holes), key=lambda candidate: (round(left(candidate) / SAME_PART), candidate))
+    step = min(range(pattern), key=lambda candidate: (round(left(candidate) / SAME_PART), candidate))
     turn = left(step)
-    return turn, step, round((turned - turn - 2.0 * pi * step / holes) / pitch)
+    return turn, step, round((turned - turn - 2.0 * pi * step / pattern) / pitch)

@@ -12,6 +12,7 @@ from ltca.drive.deviations import OneDisc, OneEccentric
 from ltca.drive.parts import (
     SAME_PART,
     Clearance,
+    Crank,
     Disc,
     Drive,
     PlacementErrors,
@@ -51,9 +52,9 @@ def single_discs(drive: Drive) -> tuple[Drive, ...]:
 
 
 def is_single(drive: Drive) -> bool:
-    """Tell whether a drive has one disc and nothing is said of it apart but the phase of its eccentric."""
-    apart = any(entry.eccentricity_error is not None for entry in drive.crank.of)
-    return drive.disc.number_of_discs == 1 and not drive.disc.of and not apart
+    """Tell whether a drive has one disc and all that is said of it apart is the places of its eccentrics and bores."""
+    alone = drive.disc.number_of_discs == 1 and all(entry.of_bores_alone for entry in drive.disc.of)
+    return alone and (drive.crank.number > 1 or all(entry.eccentricity_error is None for entry in drive.crank.of))
 
 
 def without_own(drive: Drive) -> Drive:
@@ -64,7 +65,6 @@ def without_own(drive: Drive) -> Drive:
 def _single(drive: Drive, number: int) -> Drive:
     disc, crank, load, discs = drive.disc, drive.crank, drive.load, drive.disc.number_of_discs
     own = disc.of[number] if disc.of else OneDisc()
-    eccentric = crank.of[number] if crank.of else OneEccentric()
     common = drive.clearance
     clearance = common
     if own.clearance is not None:
@@ -72,17 +72,26 @@ def _single(drive: Drive, number: int) -> Drive:
         clearance = Clearance(
             bearing=common.bearing if bearing is None else bearing, pin_hole=common.pin_hole if hole is None else hole
         )
-    error = crank.eccentricity_error if eccentric.eccentricity_error is None else eccentric.eccentricity_error
-    phase_error = (OneEccentric(phase_error=eccentric.phase_error),) if eccentric.phase_error else ()
     rollers = drive.crank_bearing
     return replace(
         drive,
-        crank=replace(crank, eccentricity_error=error, of=phase_error),
+        crank=_eccentrics_alone(crank, number),
         disc=_alone(disc, own, number),
         crank_bearing=rollers if own.roller_errors is None else replace(rollers, roller_errors=own.roller_errors),
         clearance=clearance,
         load=replace(load, torque=load.torque / discs, light_torque=load.light_torque / discs),
     )
+
+
+def _eccentrics_alone(crank: Crank, disc: int) -> Crank:
+    """The crank with the eccentrics of one disc."""
+    if crank.number > 1:
+        entries = [(number, entry) for (place, number), entry in sorted(crank.entries.items()) if place == disc]
+        return replace(crank, of=tuple(replace(entry, disc=0, crank=number) for number, entry in entries))
+    entry = crank.eccentric(disc)
+    error = crank.eccentricity_error if entry.eccentricity_error is None else entry.eccentricity_error
+    phase_error = (OneEccentric(phase_error=entry.phase_error),) if entry.phase_error else ()
+    return replace(crank, eccentricity_error=error, of=phase_error)
 
 
 def _alone(disc: Disc, own: OneDisc, number: int) -> Disc:
@@ -91,7 +100,7 @@ def _alone(disc: Disc, own: OneDisc, number: int) -> Disc:
         number_of_discs=1,
         phases=(disc.disc_phases[number],),
         planes=(disc.disc_planes[number],),
-        of=(),
+        of=() if own.bore_errors is None else (OneDisc(bore_errors=own.bore_errors),),
         runout=disc.runout if own.runout is None else own.runout,
         profile_errors=disc.profile_errors if own.profile_errors is None else own.profile_errors,
         hole_errors=disc.hole_errors if own.hole_errors is None else own.hole_errors,
@@ -122,7 +131,8 @@ def nominal_shape(drive: Drive, *, keep_clearance: bool = True) -> Drive:
             hole_errors=PlacementErrors(),
             profile_errors=ProfileErrors(),
             runout=Runout(),
+            of=(),
         ),
-        pin_shaft=replace(drive.pin_shaft, pin_errors=PlacementErrors()),
+        pin_shaft=None if drive.pin_shaft is None else replace(drive.pin_shaft, pin_errors=PlacementErrors()),
         crank_bearing=replace(drive.crank_bearing, roller_errors=RollerErrors()),
     )

@@ -18,8 +18,9 @@ from ltca.equilibrium.neighbours import leading_positions, pose_between, start_b
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import at_rows, disc_responses, geometries
 from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.first_contact import turn_to_contact
-from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, ContactGeometry, disc_pose
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -44,8 +45,10 @@ class Equilibrium:
         φ_C, rad.
     wheel_moment : array, shape (positions,)
         External moment on the wheel, N·mm.
-    pose : array, shape (positions, 3 discs + 1)
-        q of `ltca.geometry.pairs`: x, y and rotation of disc after disc, then the wheel angle.
+    pose : array, shape (positions, coordinates)
+        q of `ltca.geometry.coordinates`.
+    coordinates : Coordinates
+        What poses are made of.
     response : Response
         Contacts at that pose.
     residual : array, shape (positions,)
@@ -57,6 +60,7 @@ class Equilibrium:
     crank_angle: FloatArray
     wheel_moment: FloatArray
     pose: FloatArray
+    coordinates: Coordinates
     response: Response
     residual: FloatArray
     iterations: NDArray[np.intp]
@@ -66,24 +70,30 @@ def equilibrium_of_disc(found: Equilibrium, disc: int) -> Equilibrium:
     """Return what one of several discs has of balanced positions: its pose and contacts, the moment that it carries."""
     response = disc_responses(found.response)[disc]
     return replace(
-        found, wheel_moment=response.force[:, WHEEL_ANGLE], pose=disc_pose(found.pose, disc), response=response
+        found,
+        wheel_moment=response.force[:, WHEEL_ANGLE],
+        pose=found.pose[:, found.coordinates.columns(disc)],
+        coordinates=found.coordinates.of_one,
+        response=response,
     )
 
 
 def lever_arms(model: ComplianceModel) -> FloatArray:
-    """Return the lengths that turn the residual into forces, mm: 1, 1, e z_C for each disc, and e z_P.
+    """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, 1 elsewhere.
 
     Returns
     -------
     array, shape (coordinates,) or (positions, coordinates)
         One row for all positions where they are of one drive.
     """
-    arms = []
-    for geometry in geometries(model):
-        wheel = geometry.placement.eccentricity * geometry.placement.reduction_ratio
-        one = np.ones_like(wheel)
-        arms += [one, one, wheel - geometry.placement.eccentricity]
-    return np.concatenate(np.atleast_1d(*arms, wheel), axis=-1)
+    coordinates, wheel = model.coordinates, np.ones(1)
+    eccentricities = [geometry.placement.mean_eccentricity for geometry in geometries(model)]
+    arms = np.ones((*eccentricities[0].shape[:-1], coordinates.size))
+    for place, geometry, e in zip(coordinates.rotations, geometries(model), eccentricities, strict=False):
+        wheel = e * geometry.placement.reduction_ratio
+        arms[..., place] = (wheel - e)[..., 0]
+    arms[..., WHEEL_ANGLE] = wheel[..., 0]
+    return arms
 
 
 def solve_equilibrium(
@@ -134,7 +144,7 @@ def solve_equilibrium(
         known = np.setdiff1d(first, left)
         inner = None
         if between and known.size:
-            pose[rest] = pose_between(angle[known], pose[known], angle[rest])
+            pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
             ratio = model.discs[0].geometry.placement.reduction_ratio
             inner = start_between(angle[known], search.known.take(known), angle[rest], ratio)
         elif start is None:
@@ -149,6 +159,7 @@ def solve_equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(moment),
         pose=search.pose,
+        coordinates=model.coordinates,
         response=response,
         residual=np.max(np.abs(gradient), axis=1),
         iterations=search.iterations,
@@ -157,7 +168,7 @@ def solve_equilibrium(
 
 def _at_first_contact(model: ComplianceModel, angle: FloatArray, moment: FloatArray) -> FloatArray:
     """Poses with the discs on the inner-race centres and the wheel turned until the first pin touches one of them."""
-    pose = np.zeros((angle.size, DISC_COORDINATES * len(model.discs) + 1))
+    pose = np.zeros((angle.size, model.coordinates.size))
     sense = np.where(moment < 0.0, -1, 1)
     for value in np.unique(sense):
         rows = sense == value

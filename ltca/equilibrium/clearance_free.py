@@ -31,8 +31,9 @@ from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import carrying_holes, carrying_rollers, first_contact
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -211,8 +212,8 @@ class _System:
         self.start[:, WHEEL_ANGLE], _ = first_contact(geometry, angle, WHEEL_ANGLE, sense)
         self.pins, self.rollers = place.wheel_pin_radii.size, place.roller_radii.size
         # Rotations enter as lengths, multiplied by their lever arms, so that all unknowns are of one size.
-        wheel_lever = place.eccentricity * place.reduction_ratio
-        self.lever = np.array([1.0, 1.0, wheel_lever - place.eccentricity, wheel_lever])
+        wheel_lever = float(place.mean_eccentricity[0]) * place.reduction_ratio
+        self.lever = np.array([1.0, 1.0, wheel_lever - float(place.mean_eccentricity[0]), wheel_lever])
         self.load = np.zeros(4 + self.rollers)
         self.load[WHEEL] = wheel_moment / wheel_lever
         self.displacement = np.zeros(4 + self.rollers)
@@ -248,7 +249,7 @@ class _System:
             effective = float(place.inner_effective_radii[roller])
             self._add(("inner", roller), modulus, effective, bearing.roller_length, 0.0, inward, bool(zone[roller]))
         holes = geometry.holes(angle, self.start)
-        self.hole_stiffness = drive.pin_shaft.stiffness
+        self.hole_stiffness = drive.hole_stiffness
         self.hole_approach = holes.approach[0]
         self.hole_direction = np.zeros((self.hole_approach.size, 4 + self.rollers))
         self.hole_direction[:, :4] = holes.gradient[0] / self.lever

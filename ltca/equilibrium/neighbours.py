@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.response import Start
-from ltca.geometry.pairs import DISC_COORDINATES, ContactGeometry, X, Y, disc_displacement
+from ltca.geometry.coordinates import Coordinates
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -40,27 +41,30 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
     return np.sort(np.append(order[:-1:stride], order[-1]))
 
 
-def pose_between(angle: FloatArray, pose: FloatArray, wanted: FloatArray) -> FloatArray:
+def pose_between(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates) -> FloatArray:
     """Return poses between known ones, in line as seen from the turning crank.
 
     Parameters
     ----------
     angle : array, shape (positions,)
         φ_C of the known poses, in any order, rad.
-    pose : array, shape (positions, 3 discs + 1)
+    pose : array, shape (positions, coordinates)
         q there.
     wanted : array
         φ_C of the poses to return, rad.
+    coordinates : Coordinates
+        What poses are made of.
 
     Examples
     --------
-    >>> pose_between(np.array([0.0, np.pi]), np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 2]]), np.array([0.5 * np.pi])).round(9)
+    >>> known = np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 2]])
+    >>> pose_between(np.array([0.0, np.pi]), known, np.array([0.5 * np.pi]), Coordinates()).round(9)
     array([[0., 1., 0., 1.]])
     """
     order = np.argsort(angle, kind="stable")
-    seen = turned_poses(pose, -angle)[order]
+    seen = turned_poses(pose, -angle, coordinates)[order]
     between = np.stack([np.interp(wanted, angle[order], column) for column in seen.T], axis=1)
-    return turned_poses(between, wanted)
+    return turned_poses(between, wanted, coordinates)
 
 
 def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
@@ -92,18 +96,20 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
     return Start(parameter=along, share=between(known.share), warm_start=known.warm_start[nearer])
 
 
-def turned_poses(pose: FloatArray, angle: FloatArray) -> FloatArray:
+def turned_poses(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:
     """Return poses whose displacements are turned by angles, rad; rotations stay.
 
     Parameters
     ----------
-    pose : array, shape (positions, 3 discs + 1)
+    pose : array, shape (positions, coordinates)
         q.
     angle : array, shape (positions,)
         rad.
+    coordinates : Coordinates
+        What they are made of.
     """
     turned = pose.copy()
-    for first in range(0, pose.shape[1] - 1, DISC_COORDINATES):
-        place = disc_displacement(pose[:, first:]) * np.exp(1j * angle)
-        turned[:, first + X], turned[:, first + Y] = place.real, place.imag
+    for x in coordinates.displacements:
+        place = (pose[:, x] + 1j * pose[:, x + 1]) * np.exp(1j * angle)
+        turned[:, x], turned[:, x + 1] = place.real, place.imag
     return turned

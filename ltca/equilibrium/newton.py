@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance.response import BatchModel, ComplianceModel, Response, Start
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import WHEEL_ANGLE, rotations
+from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ class Search:
         self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
         self.batch = self.place.is_batch
         self.half_pitch = np.pi / self.place.reduction_ratio
-        self.rotations = rotations(pose.shape[1])
+        self.rotations = model.coordinates.rotations
         self.history: list[FloatArray] = []
         self.residual = np.full(angle.size, np.inf)
         self.iterations = np.zeros(angle.size, dtype=np.intp)

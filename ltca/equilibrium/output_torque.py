@@ -1,23 +1,24 @@
 r"""Equilibrium at a given torque of the output, whichever member is held.
 
 With the pin shaft held the output is the wheel, and its moment is the torque. With the wheel held the output is the pin
-shaft: what holds the wheel then follows from the sum of all moments, :math:`T_W + T_C + T_{out} = 0`, with the crank's
-moment of every position. Contacts do not care who is held.
+shaft: what holds the wheel then follows from the sum of all moments, :math:`T_W + T_{in} + T_{out} = 0`, with the moment of
+the input at every position: that of a central crank, of the sun of a first stage, or none where the shaft itself turns its
+cranks. Contacts do not care who is held.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Response
+from ltca.compliance.response import ComplianceModel, Response, bearing_pushes
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.reducer import at_rows, disc_responses
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import disc_displacement, disc_pose
 
 FloatArray = NDArray[np.float64]
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
@@ -28,12 +29,12 @@ CLOSED = 1e-10
 """Moment left over as a part of the output torque: below what the balance of the forces leaves."""
 
 
-def crank_moment(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    r"""Return the external moment on the crank that holds it, ccw positive, N·mm.
+def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+    r"""Return the external moment that holds each crank, ccw positive, N·mm, shape (positions, cranks).
 
     It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, and that of its cage, which
     turns by the part `cage_speed` of the crank's angle: cage and inner race are concentric, so the cage's moment is that of
-    the bearing's force at the displaced disc centre.
+    the bearing's force at the displaced centre of the bore.
 
     Parameters
     ----------
@@ -41,19 +42,36 @@ def crank_moment(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArr
         What answered.
     crank_angle : array, shape (positions,)
         φ_C, rad.
-    pose : array, shape (positions, 3 discs + 1)
+    pose : array, shape (positions, coordinates)
         q.
     response : Response
         Contacts there.
     """
-    total = np.zeros(crank_angle.size)
+    cranks = model.discs[0].geometry.placement.cranks
+    total = np.zeros((crank_angle.size, cranks))
     for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
         place = disc.geometry.placement
-        push = (part.rollers.outer_load * part.rollers.outer_direction).sum(axis=1)
-        lever = place.race_centre(crank_angle) - np.ravel(place.crank_axis)
+        push = bearing_pushes(part.rollers, cranks)
+        lever = place.race_centres(crank_angle) - place.crank_axes
         total += (lever.conjugate() * push).imag
-        total += np.ravel(place.cage_speed) * (disc_displacement(disc_pose(pose, number)).conjugate() * push).imag
+        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
+        total += place.cage_speed * (bores.displacement.conjugate() * push).imag
     return total
+
+
+def input_moment(
+    model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response, part: FloatArray
+) -> FloatArray:
+    """Return the external moment of the input, ccw positive, N·mm.
+
+    Parameters
+    ----------
+    model, crank_angle, pose, response : ComplianceModel, array, array, Response
+        As for `crank_moments`.
+    part : array, shape (positions,)
+        `Drive.input_per_crank_moment`.
+    """
+    return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
 
 
 def solve_at_output(
@@ -99,7 +117,8 @@ def solve_at_output(
         part = model if rows.size == angle.size else at_rows(model, rows)
         return solve_equilibrium(part, angle[rows], moment, begin)
 
-    return _at_output(model, balance, angle, mean, signed, held, start)
+    part = np.repeat([drive.input_per_crank_moment for drive in each], repeats)
+    return _at_output(model, balance, angle, mean, signed, held, part, start)
 
 
 def balance_at_output(
@@ -134,7 +153,8 @@ def balance_at_output(
     def at(rows: NDArray[np.intp], moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
         return balance(angle[rows], moment, begin)
 
-    return _at_output(model, at, angle, mean, np.full(angle.size, drive.driving_sign * torque), held, start)
+    part = np.full(angle.size, drive.input_per_crank_moment)
+    return _at_output(model, at, angle, mean, np.full(angle.size, drive.driving_sign * torque), held, part, start)
 
 
 def _at_output(
@@ -144,6 +164,7 @@ def _at_output(
     mean: FloatArray,
     signed: FloatArray,
     held: NDArray[np.bool_],
+    share: FloatArray,
     start: FloatArray | None,
 ) -> Equilibrium:
     """Find the moments on held wheels by secants, from their mean over a turn."""
@@ -153,8 +174,8 @@ def _at_output(
         return found
     moment, pose = mean.copy(), found.pose.copy()
     iterations = found.iterations.copy()
-    left = moment + crank_moment(model, angle, pose, found.response) + signed
-    # The crank carries 1/u of the wheel's moment in the mean: what is left grows with the moment by 1 − 1/u.
+    left = moment + input_moment(model, angle, pose, found.response, share) + signed
+    # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
     slope = -signed / mean
     history = []
     for _ in range(ROUNDS):
@@ -170,7 +191,9 @@ def _at_output(
         iterations[open_rows] += part.iterations
         model_part = model if open_rows.size == angle.size else at_rows(model, open_rows)
         left[open_rows] = (
-            moment[open_rows] + crank_moment(model_part, angle[open_rows], part.pose, part.response) + signed[open_rows]
+            moment[open_rows]
+            + input_moment(model_part, angle[open_rows], part.pose, part.response, share[open_rows])
+            + signed[open_rows]
         )
         secant = (left[open_rows] - before) / step
         # Round-off of both ends makes no slope any more; a wrong one would only cost rounds.
@@ -182,11 +205,4 @@ def _at_output(
             history,
         )
     final = balance(everything, moment, pose)
-    return Equilibrium(
-        crank_angle=final.crank_angle,
-        wheel_moment=final.wheel_moment,
-        pose=final.pose,
-        response=final.response,
-        residual=final.residual,
-        iterations=iterations + final.iterations,
-    )
+    return replace(final, iterations=iterations + final.iterations)

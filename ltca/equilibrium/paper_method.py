@@ -20,7 +20,7 @@ from ltca.compliance.response import ComplianceModel, Response, Start
 from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.newton import TOLERANCE
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 FloatArray = NDArray[np.float64]
 
@@ -138,7 +138,7 @@ def _iterate(
     model: ComplianceModel, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
 ) -> PaperIteration:
     lever = lever_arms(model)
-    reach = model.discs[0].geometry.placement.eccentricity
+    reach = float(model.discs[0].geometry.placement.mean_eccentricity[0])
     load = np.abs(wheel_moment) / lever[WHEEL_ANGLE]
     guess = np.array(unknowns, dtype=float)
     count = guess.shape[0]
@@ -248,6 +248,7 @@ def solve_paper_equilibrium(
             residual = response.force.copy()
             residual[:, WHEEL_ANGLE] -= moment
             return Equilibrium(
+                coordinates=model.coordinates,
                 crank_angle=requested,
                 wheel_moment=np.array(moment),
                 pose=pose,

@@ -1,14 +1,15 @@
 """A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel for all.
 
-The coordinates are x, y and rotation of disc after disc and the wheel angle. A pair touches the columns of its disc and
-of the wheel only, so force and tangent of the reducer are those of its discs, put in their places and summed at the wheel.
+The coordinates are those of disc after disc and the wheel's (`ltca.geometry.coordinates`). A pair touches the columns of its
+disc and of the wheel only, so force and tangent of the reducer are those of its discs, put in their places and summed at the
+wheel; supports are springs on coordinates.
 Pairs are numbered disc after disc: of n discs array axes for pairs are n times as long.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -22,13 +23,10 @@ from ltca.compliance.response import (
     KindPressures,
     Response,
     Start,
+    bearing_pushes,
 )
-from ltca.geometry.pairs import (
-    DISC_COORDINATES,
-    WHEEL_ANGLE,
-    ContactGeometry,
-    disc_pose,
-)
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -48,19 +46,30 @@ class ReducerResponse(Response):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reducer:
-    """Several discs that share wheel, crank and pin shaft.
+    """Discs that share wheel, cranks and pin shaft, and what these rest on.
 
     Attributes
     ----------
     discs : tuple of DiscModel
         How the contacts of each disc yield, all by the same model.
+    supports : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates), or None
+        Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
     """
 
     discs: tuple[DiscModel, ...]
+    supports: FloatArray | None = None
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """What its poses are made of."""
+        return replace(self.discs[0].geometry.coordinates, discs=len(self.discs))
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
         """Return the model of some positions of a batch."""
-        return Reducer(discs=tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs))
+        supports = self.supports
+        if supports is not None and supports.ndim > 2:
+            supports = supports[rows]
+        return Reducer(discs=tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs), supports=supports)
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
         """Return the contact forces of all discs.
@@ -69,23 +78,26 @@ class Reducer:
         ----------
         crank_angle : array, shape (positions,)
             φ_C, rad.
-        pose : array, shape (positions, 3 discs + 1)
-            x, y and rotation of disc after disc, then the wheel angle.
+        pose : array, shape (positions, coordinates)
+            q of `ltca.geometry.coordinates`.
         start : Start, optional
             Inner unknowns of a neighbouring pose.
         """
-        count = len(self.discs)
+        count, coordinates = len(self.discs), self.coordinates
+        places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
         parts = tuple(
-            disc.respond(crank_angle, disc_pose(pose, number), begin)
-            for number, (disc, begin) in enumerate(zip(self.discs, starts, strict=True))
+            disc.respond(crank_angle, pose[:, own], begin)
+            for own, disc, begin in zip(places, self.discs, starts, strict=True)
         )
-        size = DISC_COORDINATES * count + 1
+        size = coordinates.size
         force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
-        for number, part in enumerate(parts):
-            own = [*range(DISC_COORDINATES * number, DISC_COORDINATES * (number + 1)), size - 1]
+        for own, part in zip(places, parts, strict=True):
             force[:, own] += part.force
-            tangent[:, np.array(own)[:, None], own] += part.tangent
+            tangent[:, own[:, None], own] += part.tangent
+        if self.supports is not None:
+            force += np.matmul(self.supports, pose[..., None])[..., 0]
+            tangent += self.supports
         warm = np.empty(crank_angle.size, dtype=object)
         for row in range(crank_angle.size):
             warm[row] = tuple(part.warm_start[row] for part in parts)
@@ -110,9 +122,17 @@ class Reducer:
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
 
 
-def reducer_of(discs: Sequence[DiscModel]) -> ComplianceModel:
-    """Return the model of a drive from those of its discs: of one disc its own."""
-    return discs[0] if len(discs) == 1 else Reducer(discs=tuple(discs))
+def reducer_of(discs: Sequence[DiscModel], supports: FloatArray | None = None) -> ComplianceModel:
+    """Return the model of a drive from those of its discs: of one disc on members that do not yield its own.
+
+    Parameters
+    ----------
+    discs : sequence of DiscModel
+        One for each disc.
+    supports : array, optional
+        Stiffness of the supports, see `Reducer`.
+    """
+    return discs[0] if len(discs) == 1 and supports is None else Reducer(discs=tuple(discs), supports=supports)
 
 
 def disc_responses(response: Response) -> tuple[Response, ...]:
@@ -147,10 +167,23 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
     )
 
 
-def bearing_forces(response: Response) -> NDArray[np.complex128]:
-    """Return the force of each crank bearing on its disc in the fixed frame, shape (positions, discs), N."""
-    pushes = [(part.rollers.outer_load * part.rollers.outer_direction).sum(axis=1) for part in disc_responses(response)]
-    return np.stack(pushes, axis=1)
+def bearing_forces(model: ComplianceModel, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
+    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        What answered.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    response : Response
+        Contacts.
+    """
+    forces = []
+    for geometry, part in zip(geometries(model), disc_responses(response), strict=True):
+        ahead = geometry.placement.eccentric_directions(crank_angle)
+        forces.append(bearing_pushes(part.rollers, ahead.shape[-1]) * ahead.conjugate())
+    return np.stack(forces, axis=1)
 
 
 def disc_torques(response: Response) -> FloatArray:
@@ -166,7 +199,7 @@ def geometries(model: ComplianceModel) -> tuple[ContactGeometry, ...]:
 def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ComplianceModel:
     """Return the model at some positions: these rows of a batch, itself where all are of one drive."""
     if not model.discs[0].geometry.placement.is_batch:
-        return model
+        return model  # as every position of one drive has the same supports
     return cast(BatchModel, model).take(rows)
 
 

@@ -123,7 +123,7 @@ def _draw_parts(axes: Any, shown: _Position) -> None:
 
 
 def _draw_loads(axes: Any, shown: _Position, largest: float) -> None:
-    longest = 0.2 * shown.place.eccentricity * shown.place.reduction_ratio + 12.0
+    longest = 0.2 * float(shown.place.mean_eccentricity[0]) * shown.place.reduction_ratio + 12.0
     for centres, load, radii, towards in shown.loads:
         for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):
             contact = centre + radius * direction

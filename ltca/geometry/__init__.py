@@ -9,6 +9,8 @@ boundary_stations  Stations of a closed boundary, uniform in a periodic paramete
 flank_deviation    Deviation of the flank from its design along the design normal, δ(θ), with two derivatives
 placement          Where pins, rollers and holes stand and how large they are, errors included
 flank              Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1)
+coordinates        Which coordinates a pose has and where: discs, cranks that yield, the wheel where its bearing does,
+                   the wheel's angle
 pairs              How far each pair is pressed together at a pose, and how that changes with the pose (Eq. 45–64)
 interference       How far parts overlap as they are drawn, before any body yields: what presses a drive together
                    without load

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -83,7 +84,7 @@ def turn_to_contact(
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     pose = np.zeros((angle.size, 4))
-    lever = geometry.placement.eccentricity * geometry.placement.reduction_ratio
+    lever = geometry.placement.mean_eccentricity * geometry.placement.reduction_ratio
     history: list[float] = []
     settled = np.zeros(angle.size, dtype=bool)
     pin = np.zeros(angle.size, dtype=np.intp)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
 
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -24,7 +24,7 @@ class Interference:
     rollers : float
         Of a roller and both races together, clearance included.
     holes : float
-        Of shaft pins and holes, clearance included: all on the same side, against the eccentricity.
+        Of shaft pins and holes, clearance included: all on the same side, against the eccentricity; −∞ without them.
     """
 
     pins: float
@@ -54,7 +54,7 @@ def drawn_interference(drive: Drive) -> Interference:
     return Interference(
         pins=max(disc.shifting_offset, disc.shifting_offset * steepest) - disc.equidistant_offset,
         rollers=bearing.inner_race_radius + 2.0 * bearing.roller_radius - drive.bore_radius,
-        holes=drive.crank.eccentricity + shaft.pin_radius - drive.hole_radius,
+        holes=-inf if shaft is None else drive.crank.eccentricity + shaft.pin_radius - drive.hole_radius,
     )
 
 

@@ -1,70 +1,26 @@
 r"""How far each pair is pressed together at a pose, and how that changes with the pose (Eq. 45–64).
 
-A pose of the disc and the wheel at a held crank angle is q = (x, y, disc rotation, wheel angle): x and y in
-mm are the displacement of the disc centre from the inner-race centre in the fixed frame, the angles in rad;
-the wheel angle is its deviation from φ_C/u. All arrays carry the position on axis 0 and the pair on axis 1.
-Approaches are positive where the bodies are pressed together.
+A pose q is that of `ltca.geometry.coordinates`; one of four coordinates says that cranks and wheel stay where they are.
+All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
+together.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.parts import Drive
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
-X, Y, DISC_ROTATION, WHEEL_ANGLE = 0, 1, 2, -1
-"""Places of the coordinates in a pose, in gradients by it and in forces on it; the wheel angle is the last one."""
-DISC_COORDINATES = 3
-"""x, y and rotation: what every disc has of its own."""
-DISC_PLACE = slice(X, Y + 1)
-
-
-def rotations(coordinates: int) -> NDArray[np.intp]:
-    """Return the places of the rotations in the pose of one or several discs with the wheel angle as the last one.
-
-    Examples
-    --------
-    >>> rotations(4).tolist(), rotations(7).tolist()
-    ([2, 3], [2, 5, 6])
-    """
-    return np.append(np.arange(DISC_ROTATION, coordinates - 1, DISC_COORDINATES), coordinates - 1)
-
-
-def disc_pose(pose: FloatArray, disc: int) -> FloatArray:
-    """Return the pose of one of several discs: its x, y and rotation, and the wheel angle, shape (…, 4).
-
-    Parameters
-    ----------
-    pose : array, shape (…, 3 discs + 1)
-        x, y and rotation of disc after disc, then the wheel angle.
-    disc : int
-        Its number.
-    """
-    if pose.shape[-1] == DISC_COORDINATES + 1:
-        return pose
-    first = DISC_COORDINATES * disc
-    return pose[..., [first + X, first + Y, first + DISC_ROTATION, WHEEL_ANGLE]]
-
-
-def disc_displacement(pose: FloatArray) -> ComplexArray:
-    """Return x + iy of poses: the disc centre from the inner-race centre in the fixed frame, mm.
-
-    Parameters
-    ----------
-    pose : array, shape (…, 4)
-        q.
-    """
-    return np.asarray(pose[..., X] + 1j * pose[..., Y])
 
 
 def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -73,6 +29,11 @@ def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
 
 def _cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
     return first.real * second.imag - first.imag * second.real
+
+
+def _coordinates(drive: Drive) -> Coordinates:
+    yielding = 0 if drive.crank.support is None else drive.crank.number
+    return Coordinates(cranks=yielding, wheel=drive.pin_wheel.support_stiffness is not None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,9 +47,9 @@ class PairMotion:
     ----------
     approach : array, shape (positions, pairs)
         δ, mm.
-    gradient : array, shape (positions, pairs, 4)
+    gradient : array, shape (positions, pairs, coordinates)
         ∂δ/∂q, in mm/mm and mm/rad.
-    along : array, shape (positions, pairs, 4)
+    along : array, shape (positions, pairs, coordinates)
         Slip along the tangent by the pose, in mm/mm and mm/rad.
     bending : array, shape (positions, pairs)
         κ of the path of equal approach, 1/mm.
@@ -100,7 +61,7 @@ class PairMotion:
     bending: FloatArray
 
     def bend(self, load: FloatArray) -> FloatArray:
-        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, 4, 4).
+        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, coordinates, coordinates).
 
         Parameters
         ----------
@@ -111,7 +72,7 @@ class PairMotion:
 
     @property
     def curvature(self) -> FloatArray:
-        """∂²δ/∂q² of every pair, shape (positions, pairs, 4, 4)."""
+        """∂²δ/∂q² of every pair, shape (positions, pairs, coordinates, coordinates)."""
         one = np.ones((*self.bending.shape, 1))
         return self._sum(one, self.bending[..., None], self.along[..., None, :])
 
@@ -140,7 +101,7 @@ class FlankMotion(PairMotion):
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s₃ e₃e₃ᵀ), the wheel angle being coordinate 3."""
+        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ), the wheel angle being the last coordinate."""
         total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
         slip = np.matmul(load[..., None, :], along)[..., 0, :]
         total[..., DISC_ROTATION, :] += slip
@@ -151,17 +112,49 @@ class FlankMotion(PairMotion):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RollerRays:
-    """Rollers on their cage rays about the inner-race centre.
+class BoreMotion:
+    """Bores of the disc against the centres of the inner races in them.
 
     Attributes
     ----------
-    direction : array of complex, shape (positions, n_BR)
+    displacement : array of complex, shape (positions, cranks)
+        Bore centre from inner-race centre in the fixed frame, mm.
+    arm : array of complex, shape (positions, cranks)
+        Bore centre from the centre of the disc in the fixed frame, mm: zero for a central crank. The second derivative of
+        `displacement` by the rotation of the disc is −`arm`, and there is no other.
+    gradient : array of complex, shape (positions, cranks, coordinates)
+        ∂ displacement/∂q, in mm/mm and mm/rad.
+    """
+
+    displacement: ComplexArray
+    arm: ComplexArray
+    gradient: ComplexArray
+
+    def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
+        """Return values of the bores as those of their rollers, shape (positions, rollers, …).
+
+        Parameters
+        ----------
+        values : array, shape (positions, cranks, …)
+            One of the attributes.
+        rollers : int
+            All of them.
+        """
+        return values if values.shape[1] == 1 else np.repeat(values, rollers // values.shape[1], axis=1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerRays:
+    """Rollers on their cage rays about the inner-race centres, crank after crank.
+
+    Attributes
+    ----------
+    direction : array of complex, shape (positions, rollers)
         Unit vector n of each ray in the fixed frame.
-    outermost : array, shape (n_BR,)
+    outermost : array, shape (rollers,)
         Distance s of the roller centre from the race centre when it rests on the inner race, mm.
-    bore_play : array, shape (n_BR,)
-        Bore radius less roller radius: distance from the disc centre at which it touches the bore, mm.
+    bore_play : array, shape (rollers,)
+        Bore radius less roller radius: distance from the bore centre at which it touches the bore, mm.
     """
 
     direction: ComplexArray
@@ -169,42 +162,57 @@ class RollerRays:
     bore_play: FloatArray
 
     def touching_distance(self, displacement: ComplexArray) -> FloatArray:
-        """Return the distance s at which each roller just touches the bore, mm, shape (positions, n_BR).
+        """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
 
         Parameters
         ----------
-        displacement : array of complex, shape (positions,)
-            Disc centre from inner-race centre, mm.
+        displacement : array of complex, shape (positions, rollers) or (positions, 1)
+            Bore centre from inner-race centre, mm.
         """
-        along = _dot(self.direction, displacement[:, None])
-        across = (self.direction.conjugate() * displacement[:, None]).imag
+        along = _dot(self.direction, displacement)
+        across = (self.direction.conjugate() * displacement).imag
         # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
         return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactGeometry:
-    """The drive as its contact pairs see it."""
+    """The drive as its contact pairs see it.
+
+    Attributes
+    ----------
+    placement, profile : Placement, FlankProfile
+        Where the parts stand, and the flank.
+    coordinates : Coordinates
+        Of a pose in which every member moves that can.
+    """
 
     placement: Placement
     profile: FlankProfile
+    coordinates: Coordinates
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
-        """Return the contact geometry of a drive."""
-        return cls(placement=Placement.of_drive(drive), profile=FlankProfile.of_drive(drive))
+        """Return the contact geometry of a drive of one disc."""
+        place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
+        return cls(placement=place, profile=profile, coordinates=_coordinates(drive))
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], positions: int) -> ContactGeometry:
         """Return the contact geometry of a batch: every drive at the same number of positions, drive by drive."""
         places = [Placement.of_drive(drive) for drive in drives]
-        return cls(placement=Placement.stack(places, positions), profile=FlankProfile.stack(drives, positions))
+        place, profile = Placement.stack(places, positions), FlankProfile.stack(drives, positions)
+        return cls(placement=place, profile=profile, coordinates=_coordinates(drives[0]))
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ContactGeometry:
         """Return the geometry of some positions: itself for one drive, these rows of a batch."""
         if not self.placement.is_batch:
             return self
-        return ContactGeometry(placement=self.placement.take(rows), profile=self.profile.take(rows))
+        return replace(self, placement=self.placement.take(rows), profile=self.profile.take(rows))
+
+    def coordinates_of(self, pose: FloatArray) -> Coordinates:
+        """Return the coordinates that a pose has: those of rigid members where it has no more than four."""
+        return Coordinates() if pose.shape[-1] == RIGID else self.coordinates
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose: (φ_C + 2πi)/z_P for Δz = 1, on a flank that is not turned, rad.
@@ -226,14 +234,17 @@ class ContactGeometry:
         ----------
         crank_angle : array, shape (positions,)
             φ_C, rad.
-        pose : array, shape (positions, 4)
+        pose : array, shape (positions, coordinates)
             q.
         start : array, shape (positions, z_P), optional
             First guess of the contact parameters; the nominal ones by default.
         """
-        place = self.placement
+        place, coordinates = self.placement, self.coordinates_of(pose)
         rotation, wheel_angle = pose[:, DISC_ROTATION, None], pose[:, WHEEL_ANGLE, None]
         disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
+        wheel = coordinates.wheel_place
+        if coordinates.wheel:  # a wheel that moves is a disc that moves the other way
+            disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
         pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
         arm = place.wheel_axis + pin - disc_centre
         turn = unit(rotation)
@@ -254,11 +265,13 @@ class ContactGeometry:
         # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
         outward = normal * turn
-        gradient, along = np.empty((*approach.shape, 4)), np.empty((*approach.shape, 4))
+        gradient, along = (np.zeros((*approach.shape, coordinates.size)) for _ in range(2))
         gradient[..., X], gradient[..., Y] = outward.real, outward.imag
         gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = _cross(arm, outward), -_cross(pin, outward)
         along[..., X], along[..., Y] = outward.imag, -outward.real
         along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -_dot(outward, arm), _dot(outward, pin)
+        if coordinates.wheel:
+            gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
         return FlankMotion(
             approach=approach,
             gradient=gradient,
@@ -276,13 +289,27 @@ class ContactGeometry:
         play = place.shaft_pin_centres - disc_centre - arm
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
-        gradient, along = np.zeros((*distance.shape, 4)), np.zeros((*distance.shape, 4))
+        gradient, along = (np.zeros((*distance.shape, self.coordinates_of(pose).size)) for _ in range(2))
         gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
         gradient[..., DISC_ROTATION] = -_cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
         along[..., DISC_ROTATION] = _dot(direction, arm)
         approach = distance - (place.hole_radii - place.shaft_pin_radii)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
+
+    def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:
+        """Return where the bores stand; arguments as for `flank`."""
+        place, coordinates = self.placement, self.coordinates_of(pose)
+        arm = place.bore_centres * unit(pose[:, DISC_ROTATION, None])
+        moved = place.race_centre(crank_angle)[:, None] - place.race_centres(crank_angle) + arm
+        moved = moved + (pose[:, X] + 1j * pose[:, Y])[:, None]
+        gradient = np.zeros((*moved.shape, coordinates.size), dtype=complex)
+        gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = 1.0, 1j, 1j * arm
+        for crank in range(coordinates.cranks):
+            x = coordinates.crank(crank)
+            moved[:, crank] -= pose[:, x] + 1j * pose[:, x + 1]
+            gradient[:, crank, x], gradient[:, crank, x + 1] = -1.0, -1j
+        return BoreMotion(displacement=moved, arm=arm, gradient=gradient)
 
     def rollers(self, crank_angle: FloatArray) -> RollerRays:
         """Return the cage rays of the rollers (Eq. 48); they depend on the crank angle alone."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,32 @@ def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
     return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * ray)
 
 
+def _of_shaft(drive: Drive) -> dict[str, Any]:
+    """Pins of the pin shaft and their holes; none where there is no pin shaft."""
+    shaft, count = drive.pin_shaft, drive.number_of_holes
+    if shaft is None:
+        nowhere, nothing = np.zeros(0, dtype=complex), np.zeros(0)
+        return {
+            "hole_centres": nowhere, "hole_radii": nothing, "shaft_pin_centres": nowhere, "shaft_pin_radii": nothing
+        }  # fmt: skip
+    return {
+        "hole_centres": _circle(shaft.pin_circle_radius, count, drive.disc.hole_errors),
+        "hole_radii": drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, count),
+        "shaft_pin_centres": _circle(shaft.pin_circle_radius, count, shaft.pin_errors),
+        "shaft_pin_radii": shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, count),
+    }
+
+
+def _bore_centres(drive: Drive) -> ComplexArray:
+    """Centres of the bores in the frame of the disc, the errors of their places included."""
+    places, count = np.array(drive.crank.places), drive.crank.number
+    errors = drive.disc.of[0].bore_errors if drive.disc.of else None
+    if errors is None:
+        return places
+    shift = _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)
+    return np.asarray(places + shift * places / np.abs(places))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placement:
     """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives.
@@ -53,18 +79,22 @@ class Placement:
         In the fixed frame, mm.
     shaft_pin_radii : array of float, shape (z_PS,)
         mm.
-    roller_cage_angles : array of float, shape (n_BR,)
-        Angle of each roller in the cage, rad.
-    roller_radii : array of float, shape (n_BR,)
+    roller_cage_angles : array of float, shape (cranks · n_BR,)
+        Angle of each roller in its cage, crank after crank, rad.
+    roller_radii : array of float, shape (cranks · n_BR,)
         mm.
     inner_race_radius, bore_radius : float
         r_i, and r_o with half the bearing clearance, mm.
-    eccentricity : float
-        Actual e, mm.
-    eccentric_phase : float
-        Actual phase of the eccentric against the crank angle, rad.
-    crank_axis, wheel_axis : complex
-        Places of both axes in the fixed frame, mm.
+    eccentricity : array of float, shape (cranks,)
+        Actual e of each crank, mm.
+    eccentric_phase : array of float, shape (cranks,)
+        Actual phase of the eccentrics against the crank angle, rad.
+    crank_axes : array of complex, shape (cranks,)
+        Places of the crank axes in the fixed frame, mm.
+    bore_centres : array of complex, shape (cranks,)
+        In the disc frame, mm.
+    wheel_axis : complex
+        Place of the wheel's axis in the fixed frame, mm.
     cage_speed : float
         Cage angle by crank angle, r_i/(r_i + r_o) with the nominal r_o.
     reduction_ratio : float
@@ -81,9 +111,10 @@ class Placement:
     roller_radii: FloatArray
     inner_race_radius: BatchScalar
     bore_radius: BatchScalar
-    eccentricity: BatchScalar
-    eccentric_phase: BatchScalar
-    crank_axis: complex | ComplexArray
+    eccentricity: FloatArray
+    eccentric_phase: FloatArray
+    crank_axes: ComplexArray
+    bore_centres: ComplexArray
     wheel_axis: complex | ComplexArray
     cage_speed: BatchScalar
     reduction_ratio: float
@@ -91,38 +122,49 @@ class Placement:
     @classmethod
     def of_drive(cls, drive: Drive) -> Placement:
         """Return the places of the parts of a drive of one disc (`ltca.drive.single_discs`)."""
-        wheel, bearing, shaft = drive.pin_wheel, drive.crank_bearing, drive.pin_shaft
-        holes = shaft.number_of_pins
+        wheel, bearing, crank = drive.pin_wheel, drive.crank_bearing, drive.crank
         rollers = bearing.number_of_rollers
         pitch_radius = bearing.inner_race_radius + bearing.roller_radius
         pocket_error = _filled(bearing.roller_errors.tangential, rollers) / pitch_radius
+        cage_angles = 2.0 * np.pi * np.arange(rollers) / rollers + pocket_error + drive.disc.phase
+        roller_radii = bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers)
+        eccentrics = [crank.eccentric(0, number) for number in range(crank.number)]
+        errors = [entry.eccentricity_error for entry in eccentrics]
         return cls(
             wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
             wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
-            hole_centres=_circle(shaft.pin_circle_radius, holes, drive.disc.hole_errors),
-            hole_radii=drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, holes),
-            shaft_pin_centres=_circle(shaft.pin_circle_radius, holes, shaft.pin_errors),
-            shaft_pin_radii=shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, holes),
-            roller_cage_angles=2.0 * np.pi * np.arange(rollers) / rollers + pocket_error + drive.disc.phase,
-            roller_radii=bearing.roller_radius + 0.5 * _filled(bearing.roller_errors.diameter, rollers),
+            **_of_shaft(drive),
+            roller_cage_angles=np.tile(cage_angles, crank.number),
+            roller_radii=np.tile(roller_radii, crank.number),
             inner_race_radius=bearing.inner_race_radius,
             bore_radius=drive.bore_radius,
-            eccentricity=drive.crank.eccentricity + drive.crank.eccentricity_error,
-            eccentric_phase=drive.eccentric_phase,
-            crank_axis=drive.crank.axis_offset.place,
+            eccentricity=crank.eccentricity + np.array([crank.eccentricity_error if e is None else e for e in errors]),
+            eccentric_phase=drive.disc.phase + np.array([entry.phase_error for entry in eccentrics]),
+            crank_axes=crank.axis_offset.place + np.array(crank.places),
+            bore_centres=_bore_centres(drive),
             wheel_axis=wheel.axis_offset.place,
             cage_speed=bearing.inner_race_radius / (bearing.inner_race_radius + bearing.outer_race_radius),
             reduction_ratio=drive.reduction_ratio,
         )
 
     @property
+    def cranks(self) -> int:
+        """Number of cranks."""
+        return int(self.eccentricity.shape[-1])
+
+    @property
+    def mean_eccentricity(self) -> FloatArray:
+        """Mean e of the cranks, mm, shape (1,), of a batch (positions, 1)."""
+        return np.asarray(self.eccentricity.mean(axis=-1, keepdims=True))
+
+    @property
     def inner_effective_radii(self) -> FloatArray:
-        """Effective radii of rollers and inner race, 1/(1/r_BR + 1/r_i), mm, shape (n_BR,)."""
+        """Effective radii of rollers and inner race, 1/(1/r_BR + 1/r_i), mm, shape (cranks · n_BR,)."""
         return np.asarray(1.0 / (1.0 / self.roller_radii + 1.0 / self.inner_race_radius))
 
     @property
     def outer_effective_radii(self) -> FloatArray:
-        """Effective radii of rollers and bore, 1/(1/r_BR − 1/r_o), mm, shape (n_BR,)."""
+        """Effective radii of rollers and bore, 1/(1/r_BR − 1/r_o), mm, shape (cranks · n_BR,)."""
         return np.asarray(1.0 / (1.0 / self.roller_radii - 1.0 / self.bore_radius))
 
     @property
@@ -133,7 +175,7 @@ class Placement:
     @property
     def is_batch(self) -> bool:
         """Whether every position has a drive of its own."""
-        return isinstance(self.eccentricity, np.ndarray)
+        return self.eccentricity.ndim > 1
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Placement:
         """Return the places of some positions of a batch."""
@@ -161,20 +203,32 @@ class Placement:
                 stacked[item.name] = np.repeat(rows.reshape(len(places), -1), positions, axis=0)
         return cls(**stacked)
 
+    def eccentric_directions(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return the unit vectors from the crank axes to the centres of inner races and cages, fixed frame, shape (…, cranks)."""
+        return unit(np.asarray(crank_angle)[..., None] + self.eccentric_phase)
+
     def eccentric_direction(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the unit vector from the crank axis to the centre of inner race and cage, in the fixed frame."""
-        return unit(np.asarray(crank_angle) + _flat(self.eccentric_phase))
+        """Return the unit vector of the disc's eccentricity, in the mean of its eccentrics, in the fixed frame."""
+        phase = self.eccentric_phase.mean(axis=-1)
+        return unit(np.asarray(crank_angle) + phase)
+
+    def race_centres(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return the centres of inner races and cages in the fixed frame, mm, shape (…, cranks) (Eq. 47)."""
+        return np.asarray(self.crank_axes + self.eccentricity * self.eccentric_directions(crank_angle))
 
     def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the centre of inner race and cage, e·e^{i(φ_C + ζ)} from the crank axis, in the fixed frame, mm (Eq. 47)."""
-        return np.asarray(_flat(self.crank_axis) + _flat(self.eccentricity) * self.eccentric_direction(crank_angle))
+        """Return the nominal place of the disc in the fixed frame, mm: the centre of its inner race, the mean of several.
+
+        That of one is e·e^{i(φ_C + ζ)} from the crank axis (Eq. 47).
+        """
+        return np.asarray(self.race_centres(crank_angle).mean(axis=-1))
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
-        """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, n_BR)."""
+        """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, cranks · n_BR)."""
         return np.asarray(self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles)
 
     def roller_rays(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the unit vectors of the cage rays, e^{iθ_b,n}, in the fixed frame, shape (…, n_BR)."""
+        """Return the unit vectors of the cage rays, e^{iθ_b,n}, in the fixed frame, shape (…, cranks · n_BR)."""
         turn = unit(_flat(self.cage_speed) * np.asarray(crank_angle))
         return np.asarray(turn[..., None] * unit(self.roller_cage_angles))
 

@@ -20,18 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import (
-    DISC_PLACE,
-    WHEEL_ANGLE,
-    ContactGeometry,
-    FlankMotion,
-    PairMotion,
-    RollerRays,
-    X,
-    Y,
-    disc_displacement,
-    rotations,
-)
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion, RollerRays
 
 FloatArray = NDArray[np.float64]
 
@@ -86,7 +76,8 @@ class _Pairs(NamedTuple):
     flank: FlankMotion
     holes: PairMotion
     length: FloatArray
-    outward: NDArray[np.complex128]
+    across: FloatArray
+    arm: FloatArray
     approach: FloatArray
     gradient: FloatArray
 
@@ -94,28 +85,28 @@ class _Pairs(NamedTuple):
     def at(cls, geometry: ContactGeometry, rays: RollerRays, angle: FloatArray, pose: FloatArray) -> _Pairs:
         flank, holes = geometry.flank(angle, pose), geometry.holes(angle, pose)
         # A roller on the inner race presses on the bore with |s n − d| less the bore play.
-        arm = rays.outermost * rays.direction - disc_displacement(pose)[:, None]
+        bores, rollers = geometry.bores(angle, pose), rays.direction.shape[1]
+        arm = rays.outermost * rays.direction - bores.each(bores.displacement, rollers)
         length = np.abs(arm)
         outward = arm / length
-        rollers = np.zeros((*length.shape, 4))
-        rollers[..., X], rollers[..., Y] = -outward.real, -outward.imag
+        moved = outward.conjugate()[..., None] * bores.each(bores.gradient, rollers)
         return cls(
             flank=flank,
             holes=holes,
             length=length,
-            outward=outward,
+            across=moved.imag,
+            arm=(outward.conjugate() * bores.each(bores.arm, rollers)).real,
             approach=np.concatenate([flank.approach, holes.approach, length - rays.bore_play], axis=1),
-            gradient=np.concatenate([flank.gradient, holes.gradient, rollers], axis=1),
+            gradient=np.concatenate([flank.gradient, holes.gradient, -moved.real], axis=1),
         )
 
     def bend(self, load: FloatArray) -> FloatArray:
         """Σ F ∂²δ/∂q²."""
         pins, holes = self.flank.approach.shape[1], self.holes.approach.shape[1]
         total = self.flank.bend(load[:, :pins]) + self.holes.bend(load[:, pins : pins + holes])
-        across = np.stack((-self.outward.imag, self.outward.real), axis=-1)
-        total[:, DISC_PLACE, DISC_PLACE] += np.einsum(
-            "bi,bij,bik->bjk", load[:, pins + holes :] / self.length, across, across
-        )
+        rollers = load[:, pins + holes :]
+        total += np.einsum("bi,bij,bik->bjk", rollers / self.length, self.across, self.across)
+        total[:, DISC_ROTATION, DISC_ROTATION] += (rollers * self.arm).sum(axis=1)
         return total
 
 
@@ -126,9 +117,8 @@ class _Programme:
         place = geometry.placement
         self.geometry, self.angle, self.sense = geometry, angle, sense
         self.rays = geometry.rollers(angle)
-        reach = float(place.eccentricity) * place.reduction_ratio
-        self.lever = np.ones(4)
-        self.lever[rotations(4)] = reach
+        reach = float(place.mean_eccentricity[0]) * place.reduction_ratio
+        self.lever = np.array([1.0, 1.0, reach, reach])
         self.touching = TOUCHING * float(np.max(np.abs(place.wheel_pin_centres)))
         self.pitch = np.pi / place.reduction_ratio
         self.stiffness = np.full(angle.size, 1.0 / (FIRST_YIELD * reach))

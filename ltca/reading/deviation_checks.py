@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.fields import ANY, OWN
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, PlacementErrors, RollerErrors
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.rotation import unit
 
@@ -24,7 +24,8 @@ POINTS_PER_WAVE = 24
 
 def deviation_bound(drive: Drive) -> float:
     """Return the largest deviation accepted, mm: beyond a tenth of the smallest radius it is a different design."""
-    return 0.1 * min(drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius, drive.pin_shaft.pin_radius)
+    radii = [drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius]
+    return 0.1 * min(radii if drive.pin_shaft is None else [*radii, drive.pin_shaft.pin_radius])
 
 
 def find_disc_problems(drive: Drive) -> Iterator[str]:
@@ -34,7 +35,7 @@ def find_disc_problems(drive: Drive) -> Iterator[str]:
         ("disc.phases", drive.disc.phases),
         ("disc.planes", drive.disc.planes),
         ("disc.of", drive.disc.of),
-        ("crank.of", drive.crank.of),
+        ("crank.of", drive.crank.of if all(entry.disc is None for entry in drive.crank.of) else ()),
     ):
         if entries and len(entries) != discs:
             yield f"{path} has {len(entries)} entries: must have {discs}, one for each disc (disc.number_of_discs)"
@@ -48,6 +49,7 @@ def find_disc_problems(drive: Drive) -> Iterator[str]:
     # One disc may be one of several looked at alone.
     if discs > 1 and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
         yield f"disc.planes has the mean {sum(planes) / len(planes):g} mm: must be 0 mm, planes are centred on 0"
+    yield from _eccentric_problems(drive)
     bound = min(deviation_bound(drive), 0.5 * drive.crank.eccentricity) / drive.crank.eccentricity
     for number, entry in enumerate(drive.crank.of):
         if abs(entry.phase_error) > bound:
@@ -57,26 +59,81 @@ def find_disc_problems(drive: Drive) -> Iterator[str]:
             )
 
 
+def _eccentric_problems(drive: Drive) -> Iterator[str]:
+    """What is wrong with whose the entries of ``crank.of`` are said to be, and with the errors of bores."""
+    discs, cranks, entries = drive.disc.number_of_discs, drive.crank.number, drive.crank.of
+    told = [entry.disc is not None for entry in entries]
+    if entries and not all(told) and (any(told) or cranks > 1):
+        number = told.index(False)
+        yield (
+            f"crank.of.{number}.disc is left out: every entry must say its disc"
+            + (f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none")
+        )
+        return
+    seen = set()
+    for number, entry in enumerate(entries):
+        if entry.disc is not None and entry.disc >= discs:
+            yield f"crank.of.{number}.disc = {entry.disc}: must be less than {discs}, the number of discs, which count from 0"
+        if entry.crank is not None and entry.crank >= cranks:
+            yield f"crank.of.{number}.crank = {entry.crank}: must be less than {cranks}, crank.number; cranks count from 0"
+        if entry.crank is None and cranks > 1:
+            yield f"crank.of.{number}.crank is left out: every entry must say its disc and its crank (crank.number = {cranks})"
+        if entry.disc is not None and (place := (entry.disc, entry.crank or 0)) in seen:
+            yield f"crank.of.{number}: disc {place[0]} on crank {place[1]} has an entry already"
+        seen.add((number if entry.disc is None else entry.disc, entry.crank or 0))
+    bound = deviation_bound(drive)
+    for number, own in enumerate(drive.disc.of):
+        if own.bore_errors is None:
+            continue
+        if cranks == 1:
+            yield (
+                f"disc.of.{number}.bore_errors: must be left out with one crank, whose bore is the centre of the disc "
+                "(give disc.runout)"
+            )
+            continue
+        for name in ("radial", "tangential"):
+            values = getattr(own.bore_errors, name)
+            path = f"disc.of.{number}.bore_errors.{name}"
+            if values and len(values) != cranks:
+                yield f"{path} has {len(values)} values: must have {cranks}, one for each of the bores (crank.number)"
+            worst = max(values, key=abs, default=0.0)
+            if abs(worst) > bound:
+                yield (
+                    f"{path} holds {worst:g} mm: must be at most {bound:g} mm in size, a tenth of the smallest pin or roller "
+                    "radius"
+                )
+    size = min(bound, 0.5 * drive.crank.eccentricity)
+    for number, entry in enumerate(entries):
+        if cranks > 1 and abs(entry.eccentricity_error or 0.0) > size:
+            yield (
+                f"crank.of.{number}.eccentricity_error = {entry.eccentricity_error:g} mm: must be at most {size:g} mm in size, a "
+                "tenth of the smallest pin or roller radius and half the eccentricity"
+            )
+
+
 def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
     """Return a problem of a drive of one disc alone as that of the whole drive: by the fields the disc has of its own."""
     for common, own in OWN.items():
         table, _, name = own.replace(ANY, "").replace("..", ".").partition(".of.")
-        entries = drive.disc.of if table == "disc" else drive.crank.of
-        if entries and getattr(entries[disc], name) is not None:
+        if table == "crank" and drive.crank.number > 1:
+            continue  # of several cranks: looked at with the whole drive
+        entry = (drive.disc.of[disc] if drive.disc.of else None) if table == "disc" else drive.crank.eccentric(disc)
+        if entry is not None and getattr(entry, name) is not None:
             problem = re.sub(rf"\b{re.escape(common)}\b", own.replace(ANY, str(disc)), problem)
     return problem
 
 
 def find_deviation_problems(drive: Drive) -> Iterator[str]:
     """Yield what is wrong with counts and sizes of the deviations, one sentence each."""
-    pins, holes = drive.pin_wheel.number_of_pins, drive.pin_shaft.number_of_pins
+    pins, holes = drive.pin_wheel.number_of_pins, drive.number_of_holes
     rollers = drive.crank_bearing.number_of_rollers
-    parts = [
+    parts: list[tuple[str, PlacementErrors | RollerErrors, int, str]] = [
         ("pin_wheel.pin_errors", drive.pin_wheel.pin_errors, pins, "pins"),
         ("disc.hole_errors", drive.disc.hole_errors, holes, "holes"),
-        ("pin_shaft.pin_errors", drive.pin_shaft.pin_errors, holes, "pins"),
         ("crank_bearing.roller_errors", drive.crank_bearing.roller_errors, rollers, "rollers"),
     ]
+    if drive.pin_shaft is not None:
+        parts.append(("pin_shaft.pin_errors", drive.pin_shaft.pin_errors, holes, "pins"))
     bound = deviation_bound(drive)
     for path, errors, count, things in parts:
         for name in ("radial", "tangential", "diameter"):

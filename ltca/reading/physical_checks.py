@@ -9,7 +9,7 @@ from math import pi, sin
 
 import numpy as np
 
-from ltca.drive.parts import Drive, LengthProfile
+from ltca.drive.parts import Drive, LengthProfile, Material
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.interference import ROUNDING, drawn_interference
@@ -39,7 +39,7 @@ def find_contradictions(drive: Drive) -> list[str]:
     list of str
         One sentence each, with field, value, bound and unit; empty for a sound drive.
     """
-    problems = list(find_disc_problems(drive))
+    problems = [*_installation(drive), *find_disc_problems(drive)]
     if problems:
         return problems
     common = single_discs(without_own(drive))[0]
@@ -66,10 +66,72 @@ def _find_in_disc(drive: Drive) -> list[str]:
 def is_sound(drive: Drive) -> bool:
     """Tell whether a drive is without contradictions; quicker than naming them, for what is cheap comes first."""
     checks = (*FIRST, *BESIDE, _flank, find_flank_problems)
-    if next(find_disc_problems(drive), None) is not None:
+    if any(next(check(drive), None) is not None for check in (_installation, find_disc_problems)):
         return False
     singles = {replace(each, disc=replace(each.disc, phases=(), planes=())): each for each in single_discs(drive)}
     return all(next(iter(check(single)), None) is None for single in singles.values() for check in checks)
+
+
+def _installation(drive: Drive) -> Iterator[str]:
+    """What goes with one crank or with several alone, and supports."""
+    crank, stage = drive.crank, drive.installation.first_stage_ratio
+    if crank.number == 1:
+        if drive.pin_shaft is None:
+            yield "pin_shaft: must be given with one crank (crank.number = 1), which alone cannot hold the disc against turning"
+        if crank.circle_radius is not None:
+            yield (
+                f"crank.circle_radius = {crank.circle_radius:g} mm: must be left out with one crank (crank.number = 1), which "
+                "stands in the centre"
+            )
+        if crank.angle:
+            yield (
+                f"crank.angle = {crank.angle:g} rad: must be left out with one crank (crank.number = 1), which stands in the "
+                "centre"
+            )
+        if stage is not None:
+            yield (
+                f"installation.first_stage_ratio = {stage:g}: must be left out with one crank (crank.number = 1), which is "
+                "the input itself"
+            )
+    elif crank.circle_radius is None:
+        yield f"crank.circle_radius: must be given with several cranks (crank.number = {crank.number})"
+    if drive.pin_shaft is None:
+        if drive.clearance.pin_hole:
+            yield f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be left out without a pin shaft"
+        for number, own in enumerate(drive.disc.of):
+            if own.clearance is not None and own.clearance.pin_hole:
+                yield (
+                    f"disc.of.{number}.clearance.pin_hole = {own.clearance.pin_hole:g} mm: must be left out without a pin shaft"
+                )
+        if drive.materials.shaft_pin != Material():
+            yield "materials.shaft_pin: must be left out without a pin shaft"
+    yield from _crank_support(drive)
+
+
+def _crank_support(drive: Drive) -> Iterator[str]:
+    support = drive.crank.support
+    if support is None:
+        if drive.materials.crankshaft != Material():
+            yield "materials.crankshaft: must be left out without crank.support, where cranks are rigid"
+        return
+    start, end = support.positions
+    if end <= start:
+        yield f"crank.support.positions holds {start:g} and {end:g} mm: must ascend"
+        return
+    bore = 2.0 * drive.crank_bearing.inner_race_radius
+    if support.diameter > bore:
+        yield (
+            f"crank.support.diameter = {support.diameter:g} mm: must be at most {bore:g} mm, the diameter of the inner race on it"
+        )
+    planes = drive.disc.disc_planes
+    reach = end - start
+    for plane in (min(planes), max(planes)):
+        if not start - reach <= plane <= end + reach:
+            yield (
+                f"crank.support.positions holds {start:g} and {end:g} mm: a disc at {plane:g} mm (disc.planes) hangs over by "
+                f"more than their distance {reach:g} mm"
+            )
+            return
 
 
 def _tooth_numbers(drive: Drive) -> Iterator[str]:
@@ -137,6 +199,8 @@ def _pins(drive: Drive) -> Iterator[str]:
             "or neighbouring pins overlap"
         )
     shaft = drive.pin_shaft
+    if shaft is None:
+        return
     room = shaft.pin_circle_radius * sin(pi / shaft.number_of_pins)
     if shaft.pin_radius >= room:
         yield (
@@ -186,6 +250,8 @@ def _bearing(drive: Drive) -> Iterator[str]:
 
 def _holes(drive: Drive) -> Iterator[str]:
     shaft, e = drive.pin_shaft, drive.crank.eccentricity
+    if shaft is None:
+        return
     play = shaft.hole_radius - shaft.pin_radius
     # Pins in tight holes push the disc along the eccentricity: by half of it they would lead it no more.
     most = min(deviation_bound(drive), 0.5 * e)
@@ -216,7 +282,7 @@ def _holes(drive: Drive) -> Iterator[str]:
         return f"pin_shaft.pin_circle_radius = {circle:g} mm: {trouble}; must be {circle_bound}"
 
     wall = circle - radius - drive.bore_radius
-    if wall <= 0.0:
+    if wall <= 0.0 and drive.crank.number == 1:
         yield hole_or_circle(
             -wall, f"holes cut into the bore by {-wall:.6g} mm", f"greater than {circle - wall:.6g} mm"
         )
@@ -230,7 +296,8 @@ def _holes(drive: Drive) -> Iterator[str]:
         )
     root = FlankProfile.of_drive(drive).root_radius
     wall = root - circle - radius
-    if wall <= 0.0 and root - radius > radius + drive.bore_radius:
+    inside = drive.bore_radius if drive.crank.number == 1 else 0.0
+    if wall <= 0.0 and root - radius > radius + inside:
         yield hole_or_circle(
             -wall,
             f"holes cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
@@ -278,7 +345,41 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
             yield f"{path}.logarithmic_factor = {profile.logarithmic_factor:g}: must be at most 100"
 
 
+def _bores(drive: Drive) -> Iterator[str]:
+    """Walls about the bores of several cranks."""
+    crank, radius = drive.crank, drive.bore_radius
+    if crank.number == 1 or crank.circle_radius is None:
+        return
+    circle = crank.circle_radius
+    path = f"crank.circle_radius = {circle:g} mm"
+    sine = sin(pi / crank.number)
+    wall = 2.0 * (circle * sine - radius)
+    if wall <= 0.0:
+        yield (
+            f"{path}: neighbouring bores of {crank.number} cranks cut into each other by {-wall:.6g} mm; must be greater than "
+            f"{radius / sine:.6g} mm"
+        )
+    root = FlankProfile.of_drive(drive).root_radius
+    wall = root - circle - radius
+    if wall <= 0.0:
+        yield (
+            f"{path}: bores cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm; must be less "
+            f"than {root - radius:.6g} mm"
+        )
+    shaft = drive.pin_shaft
+    if shaft is None:
+        return
+    holes = shaft.pin_circle_radius * np.exp(2j * np.pi * np.arange(shaft.number_of_pins) / shaft.number_of_pins)
+    distance = float(np.min(np.abs(holes[:, None] - np.array(crank.places))))
+    wall = distance - drive.hole_radius - radius
+    if wall <= 0.0:
+        yield (
+            f"{path}: a bore and a hole (pin_shaft.pin_circle_radius = {shaft.pin_circle_radius:g} mm) cut into each other by "
+            f"{-wall:.6g} mm; other radii or crank.angle must leave a wall"
+        )
+
+
 FIRST = (find_deviation_problems, _tooth_numbers)
 """What the geometry needs."""
-BESIDE = (_pins, _bearing, _holes, _length_profiles)
+BESIDE = (_pins, _bearing, _holes, _bores, _length_profiles)
 """What is looked at whatever the flank is."""

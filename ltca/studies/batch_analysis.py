@@ -18,8 +18,8 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import geometries
 from ltca.errors import CycloError, DriveError
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
-from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.studies.quantities import QUANTITIES, SampleBatch
 from ltca.studies.shapes import with_kept_coefficients
 

@@ -14,8 +14,8 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.reducer import geometries
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
-from ltca.geometry.pairs import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.studies.quantities import QUANTITIES, SampleBatch
 from ltca.studies.shapes import with_kept_coefficients

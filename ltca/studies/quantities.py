@@ -14,9 +14,9 @@ from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.reducer import bearing_forces, geometries
+from ltca.equilibrium.reducer import bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 
@@ -61,10 +61,9 @@ class SampleBatch:
 
     @property
     def bearing(self) -> tuple[FloatArray, FloatArray]:
-        """Radial and tangential bearing force on each disc, N, shape (samples, positions, discs)."""
-        ahead = [disc.placement.eccentric_direction(self.full.crank_angle) for disc in geometries(self.model)]
-        push = bearing_forces(self.full.response) * np.stack(ahead, axis=1).conjugate()
-        shape = (self.samples, -1, len(ahead))
+        """Radial and tangential forces of the bearings, N, shape (samples, positions, discs · cranks)."""
+        push = bearing_forces(self.model, self.full.crank_angle, self.full.response)
+        shape = (self.samples, push.shape[0] // self.samples, -1)
         return push.real.reshape(shape), push.imag.reshape(shape)
 
     def _at_output(self, pose: FloatArray) -> FloatArray:

@@ -56,16 +56,41 @@ class ActualParts:
     disc: int = 0
 
     @cached_property
-    def race_centre(self) -> complex:
-        """Centre of inner race and cage: at the actual eccentricity from the actual crank axis, mm."""
-        crank, error, ahead = self.drive.crank, self.drive.crank.eccentricity_error, 0.0
-        if crank.of:
-            own = crank.of[self.disc]
-            error = error if own.eccentricity_error is None else own.eccentricity_error
-            ahead = own.phase_error
-        phase = disc_phase(self.drive, self.disc) + ahead
-        arm = (crank.eccentricity + error) * np.exp(1j * (self.crank_angle + phase))
-        return complex(crank.axis_offset.x + arm.real, crank.axis_offset.y + arm.imag)
+    def race_centres(self) -> ComplexArray:
+        """Centres of inner races and cages: at the actual eccentricities from the actual crank axes, mm."""
+        crank = self.drive.crank
+        centres = []
+        for number in range(crank.number):
+            error, ahead = crank.eccentricity_error, 0.0
+            for place, own in enumerate(crank.of):
+                if (place if own.disc is None else own.disc, own.crank or 0) == (self.disc, number):
+                    error = error if own.eccentricity_error is None else own.eccentricity_error
+                    ahead = own.phase_error
+            phase = self.crank_angle + disc_phase(self.drive, self.disc) + ahead
+            x = crank.axis_offset.x + (crank.eccentricity + error) * np.cos(phase)
+            y = crank.axis_offset.y + (crank.eccentricity + error) * np.sin(phase)
+            if crank.circle_radius is not None:
+                on_circle = crank.angle + 2.0 * np.pi * number / crank.number
+                x, y = x + crank.circle_radius * np.cos(on_circle), y + crank.circle_radius * np.sin(on_circle)
+            centres.append(complex(x, y))
+        return np.array(centres)
+
+    @cached_property
+    def place(self) -> complex:
+        """What the displacement of the disc is counted from: the mean of the centres of its inner races, mm."""
+        return complex(sum(self.race_centres) / self.race_centres.size)
+
+    @cached_property
+    def bores(self) -> ComplexArray:
+        """Centres of the bores in the disc, mm."""
+        crank = self.drive.crank
+        if crank.circle_radius is None:
+            return np.zeros(1, dtype=complex)
+        errors = disc_own(self.drive, self.disc, "bore_errors", None)
+        radial = self._each(() if errors is None else errors.radial, crank.number)
+        tangential = self._each(() if errors is None else errors.tangential, crank.number)
+        ray = np.exp(1j * (crank.angle + 2.0 * np.pi * np.arange(crank.number) / crank.number))
+        return np.asarray((crank.circle_radius + radial + 1j * tangential) * ray)
 
     @cached_property
     def wheel_pins(self) -> tuple[ComplexArray, FloatArray]:
@@ -88,6 +113,8 @@ class ActualParts:
             self.drive.pin_shaft,
             disc_own(self.drive, self.disc, "hole_errors", self.drive.disc.hole_errors),
         )
+        if shaft is None:
+            return np.zeros(0, dtype=complex), np.zeros(0)
         at = self._on_circle(shaft.pin_circle_radius, shaft.number_of_pins, errors.radial, errors.tangential)
         radius = shaft.hole_radius + self._clearance("pin_hole")
         return at, radius + 0.5 * self._each(errors.diameter, shaft.number_of_pins)
@@ -96,6 +123,8 @@ class ActualParts:
     def shaft_pins(self) -> tuple[ComplexArray, FloatArray]:
         """Centres and radii, mm."""
         shaft = self.drive.pin_shaft
+        if shaft is None:
+            return np.zeros(0, dtype=complex), np.zeros(0)
         errors, pins = shaft.pin_errors, shaft.number_of_pins
         at = self._on_circle(shaft.pin_circle_radius, pins, errors.radial, errors.tangential)
         return at, shaft.pin_radius + 0.5 * self._each(errors.diameter, pins)

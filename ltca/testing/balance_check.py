@@ -68,60 +68,97 @@ class PotentialEnergy:
     wheel_moment: float
 
     def at(self, pose: FloatArray) -> FloatArray:
-        """Return Π of poses, shape (poses, 3 discs + 1), with the effective radii of the first of them, N·mm.
+        """Return Π of poses, shape (poses, coordinates), with the effective radii of the first of them, N·mm.
 
         All poses lie within some approaches of the first.
         """
-        stored = sum(
-            self._disc(disc, pose[:, [3 * disc, 3 * disc + 1, 3 * disc + 2, -1]])
-            for disc in range(self.drive.disc.number_of_discs)
-        )
+        stored = self._supports(pose)
+        for disc in range(self.drive.disc.number_of_discs):
+            stored = stored + self._disc(disc, pose)
         return np.asarray(stored - self.wheel_moment * pose[:, -1])
+
+    @property
+    def own(self) -> int:
+        """Coordinates of each disc: three, and two for each crank that yields."""
+        return 3 if self.drive.crank.support is None else 3 + 2 * self.drive.crank.number
+
+    def _cranks(self, disc: int, pose: FloatArray) -> ComplexArray:
+        """Displacements of the cranks in the plane of a disc, shape (poses, cranks), mm."""
+        first = self.own * disc + 3
+        yielding = pose[:, first : first + self.own - 3]
+        if yielding.shape[1] == 0:
+            return np.zeros((pose.shape[0], self.drive.crank.number), dtype=complex)
+        return np.asarray(yielding[:, ::2] + 1j * yielding[:, 1::2])
+
+    def _wheel(self, pose: FloatArray) -> ComplexArray:
+        """Displacement of the wheel, mm."""
+        if self.drive.pin_wheel.support_stiffness is None:
+            return np.zeros(pose.shape[0], dtype=complex)
+        return np.asarray(pose[:, -3] + 1j * pose[:, -2])
+
+    def _supports(self, pose: FloatArray) -> FloatArray:
+        """Energy of crankshafts on their bearings and of the wheel on its own, N·mm."""
+        total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self._wheel(pose)) ** 2
+        if self.drive.crank.support is not None:
+            holding = np.linalg.inv(_deflections(self.drive))
+            discs = range(self.drive.disc.number_of_discs)
+            moved = np.stack([self._cranks(disc, pose) for disc in discs], axis=1)
+            total = total + 0.5 * np.einsum("pdc,de,pec->p", moved.conj(), holding, moved).real
+        return np.asarray(total)
 
     def crank_moment(self, pose: FloatArray) -> float:
         """Return what the crank has to be held with at a pose: the slope of the stored energy by φ_C, N·mm.
 
-        Discs and wheel stay where they are; the inner races move under them and the cages turn.
+        Discs, cranks and wheel stay where they are; the inner races move under them and the cages turn.
 
         Parameters
         ----------
-        pose : array, shape (3 discs + 1,)
+        pose : array, shape (coordinates,)
             q.
         """
         e, ends = self.drive.crank.eccentricity, []
         step = 1e-5 * float(np.max(np.abs(pose))) / e + 1e-7
         discs = range(self.drive.disc.number_of_discs)
-        before = [ActualParts(self.drive, self.crank_angle, disc).race_centre for disc in discs]
+        before = [ActualParts(self.drive, self.crank_angle, disc).place for disc in discs]
         for side in (1.0, -1.0):
-            moved, angle = pose.copy(), self.crank_angle + side * step
-            for disc in discs:
-                shift = ActualParts(self.drive, angle, disc).race_centre - before[disc]
-                moved[3 * disc] -= shift.real
-                moved[3 * disc + 1] -= shift.imag
-            total = 0.0
+            angle, total = self.crank_angle + side * step, 0.0
             for disc in discs:  # of rollers alone: the others see no difference
-                parts = ActualParts(self.drive, angle, disc)
-                total += float(self._rollers(parts, np.array([[moved[3 * disc] + 1j * moved[3 * disc + 1]]]))[0])
+                parts, moved = ActualParts(self.drive, angle, disc), pose.copy()
+                shift = parts.place - before[disc]
+                moved[self.own * disc] -= shift.real
+                moved[self.own * disc + 1] -= shift.imag
+                total += float(self._bearings(parts, disc, moved[None])[0])
             ends.append(total)
         return (ends[0] - ends[1]) / (2.0 * step)
 
     def _disc(self, disc: int, pose: FloatArray) -> FloatArray:
         """Energy of all contacts of one disc."""
-        parts = ActualParts(self.drive, self.crank_angle, disc)
-        shift = pose[:, 0] + 1j * pose[:, 1]
-        centre = (parts.race_centre + shift)[:, None]
-        turn = np.exp(1j * pose[:, 2])[:, None]
+        parts, first = ActualParts(self.drive, self.crank_angle, disc), self.own * disc
+        shift = pose[:, first] + 1j * pose[:, first + 1]
+        centre = (parts.place + shift)[:, None]
+        turn = np.exp(1j * pose[:, first + 2])[:, None]
         pins, radii = parts.wheel_pins
-        point = (parts.wheel_axis + pins * np.exp(1j * pose[:, 3])[:, None] - centre) * np.conj(turn)
+        axis = parts.wheel_axis + self._wheel(pose)[:, None]
+        point = (axis + pins * np.exp(1j * pose[:, -1])[:, None] - centre) * np.conj(turn)
         moved = float(np.max(np.abs(point - point[:1])))
         approach, effective = DeviatedFlank(self.drive, disc).approaches(point, radii, 2.0 * moved)
         energy = self.pin_law.energy(approach, effective).sum(axis=1)
         holes, hole_radii = parts.holes
         shaft_pins, shaft_radii = parts.shaft_pins
         overlap = np.abs(shaft_pins - centre - holes * turn) - (hole_radii - shaft_radii)
-        energy += 0.5 * self.drive.pin_shaft.stiffness * (np.maximum(overlap, 0.0) ** 2).sum(axis=1)
-        energy += self._rollers(parts, shift[:, None])
+        energy += 0.5 * self.drive.hole_stiffness * (np.maximum(overlap, 0.0) ** 2).sum(axis=1)
+        energy += self._bearings(parts, disc, pose)
         return np.asarray(energy)
+
+    def _bearings(self, parts: ActualParts, disc: int, pose: FloatArray) -> FloatArray:
+        """Energy of the rollers of all crank bearings of one disc."""
+        first = self.own * disc
+        centre = parts.place + pose[:, first] + 1j * pose[:, first + 1]
+        turn, cranks = np.exp(1j * pose[:, first + 2]), self._cranks(disc, pose)
+        total = np.zeros(pose.shape[0])
+        for crank, (bore, race) in enumerate(zip(parts.bores, parts.race_centres, strict=True)):
+            total += self._rollers(parts, (centre + bore * turn - race - cranks[:, crank])[:, None])
+        return total
 
     def _rollers(self, parts: ActualParts, shift: ComplexArray) -> FloatArray:
         """Energy of all rollers, each at its best place on its ray."""
@@ -159,6 +196,32 @@ class PotentialEnergy:
             bend = np.maximum(before - 2.0 * here + after, 1e-300)
             share = share + np.clip(0.5 * (before - after) / bend, -4.0, 4.0) * step
         return np.asarray(energy(np.clip(share, 0.0, 1.0)).sum(axis=1))
+
+
+def _deflections(drive: Drive) -> FloatArray:
+    """Deflections of a crankshaft in the planes of the discs by forces there: three-moment integrals by quadrature, mm/N."""
+    support = drive.crank.support
+    assert support is not None
+    (start, end), planes = support.positions, np.asarray(drive.disc.disc_planes)
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    marks = np.unique(np.concatenate([[start, end], planes]))
+    half = 0.5 * np.diff(marks)
+    at = (0.5 * (marks[1:] + marks[:-1])[:, None] + half[:, None] * nodes).ravel()
+    weight = (half[:, None] * weights).ravel()
+    second = (planes - start) / (end - start)
+
+    def bending(force: float, share: float) -> FloatArray:
+        """Bending moment of a unit force and its two reactions, looking from the left, mm."""
+        left = np.maximum(at - force, 0.0) - (1.0 - share) * np.maximum(at - start, 0.0)
+        return np.asarray(left - share * np.maximum(at - end, 0.0))
+
+    moments = np.stack([bending(force, share) for force, share in zip(planes, second, strict=True)])
+    rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
+    reactions = np.stack([1.0 - second, second])
+    return np.asarray(
+        (moments * weight) @ moments.T / rigidity
+        + reactions.T @ np.diag(1.0 / np.asarray(support.stiffness)) @ reactions
+    )
 
 
 def find_imbalance(
@@ -199,7 +262,9 @@ def find_imbalance(
         wheel_moment=moment,
     )
     wheel, size = drive.crank.eccentricity * float(drive.reduction_ratio), pose.size
-    lever = np.array([*[1.0, 1.0, wheel - drive.crank.eccentricity] * drive.disc.number_of_discs, wheel])
+    lever = np.ones(size)
+    lever[2 : potential.own * drive.disc.number_of_discs : potential.own] = wheel - drive.crank.eccentricity
+    lever[-1] = wheel
     load = abs(moment) / wheel
     problems = []
     if not np.all(np.isfinite(pose)):
@@ -245,7 +310,11 @@ def find_imbalance(
         problems.append(f"a displacement lowers the potential by {-np.min(rise):.3g} N·mm")
     if torque is not None:
         output = drive.driving_sign * torque
-        left = moment + output + (potential.crank_moment(pose) if drive.wheel_is_held else 0.0)
+        left = moment + output
+        if drive.wheel_is_held:
+            stage = drive.installation.first_stage_ratio
+            reaction = 1.0 if drive.crank.number == 1 else 0.0 if stage is None else -1.0 / stage
+            left += reaction * potential.crank_moment(pose)
         if abs(left) > 1e-3 * abs(output):
             problems.append(f"moments of wheel, crank and output leave {left:.3g} N·mm of {output:.3g} N·mm")
     return problems

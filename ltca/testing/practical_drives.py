@@ -116,6 +116,7 @@ def preloaded_drive(seed: int) -> tuple[Drive, float]:
     while True:
         drive, angle = practical_drive(int(random.integers(2**32)))
         wheel, disc, bearing, shaft = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.pin_shaft
+        assert shaft is not None  # as all of these drives have one
         largest = min(
             0.025 * min(wheel.pin_radius, bearing.roller_radius, shaft.pin_radius), 0.5 * drive.crank.eccentricity
         )

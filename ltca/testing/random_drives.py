@@ -188,7 +188,7 @@ def random_reducer(seed: int) -> tuple[Drive, float] | None:
 def _own_errors(random: Generator, drive: Drive, size: float) -> OneDisc:
     """What one disc has of its own: nothing, or some of runout, clearances and errors of its holes and rollers."""
     given = random.uniform(size=4) < 0.5
-    holes, rollers = drive.pin_shaft.number_of_pins, drive.crank_bearing.number_of_rollers
+    holes, rollers = drive.number_of_holes, drive.crank_bearing.number_of_rollers
     scattered = _Scattered(random, scatter=size / 3.0)
     return OneDisc(
         runout=Runout(amount=size * random.uniform(), angle=2.0 * np.pi * random.uniform()) if given[0] else None,

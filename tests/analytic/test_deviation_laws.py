@@ -9,8 +9,9 @@ from ltca.analysis.torque_curve import torque_curve
 from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, first_contact
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import rigid_play, rigid_poses
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive

@@ -8,7 +8,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 
 def stored_energy(model, response):

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.geometry.pairs import disc_displacement, rotations
+from ltca.geometry.coordinates import disc_displacement
+from ltca.geometry.pairs import rotations
 from ltca.reading.drive_file import build_drive
 
 # analyse balances to 1e-9 of the load of some 1000 N, over stiffnesses above 1e5 N/mm

@@ -28,8 +28,9 @@ import pytest
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.drive.parts import Drive
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import build_drive
 

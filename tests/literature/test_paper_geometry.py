@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 
 ARCMIN = 60.0 * 180.0 / np.pi
 

@@ -29,7 +29,7 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
 CASES = ["CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6"]

@@ -11,7 +11,7 @@ from ltca.analysis.torque_curve import torque_curve
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.output_torque import crank_moment, solve_at_output
 from ltca.equilibrium.reducer import disc_responses
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive

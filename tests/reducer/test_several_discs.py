@@ -15,7 +15,8 @@ from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import disc_responses, reducer_of
-from ltca.geometry.pairs import DISC_COORDINATES, WHEEL_ANGLE, disc_pose
+from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.pairs import DISC_COORDINATES, disc_pose
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive

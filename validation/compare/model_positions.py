@@ -12,7 +12,7 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
-from ltca.geometry.pairs import disc_displacement
+from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 FloatArray = NDArray[np.float64]

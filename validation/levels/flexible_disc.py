@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.drive.parts import Drive
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer

@@ -117,7 +117,8 @@ def _contact_rows(compared: ComparedPosition, model: str) -> list[Row]:
 def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
     make = _Maker(compared, model)
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
-    wheel, shaft = compared.drive.pin_wheel.pin_circle_radius, compared.drive.pin_shaft.pin_circle_radius
+    wheel = compared.drive.pin_wheel.pin_circle_radius
+    shaft = wheel if compared.drive.pin_shaft is None else compared.drive.pin_shaft.pin_circle_radius
     travel = WHEEL_LIMIT / ARCSECONDS * wheel
     rms = max(kind.rms_load for kind in difference.kinds.values())
     rows = [

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.rating_life import MOVING, RACE_WEIBULL, RollerBearing, edge_factors, power_mean, rating_life
-from ltca.geometry.pairs import DISC_ROTATION
+from ltca.geometry.coordinates import DISC_ROTATION
 
 # ISO 281:2007, Table 7: f_c of radial roller bearings by D_we cos α/D_pw.
 TABLE_7 = {

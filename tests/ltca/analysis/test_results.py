@@ -12,7 +12,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset, check_common_shape
 from ltca.analysis.summary import summarise
 from ltca.errors import DriveError
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 
 # issue 2, to the letter

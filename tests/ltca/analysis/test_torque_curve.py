@@ -12,7 +12,8 @@ from ltca.analysis.torque_curve import LOST_MOTION, SMALLEST, STIFF_FROM, torque
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import rigid_play
 from ltca.reading.changes import with_fields
 

@@ -9,7 +9,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.pressure_safety import pressure_safety
 from ltca.analysis.transmission_error_orders import Order, fit_orders, known_orders, least_turns
 from ltca.commands.program import main
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 
 
 def test_orders_put_in_come_out():

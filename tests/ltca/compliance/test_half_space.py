@@ -10,7 +10,7 @@ import pytest
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
-from ltca.geometry.pairs import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 

@@ -10,8 +10,9 @@ import pytest
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import lever_arms, solve_equilibrium
 from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import unloaded_transmission_error
-from ltca.geometry.pairs import WHEEL_ANGLE, rotations
+from ltca.geometry.pairs import rotations
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive
 

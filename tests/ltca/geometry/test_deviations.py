@@ -10,8 +10,9 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.errors import DriveError
+from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.pairs import DISC_ROTATION, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies.tolerance_study import tolerance_study

@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import (
     backlash,
     carrying_holes,
@@ -19,7 +20,7 @@ from ltca.geometry.first_contact import (
     interference,
     unloaded_transmission_error,
 )
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 
 
 def smallest_gap(drive, crank, disc_rotation, wheel_angle):

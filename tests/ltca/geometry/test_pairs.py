@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from ltca.geometry.pairs import DISC_ROTATION, WHEEL_ANGLE, ContactGeometry, X, Y, disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y, disc_displacement
+from ltca.geometry.pairs import ContactGeometry
 
 POSE_SIZE = 0.03  # mm: as far as clearances and loads carry the disc
 

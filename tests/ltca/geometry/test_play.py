@@ -10,8 +10,9 @@ from scipy.optimize import linprog
 
 from ltca.drive.parts import Clearance, PlacementErrors
 from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import first_contact
-from ltca.geometry.pairs import WHEEL_ANGLE, ContactGeometry
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import rigid_play, rigid_poses
 
 CASES = ("CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6")

@@ -1,0 +1,126 @@
+"""Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings."""
+
+from __future__ import annotations
+
+from cmath import rect
+from dataclasses import field
+from math import pi
+from typing import Annotated
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import (
+    STRICT,
+    Angle,
+    AxisOffset,
+    OneEccentric,
+    PositiveLength,
+    RollerErrors,
+    SignedLength,
+)
+from ltca.drive.materials import LengthProfile
+from ltca.drive.units.quantities import COUNT, quantity
+
+Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class CrankSupport:
+    """A crankshaft as a beam on its two bearings in the carrier, the same for every crank.
+
+    Attributes
+    ----------
+    diameter : float
+        Of the shaft between its bearings, mm.
+    positions : tuple of float
+        Axial places of the two bearings, on the axis of `Disc.planes`, mm.
+    stiffness : tuple of float
+        Radial, of each bearing, N/mm.
+    """
+
+    diameter: PositiveLength
+    positions: tuple[SignedLength, SignedLength]
+    stiffness: tuple[Stiffness, Stiffness]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Crank:
+    """Crankshaft, or several alike on a circle of the pin shaft (the carrier).
+
+    Attributes
+    ----------
+    eccentricity : float
+        e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
+    number : int
+        Cranks; one stands in the centre.
+    circle_radius : float or None
+        Radius of the circle several cranks stand on, mm.
+    angle : float
+        Of crank 0 on that circle, rad.
+    support : CrankSupport or None
+        What lets the cranks yield; rigid when left out.
+    eccentricity_error : float
+        Actual less design eccentricity, mm.
+    axis_offset : AxisOffset
+        Crank axis, or the centre of the crank circle, against the centre of the pin shaft.
+    of : tuple of OneEccentric
+        What differs per eccentric: one entry a disc of a central crank; entries that carry disc and crank of several.
+    """
+
+    eccentricity: PositiveLength
+    number: Annotated[int, Field(ge=1, le=12), COUNT] = 1
+    circle_radius: PositiveLength | None = None
+    angle: Angle = 0.0
+    support: CrankSupport | None = None
+    eccentricity_error: SignedLength = 0.0
+    axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    of: tuple[OneEccentric, ...] = ()
+
+    @property
+    def places(self) -> tuple[complex, ...]:
+        """Axis of each crank from the centre of its circle, mm: also the places of the bores from the centre of the disc."""
+        if self.number == 1:
+            return (0j,)
+        return tuple(
+            rect(self.circle_radius or 0.0, self.angle + 2.0 * pi * c / self.number) for c in range(self.number)
+        )
+
+    def eccentric(self, disc: int, crank: int = 0) -> OneEccentric:
+        """Return what is said of the eccentric of a disc on a crank, empty where nothing is."""
+        return self.entries.get((disc, crank), OneEccentric())
+
+    @property
+    def entries(self) -> dict[tuple[int, int], OneEccentric]:
+        """Entries of `of` by disc and crank."""
+        return {
+            (place if entry.disc is None else entry.disc, entry.crank or 0): entry
+            for place, entry in enumerate(self.of)
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class CrankBearing:
+    """Cylindrical-roller bearing between crank and disc, the same at every crank; the disc bore is its outer race.
+
+    Attributes
+    ----------
+    inner_race_radius, outer_race_radius : float
+        r_i and the nominal r_o (without clearance), mm.
+    number_of_rollers : int
+        n_BR.
+    roller_radius, roller_length : float
+        mm.
+    roller_profile : LengthProfile
+        Crown and relief of the rollers.
+    roller_errors : RollerErrors
+        Diameter and pocket errors of the rollers.
+    """
+
+    inner_race_radius: PositiveLength
+    outer_race_radius: PositiveLength
+    number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
+    roller_radius: PositiveLength
+    roller_length: PositiveLength
+    roller_profile: LengthProfile = field(default_factory=LengthProfile)
+    roller_errors: RollerErrors = field(default_factory=RollerErrors)

@@ -1,0 +1,77 @@
+"""Springs on coordinates: crankshafts on their bearings, and the wheel on its own.
+
+Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
+alike in every direction. The wheel's main bearing holds its x and y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
+from ltca.geometry.coordinates import Coordinates
+from ltca.laws.beam import shaft_flexibility
+
+FloatArray = NDArray[np.float64]
+
+
+def coordinates_of_drive(drive: Drive) -> Coordinates:
+    """Return what the poses of a drive of any number of discs are made of."""
+    yielding = 0 if drive.crank.support is None else drive.crank.number
+    wheel = drive.pin_wheel.support_stiffness is not None
+    return Coordinates(discs=drive.disc.number_of_discs, cranks=yielding, wheel=wheel)
+
+
+def crank_stiffness(drive: Drive) -> FloatArray | None:
+    """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs).
+
+    None where cranks are rigid.
+    """
+    support = drive.crank.support
+    if support is None:
+        return None
+    modulus = drive.materials.crankshaft.youngs_modulus
+    planes = drive.disc.disc_planes
+    return np.asarray(
+        np.linalg.inv(shaft_flexibility(planes, support.positions, support.stiffness, support.diameter, modulus))
+    )
+
+
+def support_stiffness(drive: Drive) -> FloatArray | None:
+    """Return the stiffness matrix of all supports by the coordinates of the drive; None where nothing yields.
+
+    Parameters
+    ----------
+    drive : Drive
+        Of any number of discs.
+
+    Returns
+    -------
+    array, shape (coordinates, coordinates) or None
+        N/mm.
+    """
+    coordinates = coordinates_of_drive(drive)
+    shaft, wheel = crank_stiffness(drive), drive.pin_wheel.support_stiffness
+    if shaft is None and wheel is None:
+        return None
+    matrix = np.zeros((coordinates.size, coordinates.size))
+    if shaft is not None:
+        starts = coordinates.own * np.arange(coordinates.discs)
+        for crank in range(coordinates.cranks):
+            for direction in (0, 1):
+                places = starts + coordinates.crank(crank) + direction
+                matrix[np.ix_(places, places)] += shaft
+    if wheel is not None:
+        places = np.arange(coordinates.size)[coordinates.wheel_place]
+        matrix[places, places] += wheel
+    return matrix
+
+
+def support_stiffnesses(drives: Sequence[Drive], positions: int) -> FloatArray | None:
+    """Return the stiffness matrices of a batch of drives, one for each position, drive by drive."""
+    matrices = [support_stiffness(drive) for drive in drives]
+    stacked = [matrix for matrix in matrices if matrix is not None]
+    return np.repeat(np.stack(stacked), positions, axis=0) if stacked else None

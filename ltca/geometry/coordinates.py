@@ -1,0 +1,112 @@
+"""Which coordinates a pose has and where: discs, cranks that yield, the wheel where its bearing does, the wheel's angle.
+
+A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
+the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
+them stand x and y of each crank in the plane of the disc, where cranks yield, and x and y of the wheel, where that does. Of
+several discs the poses follow each other, with one wheel.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Columns = NDArray[np.intp]
+
+X, Y, DISC_ROTATION, WHEEL_ANGLE = 0, 1, 2, -1
+"""Places of the coordinates in a pose, in gradients by it and in forces on it; the wheel angle is the last one."""
+DISC_PLACE = slice(X, Y + 1)
+RIGID = 4
+"""Coordinates of one disc on members that do not yield."""
+
+
+def disc_displacement(pose: FloatArray) -> ComplexArray:
+    """Return x + iy of poses: the disc from its nominal place in the fixed frame, mm.
+
+    Parameters
+    ----------
+    pose : array, shape (…, coordinates)
+        q of one disc, or of several of which it is the first.
+    """
+    return np.asarray(pose[..., X] + 1j * pose[..., Y])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coordinates:
+    """What a pose is made of.
+
+    Attributes
+    ----------
+    discs : int
+        Number of discs.
+    cranks : int
+        Cranks that yield; none where they are rigid.
+    wheel : bool
+        Whether the wheel's bearing yields.
+    """
+
+    discs: int = 1
+    cranks: int = 0
+    wheel: bool = False
+
+    @property
+    def own(self) -> int:
+        """Coordinates of each disc: x, y, rotation, and x and y of every crank there."""
+        return DISC_ROTATION + 1 + 2 * self.cranks
+
+    @property
+    def shared(self) -> int:
+        """Coordinates of the wheel."""
+        return 3 if self.wheel else 1
+
+    @property
+    def size(self) -> int:
+        """All coordinates."""
+        return self.discs * self.own + self.shared
+
+    @property
+    def of_one(self) -> Coordinates:
+        """Coordinates of one of the discs with the wheel."""
+        return replace(self, discs=1)
+
+    def columns(self, disc: int) -> Columns:
+        """Return the places of the coordinates of a disc, its own and the wheel's.
+
+        Examples
+        --------
+        >>> Coordinates(discs=2).columns(1).tolist(), Coordinates(cranks=1, wheel=True).columns(0).tolist()
+        ([3, 4, 5, 6], [0, 1, 2, 3, 4, 5, 6, 7])
+        """
+        first, last = self.own * disc, self.size
+        return np.concatenate([np.arange(first, first + self.own), np.arange(last - self.shared, last)])
+
+    def crank(self, crank: int) -> int:
+        """Return the place of x of a crank in the pose of one disc."""
+        return DISC_ROTATION + 1 + 2 * crank
+
+    @property
+    def wheel_place(self) -> slice:
+        """x and y of the wheel; empty where its bearing does not yield."""
+        return slice(self.size - self.shared, self.size - 1)
+
+    @property
+    def rotations(self) -> Columns:
+        """Places of the angles.
+
+        Examples
+        --------
+        >>> Coordinates(discs=2, cranks=1).rotations.tolist()
+        [2, 7, 10]
+        """
+        return np.append(DISC_ROTATION + self.own * np.arange(self.discs), self.size - 1)
+
+    @property
+    def displacements(self) -> Columns:
+        """Places of every x that is followed by its y: discs, cranks, wheel."""
+        one = np.r_[X, DISC_ROTATION + 1 : self.own : 2]
+        each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
+        return np.append(each, self.size - 3) if self.wheel else each
