@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.compliance.response import ContactPressures
+from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
@@ -229,9 +229,11 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
 
 def _stages(analysis: LoadedAnalysis) -> tuple[_Stage, _Stage]:
     passages = passages_per_turn(analysis.drive)
+    model, full = analysis.model, _full_signals(analysis, analysis.full, analysis.pressures)
+    light = _wheel_signals(analysis, analysis.light)
     return (
-        _Stage.of(analysis.full, analysis.torque, _full_signals(analysis, analysis.full, analysis.pressures), passages),
-        _Stage.of(analysis.light, analysis.drive.load.light_torque, _wheel_signals(analysis, analysis.light), passages),
+        _Stage.of(model, analysis.full, analysis.torque, full, passages),
+        _Stage.of(model, analysis.light, analysis.drive.load.light_torque, light, passages),
     )
 
 
@@ -356,7 +358,9 @@ class _Stage:
     coordinates: Coordinates
 
     @classmethod
-    def of(cls, found: Equilibrium, torque: float, signals: dict[str, FloatArray], passages: int) -> _Stage:
+    def of(
+        cls, model: ComplianceModel, found: Equilibrium, torque: float, signals: dict[str, FloatArray], passages: int
+    ) -> _Stage:
         groups, column = {}, 0
         for name, values in signals.items():
             groups[name] = (slice(column, column + values.shape[1]), name.startswith(("wheel", "tangential")))
@@ -368,7 +372,7 @@ class _Stage:
             nearest=NEAREST * TURN / passages,
         )
         return cls(
-            search=search, angle=found.crank_angle, pose=found.pose, torque=torque, coordinates=found.coordinates
+            search=search, angle=found.crank_angle, pose=found.pose, torque=torque, coordinates=model.coordinates
         )
 
     def start(self, angle: FloatArray) -> FloatArray:

@@ -96,8 +96,8 @@ class LoadedAnalysis:
             replace(
                 self,
                 drive=single,
-                full=equilibrium_of_disc(self.full, number),
-                light=equilibrium_of_disc(self.light, number),
+                full=equilibrium_of_disc(self.model, self.full, number),
+                light=equilibrium_of_disc(self.model, self.light, number),
                 model=model,
                 pressures=pressures[number],
                 bearing_radial=self.bearing_radial[:, number : number + 1],
@@ -231,7 +231,7 @@ def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: Contact
     count = len(model.discs)
     parts = zip(model.discs, disc_responses(full.response), disc_pressures(pressures, count), strict=True)
     return tuple(
-        wall_stresses(disc, response, own, full.pose[:, full.coordinates.columns(number)[DISC_ROTATION]])
+        wall_stresses(disc, response, own, full.pose[:, model.coordinates.columns(number)[DISC_ROTATION]])
         for number, (disc, response, own) in enumerate(parts)
         if isinstance(disc, CoupledCompliance)
     )

@@ -160,7 +160,7 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     for number, disc in enumerate(analysis.discs):
         contacts = disc.full.response
         x, y, rotation, _ = disc.full.pose[0]
-        radial, tangential = disc.bearing_radial[0, 0], disc.bearing_tangential[0, 0]
+        radial, tangential = disc.bearing_radial[0, 0, 0], disc.bearing_tangential[0, 0, 0]
         of = "" if share.size == 1 else f"disc {number}: "
         rows += [(f"{of}part of the torque", f"{share[number]:.4f}")] if of else []
         rows += [

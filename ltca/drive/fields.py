@@ -1,7 +1,8 @@
 """Fields of a drive by dotted path: read, count, unit.
 
 What differs per disc stands in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where
-nothing is said of it, it reads as the field of all discs that it takes the place of.
+nothing is said of it, it reads as the field of all discs that it takes the place of. Eccentrics of several cranks are counted
+disc after disc: ``crank.of.N`` is that of disc N // cranks on crank N % cranks, in whatever order the file has them.
 """
 
 from __future__ import annotations
@@ -48,6 +49,8 @@ OWN = {
     "crank.eccentricity_error": "crank.of.N.eccentricity_error",
 }
 """What each disc may have of its own, in the place of what all have."""
+_WHOSE = ("crank.of.N.disc", "crank.of.N.crank")
+"""They say whose an entry is, and are no fields of it."""
 _NUMBERED = re.compile(r"^((?:disc|crank)\.of)\.([0-9]{1,6})\.")
 
 
@@ -62,7 +65,7 @@ def field_kinds() -> dict[str, FieldKind]:
     >>> field_kinds()["crank.of.N.phase_error"]
     FieldKind(unit='rad', is_array=False)
     """
-    return dict(_kinds(Drive, ""))
+    return {path: kind for path, kind in _kinds(Drive, "") if path not in _WHOSE}
 
 
 def field_kind(path: str) -> FieldKind | None:
@@ -78,18 +81,27 @@ def field_kind(path: str) -> FieldKind | None:
     return field_kinds().get(_NUMBERED.sub(rf"\1.{ANY}.", path))
 
 
-def own_path(path: str, disc: int) -> str | None:
-    """Return the path of what a disc has in the place of a field of all discs; None where it has none of its own.
+def own_paths(drive: Drive, path: str) -> tuple[str, ...]:
+    """Return the paths of what each disc or eccentric has in the place of a field of all; none where they have not.
 
     Examples
     --------
-    >>> own_path("clearance.bearing", 1), own_path("disc.thickness", 1)
-    ('disc.of.1.clearance.bearing', None)
+    >>> from ltca.reading.drive_file import load_drive
+    >>> drive = load_drive("robot-joint").cases["nominal"]
+    >>> own_paths(drive, "clearance.bearing"), own_paths(drive, "disc.thickness")
+    (('disc.of.0.clearance.bearing', 'disc.of.1.clearance.bearing'), ())
     """
     for common, own in OWN.items():
         if path == common or path.startswith(f"{common}."):
-            return own.replace(ANY, str(disc)) + path[len(common) :]
-    return None
+            count = _entries(drive, own.partition(".")[0])
+            return tuple(own.replace(ANY, str(number)) + path[len(common) :] for number in range(count))
+    return ()
+
+
+def _entries(drive: Drive, table: str) -> int:
+    """How many discs, or eccentrics, there are."""
+    discs = drive.disc.number_of_discs
+    return discs * drive.crank.number if table == "crank" else discs
 
 
 def numbered(path: str) -> tuple[str, int, str] | None:
@@ -132,6 +144,8 @@ def element_count(drive: Drive, path: str) -> int | None:
     kind = field_kind(path)
     if kind is None:
         raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
+    if missing := missing_part(drive, path):
+        raise DriveError([f"{path}: there is no {missing} in this drive"])
     drive, path = _of_disc(drive, path)
     if not kind.is_array:
         return None
@@ -141,10 +155,32 @@ def element_count(drive: Drive, path: str) -> int | None:
         "disc": drive.disc.number_of_discs,
         "disc.hole_errors": drive.number_of_holes,
         "pin_shaft.pin_errors": drive.number_of_holes,
+        "disc.of.0.bore_errors": drive.crank.number,
+        "crank.support": 2,
         "crank_bearing.roller_errors": drive.crank_bearing.number_of_rollers,
         "disc.profile_errors": len(errors.parameter) if path.endswith(".deviation") else len(errors.orders),
     }
     return counts[path.rpartition(".")[0]]
+
+
+def missing_part(drive: Drive, path: str) -> str | None:
+    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks."""
+    for part, held in (("pin_shaft", drive.pin_shaft), ("crank.support", drive.crank.support)):
+        if held is None and path.startswith(f"{part}."):
+            return part
+    if drive.pin_shaft is None and (path.startswith("disc.hole_errors") or ".hole_errors." in path):
+        return "pin_shaft"
+    return None
+
+
+def no_entry(drive: Drive, table: str, number: int) -> str | None:
+    """Return what to say of an entry of ``disc.of`` or ``crank.of`` that the drive has not; None where it has it."""
+    discs, cranks = drive.disc.number_of_discs, drive.crank.number
+    if number < _entries(drive, table.partition(".")[0]):
+        return None
+    if table == "crank.of" and cranks > 1:
+        return f"there is no eccentric {number}; disc.number_of_discs = {discs}, crank.number = {cranks}"
+    return f"there is no disc {number}; disc.number_of_discs = {discs}"
 
 
 def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
@@ -152,15 +188,31 @@ def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
     found = numbered(path)
     if found is None:
         return drive, path
-    table, disc, name = found
-    if disc >= drive.disc.number_of_discs:
-        raise DriveError([f"{path}: there is no disc {disc}; disc.number_of_discs = {drive.disc.number_of_discs}"])
+    table, number, name = found
+    if (problem := no_entry(drive, table, number)) is not None:
+        raise DriveError([f"{path}: {problem}"])
+    disc, crank = divmod(number, drive.crank.number) if table == "crank.of" else (number, 0)
     single = single_discs(drive)[disc]
-    if name == "phase_error":
-        return single, path
+    if table == "crank.of" and (name == "phase_error" or drive.crank.number > 1):
+        return single, f"crank.of.{crank}.{name}"
+    if name.startswith("bore_errors."):
+        return single, f"disc.of.0.{name}"
     own = f"{table}.{ANY}.{name}"
     common = next(known for known, mine in OWN.items() if own == mine or own.startswith(f"{mine}."))
     return single, common + own[len(OWN[common]) :]
+
+
+def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
+    """What a drive of one disc has nowhere else: errors of its eccentrics and of its bores."""
+    if name.startswith("bore_errors."):
+        errors = single.disc.of[0].bore_errors if single.disc.of else None
+        held = () if errors is None else getattr(errors, name.partition(".")[2])
+        return held or (0.0,) * (count or 0)
+    value = getattr(single.crank.eccentric(0, crank), name)
+    return single.crank.eccentricity_error if value is None else value
+
+
+_MAY_BE_LEFT_OUT = ("crank.circle_radius", "pin_wheel.support_stiffness", "installation.first_stage_ratio")
 
 
 def is_element(name: str) -> bool:
@@ -191,13 +243,15 @@ def read_field(drive: Drive, path: str) -> Any:
         return values[int(last)]
     count = element_count(drive, path)
     drive, path = _of_disc(drive, path)
-    if path.endswith(".phase_error"):
-        return drive.crank.of[0].phase_error if drive.crank.of else 0.0
+    if (place := numbered(path)) is not None:
+        return _own_value(drive, place[1], place[2], count)
     if path in ("disc.phases", "disc.planes"):
         return getattr(drive.disc, path.replace("disc.", "disc_"))
     value: Any = drive
     for name in path.split("."):
         value = getattr(value, name)
+    if value is None and path in _MAY_BE_LEFT_OUT:
+        raise DriveError([f"{path}: is left out in this drive"])
     if count is not None and not value:
         return (0.0,) * count
     return value

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.fields import element_count, field_kind, field_kinds, own_path, read_field
+from ltca.drive.fields import element_count, field_kind, field_kinds, own_paths, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
@@ -151,16 +151,12 @@ def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Ma
 def _per_disc(drive: Drive, tolerances: Tolerances) -> Tolerances:
     """What scatters, disc by disc where each has it of its own; what is said of one disc stands before what is said of all."""
     each: Tolerances = {}
-    several = drive.disc.number_of_discs > 1
     for path, distribution in tolerances.items():
-        own = own_path(path, 0) if several else None
-        if own is None:
+        own = own_paths(drive, path)
+        if len(own) < 2:
             each[path] = distribution
-            continue
-        for disc in range(drive.disc.number_of_discs):
-            one = str(own_path(path, disc))
-            if one not in tolerances:
-                each[one] = distribution
+        else:
+            each |= {one: distribution for one in own if one not in tolerances}
     return each
 
 

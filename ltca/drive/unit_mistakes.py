@@ -26,7 +26,7 @@ DIAMOND, STIFF = 1.2e6, 2e6
 """Young's modulus of diamond, and one that nothing has, MPa."""
 METALS = 40e3, 700e3
 """Young's moduli of magnesium and of cemented carbide, MPa."""
-PARTS = tuple(item.name for item in fields(Materials))
+PARTS = tuple(item.name for item in fields(Materials) if item.name != "crankshaft")
 BORNE = 10_000.0
 """Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
 

@@ -18,7 +18,7 @@ from ltca.equilibrium.neighbours import leading_positions, pose_between, start_b
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import at_rows, disc_responses, geometries
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
+from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
 
@@ -47,8 +47,6 @@ class Equilibrium:
         External moment on the wheel, N·mm.
     pose : array, shape (positions, coordinates)
         q of `ltca.geometry.coordinates`.
-    coordinates : Coordinates
-        What poses are made of.
     response : Response
         Contacts at that pose.
     residual : array, shape (positions,)
@@ -60,20 +58,18 @@ class Equilibrium:
     crank_angle: FloatArray
     wheel_moment: FloatArray
     pose: FloatArray
-    coordinates: Coordinates
     response: Response
     residual: FloatArray
     iterations: NDArray[np.intp]
 
 
-def equilibrium_of_disc(found: Equilibrium, disc: int) -> Equilibrium:
+def equilibrium_of_disc(model: ComplianceModel, found: Equilibrium, disc: int) -> Equilibrium:
     """Return what one of several discs has of balanced positions: its pose and contacts, the moment that it carries."""
     response = disc_responses(found.response)[disc]
     return replace(
         found,
         wheel_moment=response.force[:, WHEEL_ANGLE],
-        pose=found.pose[:, found.coordinates.columns(disc)],
-        coordinates=found.coordinates.of_one,
+        pose=found.pose[:, model.coordinates.columns(disc)],
         response=response,
     )
 
@@ -159,7 +155,6 @@ def solve_equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(moment),
         pose=search.pose,
-        coordinates=model.coordinates,
         response=response,
         residual=np.max(np.abs(gradient), axis=1),
         iterations=search.iterations,

@@ -248,7 +248,6 @@ def solve_paper_equilibrium(
             residual = response.force.copy()
             residual[:, WHEEL_ANGLE] -= moment
             return Equilibrium(
-                coordinates=model.coordinates,
                 crank_angle=requested,
                 wheel_moment=np.array(moment),
                 pose=pose,

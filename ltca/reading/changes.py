@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ltca.drive.deviations import DiscClearance, OneDisc, OneEccentric
-from ltca.drive.fields import field_kind, field_kinds, is_element, numbered, read_field
+from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
+from ltca.drive.fields import field_kind, field_kinds, is_element, missing_part, no_entry, numbered, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError, did_you_mean
@@ -55,6 +55,9 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
             raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
         else:
             whole[path] = value
+            missing = missing_part(drive, path)
+            if missing is not None and not all(f"{missing}.{name}" in values for name in _NEEDED[missing]):
+                raise DriveError([f"{path}: there is no {missing} in this drive"])
     own: dict[tuple[str, int], dict[str, Any]] = {}
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
         if (place := numbered(path)) is not None:
@@ -76,17 +79,23 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     return changed
 
 
+_NEEDED = {
+    "pin_shaft": ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius", "stiffness"),
+    "crank.support": ("diameter", "positions", "stiffness"),
+}
+"""What a part that may be left out is made of."""
+
+
 def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], problems: list[str]) -> Drive:
     """Replace fields of single discs; what one has not of its own begins as that of all."""
-    discs = drive.disc.number_of_discs
     rows: dict[str, list[Any]] = {
-        "disc": [*(drive.disc.of or (OneDisc(),) * discs)],
-        "crank": [*(drive.crank.of or (OneEccentric(),) * discs)],
+        "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
+        "crank": _eccentrics(drive),
     }
     for (table, number), values in own.items():
         part = table.partition(".")[0]
-        if number >= len(rows[part]):
-            problems.append(f"{table}.{number}: there is no disc {number}; disc.number_of_discs = {discs}")
+        if (problem := no_entry(drive, table, number)) is not None:
+            problems.append(f"{table}.{number}: {problem}")
             continue
         tree: dict[str, Any] = {}
         for name, value in values.items():
@@ -105,6 +114,15 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
     )
 
 
+def _eccentrics(drive: Drive) -> list[OneEccentric]:
+    """An entry for every eccentric, disc after disc; of several cranks each says whose it is."""
+    cranks = drive.crank.number
+    entries = [(disc, crank) for disc in range(drive.disc.number_of_discs) for crank in range(cranks)]
+    if cranks == 1:
+        return [replace(drive.crank.eccentric(*entry), disc=None, crank=None) for entry in entries]
+    return [replace(drive.crank.eccentric(*entry), disc=entry[0], crank=entry[1]) for entry in entries]
+
+
 def _begun(drive: Drive, entry: Any, name: str) -> Any:
     """A table of one disc, or what it takes the place of."""
     mine = getattr(entry, name)
@@ -112,6 +130,8 @@ def _begun(drive: Drive, entry: Any, name: str) -> Any:
         return mine
     if name == "clearance":
         return DiscClearance()
+    if name == "bore_errors":
+        return BoreErrors()
     return drive.crank_bearing.roller_errors if name == "roller_errors" else getattr(drive.disc, name)
 
 
@@ -120,6 +140,7 @@ def _replaced(part: Any, tree: dict[str, Any], prefix: str, problems: list[str])
     for name, value in tree.items():
         below = getattr(part, name)
         nested = isinstance(value, dict) and is_dataclass(below)
+        # A part that was left out is made of what is given.
         changes[name] = _replaced(below, value, f"{prefix}{name}.", problems) if nested else value
     try:
         return replace(part, **changes)

@@ -31,7 +31,7 @@ def _write_table(part: Any, path: str, lines: list[str]) -> None:
         value = getattr(part, item.name)
         if is_dataclass(value):
             inner.append((f"{path}.{item.name}" if path else item.name, value))
-        elif value != ():
+        elif value is not None and value != ():
             lines.append(f"{item.name} = {_literal(value)}")
     for name, value in inner:
         _write_table(value, name, lines)

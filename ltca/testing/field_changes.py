@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, read_field
+from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, missing_part, read_field
 from ltca.drive.parts import Drive
+from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 
 FloatArray = NDArray[np.float64]
@@ -35,9 +36,25 @@ _COUNTS = {
     "pin_wheel.number_of_pins": 1,
     "disc.number_of_teeth": 1,
     "disc.number_of_discs": 1,
+    "crank.number": 1,
     "crank_bearing.number_of_rollers": -1,
     "pin_shaft.number_of_pins": 1,
 }
+_TOGETHER: Mapping[str, Mapping[str, Any]] = {
+    "crank.support": {
+        "crank.support.diameter": 8.0,
+        "crank.support.positions": (-10.0, 12.0),
+        "crank.support.stiffness": (2e5, 3e5),
+    },
+    "materials.crankshaft": {
+        "crank.support.diameter": 8.0,
+        "crank.support.positions": (-10.0, 12.0),
+        "crank.support.stiffness": (2e5, 3e5),
+    },
+}
+"""What a field needs beside it to count."""
+_LEFT_OUT = {"pin_wheel.support_stiffness": 5e5, "installation.first_stage_ratio": 2.0, "crank.circle_radius": 6.0}
+"""What may be left out, and a value that a person could give."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _OTHER_WORD = {
     "load.direction": {"ccw": "cw", "cw": "ccw"},
@@ -136,6 +153,14 @@ def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...
     return tuple(value + step * (1.0 if number % 2 else -0.6) for number, value in enumerate(values[: count or 0]))
 
 
+def _is_left_out(drive: Drive, path: str) -> bool:
+    try:
+        read_field(drive, path)
+    except DriveError:
+        return True
+    return False
+
+
 def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     """Return a drive in which a field counts, and its change.
 
@@ -160,6 +185,11 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     if parent.endswith(("pin_profile", "roller_profile")):
         # Tables of profiled parts are dear where radii differ: diameters are as drawn.
         drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
+    for part, needed in _TOGETHER.items():
+        if path.startswith(f"{part}."):
+            drive = with_fields(drive, {name: value for name, value in needed.items() if _is_left_out(drive, name)})
+    if path in _LEFT_OUT and _is_left_out(drive, path):
+        return drive, {path: _LEFT_OUT[path]}
     if name in _RELIEF:
         other = next(field for field in _RELIEF if field != name)
         return with_fields(drive, {f"{parent}.{other}": _RELIEF[other]}), {path: _RELIEF[name]}
@@ -172,6 +202,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
             field: ()
             for field, kind in field_kinds().items()
             if kind.is_array and "profile_errors" not in field and ANY not in field.split(".")
+            if not field.startswith("crank.support.") and missing_part(drive, field) is None
         }
         base = with_fields(drive, cleared)
         change = {path: sensible_change(base, path)}

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.geometry.coordinates import disc_displacement
-from ltca.geometry.pairs import rotations
+from ltca.geometry.coordinates import Coordinates, disc_displacement
 from ltca.reading.drive_file import build_drive
 
 # analyse balances to 1e-9 of the load of some 1000 N, over stiffnesses above 1e5 N/mm
+ROTATIONS = Coordinates().rotations
 LOAD = 1e-5  # N
 LENGTH = 1e-9  # mm
 ANGLE = 1e-11  # rad
@@ -65,7 +65,7 @@ def test_turning_everything_by_a_hole_pitch(symmetric):
     np.testing.assert_allclose(np.roll(first.rollers.inner_load, 1, axis=1), second.rollers.inner_load, atol=LOAD)
     np.testing.assert_allclose(plain.bearing_radial, turned.bearing_radial, atol=LOAD)
     np.testing.assert_allclose(plain.bearing_tangential, turned.bearing_tangential, atol=LOAD)
-    np.testing.assert_allclose(plain.full.pose[:, rotations(4)], turned.full.pose[:, rotations(4)], atol=ANGLE)
+    np.testing.assert_allclose(plain.full.pose[:, ROTATIONS], turned.full.pose[:, ROTATIONS], atol=ANGLE)
     displacement = [disc_displacement(a.full.pose) * np.exp(-1j * a.full.crank_angle) for a in (plain, turned)]
     np.testing.assert_allclose(displacement[0], displacement[1], atol=LENGTH)
     # and the errors are felt: without moving them on the answer differs
@@ -81,7 +81,7 @@ def test_true_period_of_the_papers_drive(paper_cases):
     # arguments of 600 rad carry round-off of 1e-13 rad, on 88 mm 1e-11 mm and some 1e-5 N
     np.testing.assert_allclose(now.full.response.pin_load, later.full.response.pin_load, atol=1e-3)
     np.testing.assert_allclose(now.full.response.rollers.outer_load, later.full.response.rollers.outer_load, atol=1e-3)
-    np.testing.assert_allclose(now.full.pose[:, rotations(4)], later.full.pose[:, rotations(4)], atol=1e-10)
+    np.testing.assert_allclose(now.full.pose[:, ROTATIONS], later.full.pose[:, ROTATIONS], atol=1e-10)
     # one turn is no period: the rollers stand elsewhere
     once = analyse(drive, angles + 2.0 * np.pi)
     assert np.max(np.abs(once.full.response.rollers.outer_load - now.full.response.rollers.outer_load)) > 100.0
@@ -137,8 +137,8 @@ def test_unit_invariance(paper_table, length, stress):
     np.testing.assert_allclose(second.hole_load / force, first.hole_load, atol=1e-4)
     np.testing.assert_allclose(second.rollers.outer_load / force, first.rollers.outer_load, atol=1e-4)
     np.testing.assert_allclose(other.full.pose[:, :2] / length, plain.full.pose[:, :2], atol=1e-9)
-    np.testing.assert_allclose(other.full.pose[:, rotations(4)], plain.full.pose[:, rotations(4)], atol=1e-11)
-    np.testing.assert_allclose(other.light.pose[:, rotations(4)], plain.light.pose[:, rotations(4)], atol=1e-11)
+    np.testing.assert_allclose(other.full.pose[:, ROTATIONS], plain.full.pose[:, ROTATIONS], atol=1e-11)
+    np.testing.assert_allclose(other.light.pose[:, ROTATIONS], plain.light.pose[:, ROTATIONS], atol=1e-11)
     np.testing.assert_allclose(other.pressures.pins.mid / stress, plain.pressures.pins.mid, atol=1e-5)
     np.testing.assert_allclose(other.pressures.pins.half_width / length, plain.pressures.pins.half_width, atol=1e-9)
 

@@ -15,8 +15,7 @@ from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import disc_responses, reducer_of
-from ltca.geometry.coordinates import WHEEL_ANGLE
-from ltca.geometry.pairs import DISC_COORDINATES, disc_pose
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
@@ -168,7 +167,7 @@ def test_tangent_is_the_slope_of_the_force(joint, discs):
     held = [replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts]
     model, pose = reducer_of(held), balanced.pose
     size = pose.shape[1]
-    assert size == DISC_COORDINATES * discs + 1
+    assert size == 3 * discs + 1
     tangent, step = balanced.response.tangent, 1e-8
     for column in range(size):
         moved = [pose + side * step * (np.arange(size) == column) for side in (1.0, -1.0)]
@@ -211,7 +210,7 @@ def test_reverse_is_the_mirror_image_of_all_discs(joint, discs):
     np.testing.assert_allclose(plain.full.wheel_moment, -mirrored.full.wheel_moment, rtol=1e-8)
     np.testing.assert_allclose(plain.torque_share, mirrored.torque_share, rtol=0.0, atol=1e-8)
     for number in range(discs):
-        poses = [disc_pose(each.full.pose, number) for each in (plain, mirrored)]
+        poses = [each.full.pose[:, Coordinates(discs=discs).columns(number)] for each in (plain, mirrored)]
         np.testing.assert_allclose(poses[0], poses[1] * [1.0, -1.0, -1.0, -1.0], rtol=0.0, atol=LENGTH)
 
 

@@ -246,7 +246,7 @@ def test_cases_of_different_shape_are_refused(vary):
     other = vary(pin_shaft={"number_of_pins": 6})
     with pytest.raises(
         DriveError,
-        match=r"rollers, 6 shaft pins, 1 disc: must be 14 wheel pins, 11 rollers, 8 shaft pins, 1 disc as",
+        match=r"rollers, 6 shaft pins, 1 disc, 1 crank: must be 14 wheel pins, 11 rollers, 8 shaft pins, 1 disc, 1 crank as",
     ):
         check_common_shape({"A": vary(), "B": other})
     check_common_shape({"A": vary(), "C": vary()})

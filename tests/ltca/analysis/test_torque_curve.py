@@ -47,6 +47,10 @@ class SpringsWithPlay:
     def geometry(self):
         return self.real.geometry
 
+    @property
+    def coordinates(self):
+        return self.real.coordinates
+
     def respond(self, crank_angle, pose, start=None):
         response = self.real.respond(crank_angle, pose, start)
         wheel = pose[:, WHEEL_ANGLE]

@@ -91,7 +91,7 @@ def test_balance_against_root_finding_roller_by_roller(law, clearance, half_spac
     case = rays(rng, rollers=rollers, clearance=clearance, roller_errors=0.003)
     laws = power_laws(rollers) if law == "power" else half_space_laws
     displacement = 0.04 * (rng.uniform(-1, 1, 5) + 1j * rng.uniform(-1, 1, 5))
-    found = balance_rollers(case, displacement, laws)
+    found = balance_rollers(case, displacement[:, None], laws)
     free = 0
     for row in range(5):
         for roller in range(rollers):
@@ -115,7 +115,7 @@ def test_loads_follow_approaches_and_balance_on_the_ray(half_space_laws):
     rng = np.random.default_rng(2)
     case = rays(rng, rollers=11, clearance=0.02)
     displacement = 0.03 * np.exp(1j * rng.uniform(0.0, 6.0, 5))
-    found = balance_rollers(case, displacement, half_space_laws)
+    found = balance_rollers(case, displacement[:, None], half_space_laws)
     cosine = (found.outer_direction * case.direction.conjugate()).real
     scale = found.outer_load.max()
     # 1e-11 of the share of 20 µm at a stiffness of 1e6 N/mm is 2e-7 N of some thousand
@@ -128,7 +128,7 @@ def test_balance_is_the_minimum_of_the_energy():
     rng = np.random.default_rng(3)
     case, laws = rays(rng, clearance=0.01), power_laws(9)
     displacement = 0.04 * np.exp(1j * rng.uniform(0.0, 6.0, 5))
-    found = balance_rollers(case, displacement, laws)
+    found = balance_rollers(case, displacement[:, None], laws)
     for row, roller in zip(*np.nonzero(found.outer_load > 0.0), strict=True):
         place = case.outermost[roller] - found.inner_approach[row, roller]
         least = total_energy(case, laws, displacement[row], roller, row, place)
@@ -143,16 +143,16 @@ def test_eliminated_energy_its_gradient_and_tangent():
     displacement = 0.04 * np.exp(1j * rng.uniform(0.0, 6.0, 5))
 
     def energy(d):
-        state = balance_rollers(case, d, laws)
+        state = balance_rollers(case, d[:, None], laws)
         return laws.inner.energy(state.inner_approach, laws.inner_radius) + laws.outer.energy(
             state.outer_approach, laws.outer_radius
         )
 
     def force(d):
-        state = balance_rollers(case, d, laws)
+        state = balance_rollers(case, d[:, None], laws)
         return state.outer_load * state.outer_direction
 
-    here = balance_rollers(case, displacement, laws)
+    here = balance_rollers(case, displacement[:, None], laws)
     clear = np.abs(here.outer_approach) > 1e-4  # steps must not cross first contact
     h = 1e-6
     push = force(displacement)
@@ -177,13 +177,13 @@ def test_tangent_where_the_normals_differ_much():
     law = PowerLaw(50.0, 1.5)
     laws = RollerLaws(inner=law, outer=PowerLaw(80.0, 1.2), inner_radius=np.ones(40), outer_radius=np.ones(40))
     displacement = np.array([0.6 - 0.4j])
-    here = balance_rollers(case, displacement, laws)
+    here = balance_rollers(case, displacement[:, None], laws)
     pressed = here.outer_approach > 0.01
     cosine = (here.outer_direction * case.direction.conjugate()).real
     assert np.min(cosine[pressed]) < 0.94
     h = 1e-5
     for axis, move in enumerate((h, 1j * h)):
-        ahead, behind = (balance_rollers(case, displacement + sign * move, laws) for sign in (1, -1))
+        ahead, behind = (balance_rollers(case, (displacement + sign * move)[:, None], laws) for sign in (1, -1))
         bend = -(ahead.outer_load * ahead.outer_direction - behind.outer_load * behind.outer_direction) / (2.0 * h)
         found = here.tangent[..., 0, axis] + 1j * here.tangent[..., 1, axis]
         # h² times third derivatives: (1e-5/0.01)² of some per cent
@@ -194,9 +194,9 @@ def test_start_does_not_matter(half_space_laws):
     rng = np.random.default_rng(5)
     case = rays(rng, rollers=11, clearance=0.02)
     displacement = 0.03 * np.exp(1j * rng.uniform(0.0, 6.0, 5))
-    plain = balance_rollers(case, displacement, half_space_laws)
+    plain = balance_rollers(case, displacement[:, None], half_space_laws)
     for start in (np.full((5, 11), 0.02), np.full((5, 11), 0.98), rng.uniform(0.0, 1.0, (5, 11))):
-        other = balance_rollers(case, displacement, half_space_laws, start)
+        other = balance_rollers(case, displacement[:, None], half_space_laws, start)
         np.testing.assert_allclose(other.outer_approach, plain.outer_approach, atol=2e-14)
 
 
@@ -219,4 +219,4 @@ def test_law_without_a_number_is_refused():
     case = rays(np.random.default_rng(6))
     laws = RollerLaws(inner=NoNumber(), outer=PowerLaw(1.0, 1.0), inner_radius=np.ones(9), outer_radius=np.ones(9))
     with pytest.raises(ConvergenceError, match="rollers do not balance"):
-        balance_rollers(case, np.full(5, 0.03 + 0j), laws)
+        balance_rollers(case, np.full((5, 1), 0.03 + 0j), laws)

@@ -30,8 +30,8 @@ def curves(figure):
 def test_every_disc_has_its_curve(two):
     drawn = curves(draw_figure("fig29_tangential_bearing_load", build_dataset("d", {"nominal": two})))
     assert len(drawn) == 2
-    np.testing.assert_array_equal(drawn["-"], two.bearing_tangential[:, 0])
-    np.testing.assert_array_equal(drawn["--"], two.bearing_tangential[:, 1])
+    np.testing.assert_array_equal(drawn["-"], two.bearing_tangential[:, 0, 0])
+    np.testing.assert_array_equal(drawn["--"], two.bearing_tangential[:, 1, 0])
 
 
 def test_the_torque_share_is_drawn_of_several_discs_only(two):

@@ -231,8 +231,8 @@ def test_touching_distance_of_rollers(drives):
         geometry = ContactGeometry.of_drive(drive)
         angles, poses = random_poses(drive, 3, 12)
         rays = geometry.rollers(angles)
-        displacement = disc_displacement(poses)
+        displacement = disc_displacement(poses)[:, None]
         centre = rays.touching_distance(displacement) * rays.direction
-        reach = np.abs(centre - displacement[:, None]) + geometry.placement.roller_radii
+        reach = np.abs(centre - displacement) + geometry.placement.roller_radii
         np.testing.assert_allclose(reach, geometry.placement.bore_radius, rtol=1e-14)
         assert np.all(rays.touching_distance(displacement) > 0.0)

@@ -68,8 +68,10 @@ def test_what_single_discs_have_of_their_own():
     assert second.disc.runout.amount == 0.004
     assert (second.clearance.bearing, second.clearance.pin_hole) == (drive.clearance.bearing, 0.02)
     assert (first.crank.eccentricity_error, second.crank.eccentricity_error) == (0.003, 0.0)
-    assert (first.eccentric_phase, second.disc.phases) == (0.0, (np.radians(170.0),))
-    assert second.eccentric_phase == pytest.approx(np.radians(170.0) + np.radians(1.0 / 60.0), abs=1e-15)
+    assert (first.crank.eccentric(0).phase_error, second.disc.phases) == (0.0, (np.radians(170.0),))
+    assert second.disc.phase + second.crank.eccentric(0).phase_error == pytest.approx(
+        np.radians(170.0) + np.radians(1.0 / 60.0), abs=1e-15
+    )
     assert second.flank_turn == pytest.approx(-np.radians(170.0) / 13.0, abs=1e-15)
     assert parse_drive(drive_text(drive)).cases["nominal"] == drive
 
