@@ -74,7 +74,7 @@ def move(motion, start=None, force=(0.0, 0.0, 0.0)):
         placement=SimpleNamespace(wheel_pin_centres=np.array([80.0, -80.0j])),
         rollers=(1, 0),
         pairs=(SimpleNamespace(kind="hole", index=0), SimpleNamespace(kind="pin", index=0)),
-        drive=SimpleNamespace(pin_shaft=SimpleNamespace(stiffness=1e6)),
+        drive=SimpleNamespace(hole_stiffness=1e6),
     )
     found = SimpleNamespace(motion=np.asarray(motion))
     return pose._move(model, plain_pose() if start is None else start, found, np.array([force, (9.0, 9.0, 9.0)]))

@@ -1,0 +1,36 @@
+"""Hashes of definitions: what is at its default is left out, so that a field that later versions add changes none."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import MISSING, fields, is_dataclass
+from typing import Any
+
+
+def fingerprint_of(part: Any) -> str:
+    """Return a hash of a definition (hex, 16 digits).
+
+    Parameters
+    ----------
+    part : dataclass or dict
+        Of numbers, texts, tuples and other such definitions.
+    """
+    content = _given(part) if is_dataclass(part) else part
+    return hashlib.sha256(repr(content).encode()).hexdigest()[:16]
+
+
+def _given(part: Any) -> dict[str, Any]:
+    """Fields of a part that are not at their defaults, by name."""
+    given = {}
+    for item in fields(part):
+        value = getattr(part, item.name)
+        default = item.default_factory() if item.default_factory is not MISSING else item.default
+        if default is MISSING or value != default:
+            given[item.name] = _value(value)
+    return given
+
+
+def _value(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_value(item) for item in value)
+    return _given(value) if is_dataclass(value) else value
