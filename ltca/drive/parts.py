@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import field
 from math import gcd, pi
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
@@ -349,10 +349,7 @@ class Drive:
         return 0.0 if self.pin_shaft is None else self.pin_shaft.hole_radius + self.clearance.pin_hole
 
     def fingerprint(self) -> str:
-        """Return a hash of everything that defines the drive in this case (hex, 16 digits).
-
-        A field at its default is left out of it, so that one that later versions add changes no fingerprint.
-        """
+        """Return a hash of everything that defines the drive in this case (hex, 16 digits)."""
         return fingerprint_of(self)
 
     def body_shape(self) -> dict[str, float]:
@@ -405,100 +402,6 @@ class Drive:
     def shape_fingerprint(self) -> str:
         """Return a hash of `body_shape` (hex, 16 digits): influence coefficients of the bodies belong to it."""
         return fingerprint_of(self.body_shape())
-
-
-def part_turn(self) -> tuple[float, int, int]:
-        """Which part the disc of a drive of one disc is (`part_turn`)."""
-        return part_turn(self.flank_turn, self.disc.number_of_teeth, self.pattern)
-
-    @property
-    def bore_radius(self) -> float:
-        """Outer-race radius with half the diametral bearing clearance, mm."""
-        return self.crank_bearing.outer_race_radius + 0.5 * self.clearance.bearing
-
-    @property
-    def hole_radius(self) -> float:
-        """Pin-hole radius with the pin-hole clearance, mm; 0 without a pin shaft."""
-        return 0.0 if self.pin_shaft is None else self.pin_shaft.hole_radius + self.clearance.pin_hole
-
-    def fingerprint(self) -> str:
-        """Return a hash of everything that defines the drive in this case (hex, 16 digits).
-
-        A field at its default is left out of it, so that one that later versions add changes no fingerprint.
-        """
-        return fingerprint_of(self)
-
-    def body_shape(self) -> dict[str, float]:
-        """Return every number that plane finite-element bodies of the drive are made of: what their compliance belongs to.
-
-        Bore and holes are as wide as they are, clearances included. Errors of single parts never enter. What no plane body
-        has is left out: load, name, lengths and profiles along the length, numbers of rollers and discs, and all of the
-        shaft pins but their number and circle, which are those of the holes.
-
-        Returns
-        -------
-        dict of str to float
-            By field, or by the name of what several fields make: mm, MPa, counts.
-        """
-        wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
-        shape = {
-            "crank.eccentricity": self.crank.eccentricity,
-            "pin_wheel.number_of_pins": float(wheel.number_of_pins),
-            "pin_wheel.pin_radius": wheel.pin_radius,
-            "generating_circle_radius": wheel.pin_circle_radius + disc.shifting_offset,
-            "generating_pin_radius": wheel.pin_radius + disc.equidistant_offset,
-            "disc.number_of_teeth": float(disc.number_of_teeth),
-            "disc.thickness": disc.thickness,
-            "crank_bearing.inner_race_radius": bearing.inner_race_radius,
-            "crank_bearing.roller_radius": bearing.roller_radius,
-            "bore_radius": self.bore_radius,
-        }
-        if shaft is not None:
-            shape |= {
-                "pin_shaft.number_of_pins": float(shaft.number_of_pins),
-                "pin_shaft.pin_circle_radius": shaft.pin_circle_radius,
-                "hole_radius": self.hole_radius,
-            }
-        if self.crank.number > 1:
-            shape |= {
-                "crank.number": float(self.crank.number),
-                "crank.circle_radius": self.crank.circle_radius or 0.0,
-                "crank.angle": self.crank.angle,
-            }
-        turn = self.part_turn[0]
-        if turn:
-            shape["flank_turn"] = turn
-        for part in ("disc", "wheel_pin", "roller", "inner_race"):
-            material: Material = getattr(self.materials, part)
-            shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
-            shape[f"materials.{part}.poisson_ratio"] = material.poisson_ratio
-        # Sums of radii and clearances must not differ by their rounding.
-        return {name: float(f"{value:.12g}") for name, value in shape.items()}
-
-    def shape_fingerprint(self) -> str:
-        """Return a hash of `body_shape` (hex, 16 digits): influence coefficients of the bodies belong to it."""
-        return fingerprint_of(self.body_shape())
-
-
-def _given(part: Any) -> dict[str, Any]:
-    """Fields of a part that are not at their defaults, by name."""
-    given = {}
-    for item in fields(part):
-        value = getattr(part, item.name)
-        default = item.default_factory() if item.default_factory is not MISSING else item.default
-        if default is MISSING or value != default:
-            given[item.name] = _given_value(value)
-    return given
-
-
-def _given_value(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(_given_value(item) for item in value)
-    return _given(value) if is_dataclass(value) else value
-
-
-def _hash(definition: dict[str, Any]) -> str:
-    return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 
 def part_turn(turned: float, teeth: int, pattern: int) -> tuple[float, int, int]:
