@@ -145,7 +145,7 @@ def sampling_warning(drive: Drive, crank_angle: FloatArray, *, refined: bool = T
         the holes, too.
     """
     found = sampling(drive, crank_angle)
-    teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes
+    teeth, holes = drive.disc.number_of_teeth, drive.number_of_holes or 1
     needed = RESOLVED if refined else 2 * RESOLVED
     seen, what = found.distinct_mesh_phases, f"mesh of {teeth} teeth"
     if not refined and seen >= needed:
@@ -209,19 +209,19 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
         ptp_transmission_error=found["wheel_angle"] + found["wheel_angle_negative"],
         ptp_transmission_error_light=found_light["wheel_angle"] + found_light["wheel_angle_negative"],
         ptp_tangential_bearing_load=max(
-            found[f"tangential_{disc}"] + found[f"tangential_negative_{disc}"]
-            for disc in range(analysis.drive.disc.number_of_discs)
+            found[f"tangential_{bearing}"] + found[f"tangential_negative_{bearing}"]
+            for bearing in range(analysis.bearing_tangential[0].size)
         ),
         max_bearing_load=found["bearing"],
         max_pin_load=found["pin"],
         max_roller_load=found["roller"],
-        max_pin_shaft_load=found["hole"],
+        max_pin_shaft_load=found.get("hole", np.nan),
         max_pin_pressure_mid=found["pin_mid"],
         max_pin_pressure_max=found["pin_largest"],
         max_roller_pressure_mid=found["roller_mid"],
         max_roller_pressure_max=found["roller_largest"],
-        max_pin_shaft_pressure_mid=found["hole_mid"],
-        max_pin_shaft_pressure_max=found["hole_largest"],
+        max_pin_shaft_pressure_mid=found.get("hole_mid", np.nan),
+        max_pin_shaft_pressure_max=found.get("hole_largest", np.nan),
         added_positions=full.search.angle.size - given.size,
         added_light_positions=light.search.angle.size - given.size,
     )
@@ -363,6 +363,8 @@ class _Stage:
     ) -> _Stage:
         groups, column = {}, 0
         for name, values in signals.items():
+            if not values.shape[1]:
+                continue  # holes without a pin shaft
             groups[name] = (slice(column, column + values.shape[1]), name.startswith(("wheel", "tangential")))
             column += values.shape[1]
         search = PeakSearch(

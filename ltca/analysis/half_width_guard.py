@@ -131,7 +131,7 @@ def unborne_warning(pressures: ContactPressures) -> str | None:
         Of the solved positions.
     """
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
-    largest = max(float(np.nanmax(kind.mid)) for kind in kinds)
+    largest = max(float(np.nanmax(kind.mid)) for kind in kinds if kind.mid.size)
     if largest <= BORNE:
         return None
     return f"contacts are pressed with up to {largest:.4g} MPa, more than any steel bears (some {BORNE:g} MPa)"

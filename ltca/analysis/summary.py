@@ -65,7 +65,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     angle = full.crank_angle
     radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
     pins, rollers, holes = (
-        load > LOADED_FRACTION * np.max(load)
+        load > LOADED_FRACTION * np.max(load, initial=0.0)
         for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
     )
     pressures = analysis.pressures
@@ -89,14 +89,14 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         "max_roller_pressure_max_MPa": roller_largest,
         "pin_end_cell_mm": pressures.pins.end_cell,
         "roller_end_cell_mm": pressures.outer.end_cell,
-        "max_pin_shaft_load_N": np.max(contacts.hole_load),
-        "max_pin_shaft_pressure_mid_MPa": np.max(pressures.holes.mid),
-        "max_pin_shaft_pressure_max_MPa": np.max(pressures.holes.largest),
+        "max_pin_shaft_load_N": _most(contacts.hole_load),
+        "max_pin_shaft_pressure_mid_MPa": _most(pressures.holes.mid),
+        "max_pin_shaft_pressure_max_MPa": _most(pressures.holes.largest),
         "pin_shaft_end_cell_mm": pressures.holes.end_cell,
-        "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes),
+        "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes) if holes.size else np.nan,
         "mean_loaded_pins": np.mean(pins.sum(axis=1)),
         "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
-        "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)),
+        "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) if holes.size else np.nan,
         "ptp_transmission_error_arcsec": np.ptp(analysis.transmission_error) * ARCSEC,
         "ptp_transmission_error_light_arcsec": np.ptp(analysis.transmission_error_light) * ARCSEC,
         "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
@@ -117,6 +117,11 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _most(values: FloatArray) -> float:
+    """Largest value; not a number without a pin shaft."""
+    return float(np.max(values)) if values.size else np.nan
 
 
 def refined_value(summary: Mapping[str, float | None], key: str) -> float | None:

@@ -76,12 +76,11 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
     cage = 1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
     names: list[Order] = []
     for multiple in range(1, harmonics + 1):
-        names += [
-            Order(float(multiple * flank), f"flank, {multiple} z_C"),
-            Order(float(multiple * holes), f"pin holes, {multiple} z_PS"),
-        ]
+        names.append(Order(float(multiple * flank), f"flank, {multiple} z_C"))
+        if holes:
+            names.append(Order(float(multiple * holes), f"pin holes, {multiple} z_PS"))
     # Two motions that both bend the same contacts show sums and differences of their orders.
-    for first in (1, 2):
+    for first in (1, 2) if holes else ():
         for second in (1, 2):
             parts = f"{first} z_C", f"{second} z_PS"
             names.append(

@@ -105,9 +105,10 @@ def execute(arguments: argparse.Namespace) -> int:
         return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
 
 
-def _discs(cases: Mapping[str, Drive]) -> int:
-    """Number of discs, which all cases of a run have."""
-    return next(iter(cases.values())).disc.number_of_discs
+def _discs_and_holes(cases: Mapping[str, Drive]) -> tuple[int, int]:
+    """Numbers of discs and of holes, which all cases of a run have."""
+    drive = next(iter(cases.values()))
+    return drive.disc.number_of_discs, drive.number_of_holes
 
 
 def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterator[str]:
@@ -122,7 +123,7 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
         from ltca.figures.run_figures import figure_names
         from ltca.output.run_folder import figure_files
 
-        yield from figure_files(*figure_names(_discs(cases)))
+        yield from figure_files(*figure_names(*_discs_and_holes(cases)))
         if arguments.pressure is not None:
             yield from figure_files(*PRESSURE_FIGURES)
             yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
@@ -223,7 +224,7 @@ def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], fol
     from ltca.figures.run_figures import figure_names, write_figures
     from ltca.output.progress import progress
 
-    names = figure_names(dataset.sizes["disc"])
+    names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"])
     with progress("figures", len(names)) as advance:
         for path in write_figures(dataset, folder):
             advance(path.name)

@@ -1,4 +1,4 @@
-"""What two dimensions cannot say about a drive: whatever varies along the length of its rollers and pins."""
+"""What some models cannot say about a drive: what varies along its rollers and pins, several cranks, supports."""
 
 from __future__ import annotations
 
@@ -29,6 +29,37 @@ def require_plane_strain(drive: Drive, model: str) -> None:
     problems = list(_find_problems(drive, model))
     if problems:
         raise DriveError(problems)
+
+
+def require_central_crank(drive: Drive, model: str) -> None:
+    """Refuse a drive of several cranks, or of members that yield on their supports.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    model : str
+        What it is refused by, for the message.
+
+    Raises
+    ------
+    DriveError
+        One sentence for each field.
+    """
+    problems = []
+    if drive.crank.number > 1:
+        problems.append(f"crank.number = {drive.crank.number}: must be 1 for {model}, which knows discs with one bore")
+    problems += _find_supports(drive, model)
+    if problems:
+        raise DriveError(problems)
+
+
+def _find_supports(drive: Drive, model: str) -> Iterator[str]:
+    stiffness = drive.pin_wheel.support_stiffness
+    if drive.crank.support is not None:
+        yield f"crank.support: must be left out for {model}, where cranks are rigid"
+    if stiffness is not None:
+        yield f"pin_wheel.support_stiffness = {stiffness:g} N/mm: must be left out for {model}, where the wheel is rigid"
 
 
 def _find_problems(drive: Drive, model: str) -> Iterator[str]:

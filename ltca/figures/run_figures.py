@@ -69,11 +69,13 @@ def plain_lines(count: int) -> list[Line]:
 
 
 def _lines(dataset: xr.Dataset) -> list[Line]:
-    """Lines of what `_disc_by_disc` has put side by side."""
+    """Lines of what `_one_by_one` has put side by side."""
     if "of_case" not in dataset.coords:
         return plain_lines(dataset.sizes["case"])
     discs = [int(disc) for disc in dataset["disc"].values]
-    colours = discs if len(set(dataset["of_case"].values)) == 1 else dataset["of_case"].values
+    colours = dataset["of_case"].values
+    if len(set(colours)) == 1:  # by what differs: cranks before discs, which differ in their dashes
+        colours = discs if np.ptp(dataset["crank"].values) == 0 else dataset["crank"].values
     return [
         Line(COLOURS[int(colour) % len(COLOURS)], DASHES[disc % len(DASHES)])
         for colour, disc in zip(colours, discs, strict=True)
@@ -293,11 +295,28 @@ OF_THE_DRIVE = ("fig23_transmission_error",)
 """What is no disc's own."""
 OF_SEVERAL_DISCS = ("torque_share",)
 """What a drive of one disc has not."""
+OF_THE_CRANKS = (
+    "fig28_bearing_load",
+    "fig29_tangential_bearing_load",
+    "fig30_radial_bearing_load",
+    "fig34_roller_load",
+)
+"""What every crank has of its own."""
+OF_THE_PIN_SHAFT = ("fig35_pin_shaft_load", "fig36_loaded_shaft_pins")
+"""What a drive without pin shaft has not."""
 
 
-def figure_names(number_of_discs: int) -> list[str]:
-    """Return the names of the figures of a run, keys of `FIGURES`."""
-    return [name for name in FIGURES if number_of_discs > 1 or name not in OF_SEVERAL_DISCS]
+def figure_names(discs: int, holes: int) -> list[str]:
+    """Return the names of the figures of a run, keys of `FIGURES`.
+
+    Parameters
+    ----------
+    discs, holes : int
+        How many the drives have; no holes without a pin shaft.
+    """
+    missing: tuple[str, ...] = OF_SEVERAL_DISCS if discs == 1 else ()
+    missing += OF_THE_PIN_SHAFT if holes == 0 else ()
+    return [name for name in FIGURES if name not in missing]
 
 
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
@@ -313,7 +332,10 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
-    shown = dataset.isel(disc=0, crank=0) if name in OF_THE_DRIVE else _disc_by_disc(dataset)
+    if name in OF_THE_DRIVE:
+        shown = dataset.isel(disc=0, crank=0)
+    else:
+        shown = _one_by_one(dataset, dataset.sizes["crank"] if name in OF_THE_CRANKS else 1)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         FIGURES[name](figure, shown)
@@ -329,21 +351,23 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.isel(position=known) if np.any(known) and not np.all(known) else dataset
 
 
-def _disc_by_disc(dataset: xr.Dataset) -> xr.Dataset:
-    """Every disc of every case as a case of its own; where they are too many, the cases that have room."""
+def _one_by_one(dataset: xr.Dataset, cranks: int) -> xr.Dataset:
+    """Every disc of every case, on every crank, as a case of its own; where they are too many, the cases that have room."""
     discs = dataset.sizes["disc"]
-    if discs == 1:
+    if discs * cranks == 1:
         return dataset.isel(disc=0, crank=0)
-    shown = range(min(dataset.sizes["case"], max(1, MOST_CURVES // discs)))
-    curves = [(case, disc) for case in shown for disc in range(discs)]
-    several = dataset.sizes["case"] > 1
-    index = {
-        "case": xr.DataArray([case for case, _ in curves], dims="case"),
-        "disc": xr.DataArray([disc for _, disc in curves], dims="case"),
-    }
-    names = [f"{dataset['case'].values[case]}, disc {disc}" if several else f"disc {disc}" for case, disc in curves]
-    of_case = ("case", [case for case, _ in curves])
-    return dataset.isel(crank=0).isel(index).assign_coords(case=names, of_case=of_case)
+    shown = range(min(dataset.sizes["case"], max(1, MOST_CURVES // (discs * cranks))))
+    curves = [(case, disc, crank) for case in shown for disc in range(discs) for crank in range(cranks)]
+    words = ("case", "disc", "crank")
+    index = {word: xr.DataArray([curve[place] for curve in curves], dims="case") for place, word in enumerate(words)}
+
+    def named(case: int, disc: int, crank: int) -> str:
+        told = [str(dataset["case"].values[case])] if dataset.sizes["case"] > 1 else []
+        told += [f"disc {disc}"] if discs > 1 else []
+        return ", ".join(told + ([f"crank {crank}"] if cranks > 1 else []))
+
+    of_case = ("case", [case for case, _, _ in curves])
+    return dataset.isel(index).assign_coords(case=[named(*curve) for curve in curves], of_case=of_case)
 
 
 def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
@@ -362,7 +386,7 @@ def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
         The PNG of each figure when both files are written.
     """
     with mpl.rc_context(STYLE):
-        for name in figure_names(dataset.sizes["disc"]):
+        for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"]):
             figure = draw_figure(name, dataset)
             # One layout serves both files: to find it takes as long as to draw.
             layout = figure.get_layout_engine()

@@ -35,7 +35,7 @@ def test_every_disc_has_its_curve(two):
 
 
 def test_the_torque_share_is_drawn_of_several_discs_only(two):
-    assert set(figure_names(2)) - set(figure_names(1)) == {"torque_share"}
+    assert set(figure_names(2, 8)) - set(figure_names(1, 8)) == {"torque_share"}
     drawn = curves(draw_figure("torque_share", build_dataset("d", {"nominal": two})))
     # moments are balanced to 1e-9
     np.testing.assert_allclose(drawn["-"], two.torque_share[:, 0], rtol=0.0, atol=1e-8)
