@@ -209,7 +209,7 @@ def build_pressure_dataset(
         rollers = [
             [[roller_fields(disc, position, side, cells) for position in positions] for disc in case] for case in discs
         ]
-        _store(variables, "roller", f"_{side}", rollers, placement.roller_radii.size)
+        _store(variables, "roller", f"_{side}", rollers, placement.roller_radii.size, placement.cranks)
     dataset = xr.Dataset(
         variables,
         coords=coordinates(analyses),
@@ -231,9 +231,14 @@ def build_pressure_dataset(
 
 
 def _store(
-    variables: dict[str, Any], name: str, side: str, fields: list[list[list[dict[int, PressureField]]]], count: int
+    variables: dict[str, Any],
+    name: str,
+    side: str,
+    fields: list[list[list[dict[int, PressureField]]]],
+    count: int,
+    cranks: int = 1,
 ) -> None:
-    """Put the fields of one kind on one side, by case, disc, position and pair, into arrays of full size."""
+    """Put the fields of one kind on one side, by case, disc, position and pair, into arrays of full size; rollers by crank."""
     flat = [field for case in fields for disc in case for position in disc for field in position.values()]
     nx, ny = flat[0].pressure.shape if flat else (1, 1)
     shape = (len(fields), len(fields[0]), len(fields[0][0]), count)
@@ -247,7 +252,9 @@ def _store(
                 scalars[key][place] = getattr(field, attribute)
 
     def put(key: str, values: FloatArray, extra: tuple[str, ...], unit: str, text: str) -> None:
-        stored = values[:, :, None] if "crank" in DIMENSIONS[name] else values
+        stored = values
+        if "crank" in DIMENSIONS[name]:  # pairs come crank after crank
+            stored = np.moveaxis(values.reshape(*values.shape[:3], cranks, -1, *values.shape[4:]), 3, 2)
         variables[f"{name}_{key}{side}"] = (
             ("case", *DIMENSIONS[name], *extra),
             stored,

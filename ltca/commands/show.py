@@ -15,6 +15,8 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ltca.analysis.loaded_analysis import LoadedAnalysis
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
@@ -95,10 +97,6 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     between_rollers = 2.0 * (pitch * np.sin(np.pi / bearing.number_of_rollers) - bearing.roller_radius)
     roller_play = single.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius
     tangential = abs(drive.wheel_moment()) / (len(singles) * drive.reduction_ratio * e)
-    hole_wall = bore_wall = float("inf")
-    if drive.pin_shaft is not None:
-        hole_wall = profile.root_radius - drive.pin_shaft.pin_circle_radius - single.hole_radius
-        bore_wall = drive.pin_shaft.pin_circle_radius - single.hole_radius - single.bore_radius
     of, at, held = ("", "the disc", "disc") if len(singles) == 1 else (" of disc 0", "disc 0", "discs")
     return [
         *_installation(drive),
@@ -113,10 +111,32 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{between_rollers:.4f} mm"),
-        (f"hole radius{of} with clearance", f"{single.hole_radius:.4f} mm"),
-        ("wall between hole and root circle, bore", f"{hole_wall:.4f}, {bore_wall:.4f} mm"),
+        *_walls(single, profile.root_radius, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
+
+
+def _walls(single: Drive, root_radius: float, of: str) -> list[tuple[str, str]]:
+    """What is left between holes, bores and roots of a disc."""
+    import numpy as np
+
+    rows, shaft, crank = [], single.pin_shaft, single.crank
+    bores, bore = np.array(crank.places), single.bore_radius
+    if shaft is not None:
+        holes = shaft.pin_circle_radius * np.exp(2j * np.pi * np.arange(shaft.number_of_pins) / shaft.number_of_pins)
+        between = float(np.min(np.abs(holes[:, None] - bores))) - single.hole_radius - bore
+        outside = root_radius - shaft.pin_circle_radius - single.hole_radius
+        rows += [
+            (f"hole radius{of} with clearance", f"{single.hole_radius:.4f} mm"),
+            ("wall between hole and root circle, bore", f"{outside:.4f}, {between:.4f} mm"),
+        ]
+    if crank.number > 1:
+        circle = float(np.abs(bores[0]))
+        between = 2.0 * (circle * np.sin(np.pi / crank.number) - bore)
+        rows.append(
+            ("wall between bore and root circle, next bore", f"{root_radius - circle - bore:.4f}, {between:.4f} mm")
+        )
+    return rows
 
 
 def _installation(drive: Drive) -> list[tuple[str, str]]:
@@ -128,14 +148,25 @@ def _installation(drive: Drive) -> list[tuple[str, str]]:
     held = (
         "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
     )
-    rows = [("installation", held), ("reduction ratio (crank turns by output turns)", f"{drive.transmission_ratio:g}")]
+    stage, crank = drive.installation.first_stage_ratio, drive.crank
+    turned = "crank" if stage is None else "input"
+    rows = [
+        ("installation", held),
+        (f"reduction ratio ({turned} turns by output turns)", f"{drive.transmission_ratio:g}"),
+    ]
+    if crank.number > 1:
+        driven = "turned in the carrier" if stage is None else f"driven by a spur stage, z₂/z₁ = {stage:g}"
+        rows.append(("cranks", f"{crank.number} on a circle of {crank.circle_radius:g} mm, {driven}"))
+    rows += _supports(drive)
     discs = drive.disc.number_of_discs
     if discs == 1:
         return rows
-    alike = "can be equal parts, turned against each other by hole pitches"
+    pattern = "hole pitches" if crank.number == 1 else f"{360.0 / drive.pattern:g}°"
+    alike = f"can be equal parts, turned against each other by {pattern}"
     if not equal_parts(drive):
         turns = ", ".join(f"{degrees(single.part_turn[0]):.4f}°" for single in single_discs(drive))
-        alike = f"cannot be equal parts: flanks are cut at {turns} against their holes"
+        against = "holes" if crank.number == 1 else "bores"
+        alike = f"cannot be equal parts: flanks are cut at {turns} against their {against}"
     return [
         *rows,
         ("discs, phases of their eccentrics", ", ".join(f"{degrees(phase):.6g}°" for phase in drive.disc.disc_phases)),
@@ -144,14 +175,32 @@ def _installation(drive: Drive) -> list[tuple[str, str]]:
     ]
 
 
+def _supports(drive: Drive) -> list[tuple[str, str]]:
+    """What yields on its bearings, and what is taken for rigid."""
+    rows, support, wheel = [], drive.crank.support, drive.pin_wheel.support_stiffness
+    if support is not None:
+        first, second = (
+            f"{value:g} N/mm at {at:g} mm" for at, value in zip(support.positions, support.stiffness, strict=True)
+        )
+        rows.append(
+            ("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; torsion and tilt left out")
+        )
+    if wheel is not None:
+        rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; tilt and the ring's own bending left out"))
+    return rows
+
+
+def _of_crank(crank: int, all_of_them: Sequence[object]) -> str:
+    return f", crank {crank}" if len(all_of_them) > 1 else ""
+
+
 def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     import numpy as np
 
     from ltca.drive.units.quantities import ARCMIN
-    from ltca.geometry.coordinates import WHEEL_ANGLE
+    from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 
-    def loaded(load: FloatArray) -> str:
-        values = load[0]
+    def loaded(values: FloatArray) -> str:
         numbers = np.nonzero(values > 1e-3 * values.max())[0]
         return ", ".join(f"{n}: {values[n]:.0f} N" for n in numbers)
 
@@ -159,19 +208,23 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
     share = analysis.torque_share[0]
     for number, disc in enumerate(analysis.discs):
         contacts = disc.full.response
-        x, y, rotation, _ = disc.full.pose[0]
-        radial, tangential = disc.bearing_radial[0, 0, 0], disc.bearing_tangential[0, 0, 0]
+        x, y, rotation = disc.full.pose[0, : DISC_ROTATION + 1]
         of = "" if share.size == 1 else f"disc {number}: "
         rows += [(f"{of}part of the torque", f"{share[number]:.4f}")] if of else []
+        rows += [(f"{of}wheel pins", loaded(contacts.pin_load[0]))]
+        rollers = np.split(contacts.rollers.outer_load[0], disc.bearing_radial.shape[2])
         rows += [
-            (f"{of}wheel pins", loaded(contacts.pin_load)),
-            (f"{of}rollers, on the bore", loaded(contacts.rollers.outer_load)),
-            (f"{of}shaft pins", loaded(contacts.hole_load)),
-            (f"{of}bearing load on it, radial, tangential" if of else "bearing load on the disc, radial, tangential",
-             f"{radial:.1f}, {tangential:.1f} N"),
+            (f"{of}rollers, on the bore{_of_crank(crank, rollers)}", loaded(load)) for crank, load in enumerate(rollers)
+        ]
+        rows += [(f"{of}shaft pins", loaded(contacts.hole_load[0]))] if contacts.hole_load.size else []
+        forces = zip(disc.bearing_radial[0, 0], disc.bearing_tangential[0, 0], strict=True)
+        for crank, (radial, tangential) in enumerate(forces):
+            on = f"{of}bearing load on it" if of else "bearing load on the disc"
+            rows += [(f"{on}{_of_crank(crank, rollers)}, radial, tangential", f"{radial:.1f}, {tangential:.1f} N")]
+        rows += [
             (f"{of}displacement x, y" if of else "disc displacement x, y", f"{1e3 * x:.2f}, {1e3 * y:.2f} µm"),
             (f"{of}rotation" if of else "disc rotation", f"{rotation * ARCMIN:.4f}′"),
-        ]  # fmt: skip
+        ]
     wheel = analysis.full.pose[0, WHEEL_ANGLE]
     rows += [("wheel angle", f"{wheel * ARCMIN:.4f}′")]
     if analysis.drive.wheel_is_held:

@@ -14,6 +14,7 @@ from matplotlib.patches import Circle, Polygon
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive
 from ltca.figures.run_figures import STYLE
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.output.files import whole_file
 
 STEEL, PIN, ROLLER, RACE, SHAFT = "#e9edf2", "#cfd6de", "#d9dde3", "#bfc8d2", "#c9cfd8"
@@ -62,10 +63,10 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
 def _draw_disc(axes: Any, shown: _Position, largest: float) -> None:
     _draw_parts(axes, shown)
     _draw_loads(axes, shown, largest)
-    race = shown.race
-    axes.plot([0.0, race.real], [0.0, race.imag], color="black", linewidth=1.2, zorder=6)
-    axes.plot([0.0], [0.0], marker="+", color="black", markersize=9, zorder=6)
-    axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
+    for axis, race in zip(shown.cranks, shown.races, strict=True):
+        axes.plot([axis.real, race.real], [axis.imag, race.imag], color="black", linewidth=1.2, zorder=6)
+        axes.plot([axis.real], [axis.imag], marker="+", color="black", markersize=9, zorder=6)
+        axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
     reach = 1.06 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
@@ -83,15 +84,23 @@ class _Position:
         self.profile, self.place = geometry.profile, geometry.placement
         full, place = analysis.full, geometry.placement
         self.crank_angle = float(full.crank_angle[position])
-        x, y, rotation, wheel_angle = full.pose[position]
-        self.race = complex(place.race_centre(np.asarray(self.crank_angle)))
-        self.disc, self.turn = self.race + complex(x, y), np.exp(1j * rotation)
-        wheel_turn = self.crank_angle / place.reduction_ratio + wheel_angle
-        self.pins = place.wheel_pin_centres * np.exp(1j * wheel_turn)
+        pose, coordinates = full.pose[position], geometry.coordinates
+        at = np.asarray(self.crank_angle)
+        self.disc = complex(place.race_centre(at)) + complex(pose[X], pose[Y])
+        self.turn = np.exp(1j * pose[DISC_ROTATION])
+        yielding = np.zeros(place.cranks, dtype=complex)
+        for crank in range(coordinates.cranks):
+            yielding[crank] = complex(*pose[coordinates.crank(crank) :][:2])
+        self.cranks, self.races = place.crank_axes + yielding, place.race_centres(at) + yielding
+        self.bores = self.disc + self.turn * place.bore_centres
+        wheel_turn = self.crank_angle / place.reduction_ratio + pose[WHEEL_ANGLE]
+        moved = complex(*pose[coordinates.wheel_place]) if coordinates.wheel else 0.0
+        self.pins = place.wheel_axis + moved + place.wheel_pin_centres * np.exp(1j * wheel_turn)
         self.holes = self.disc + self.turn * place.hole_centres
         contacts = full.response
         rays = geometry.rollers(np.array([self.crank_angle]))
-        self.rollers = self.race + rays.direction[0] * (rays.outermost - contacts.rollers.inner_approach[position])
+        races = np.repeat(self.races, place.roller_radii.size // place.cranks)
+        self.rollers = races + rays.direction[0] * (rays.outermost - contacts.rollers.inner_approach[position])
         play = place.shaft_pin_centres - self.holes
         normal = -geometry.profile.normal(contacts.flank.parameter[position]) * self.turn
         pushed = contacts.rollers.outer_direction[position]
@@ -105,7 +114,7 @@ class _Position:
     @property
     def largest(self) -> float:
         """Largest load, N."""
-        return max(float(np.max(load)) for _, load, _, _ in self.loads)
+        return max(float(np.max(load, initial=0.0)) for _, load, _, _ in self.loads)
 
 
 def _draw_parts(axes: Any, shown: _Position) -> None:
@@ -116,8 +125,8 @@ def _draw_parts(axes: Any, shown: _Position) -> None:
     )
     _circles(axes, shown.holes, place.hole_radii, "white", 2)
     _circles(axes, place.shaft_pin_centres, place.shaft_pin_radii, SHAFT, 3)
-    _circles(axes, np.array([shown.disc]), place.bore_radius, "white", 2)
-    _circles(axes, np.array([shown.race]), place.inner_race_radius, RACE, 3)
+    _circles(axes, shown.bores, place.bore_radius, "white", 2)
+    _circles(axes, shown.races, place.inner_race_radius, RACE, 3)
     _circles(axes, shown.rollers, place.roller_radii, ROLLER, 4)
     _circles(axes, shown.pins, place.wheel_pin_radii, PIN, 4)
 

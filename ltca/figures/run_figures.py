@@ -73,7 +73,7 @@ def _lines(dataset: xr.Dataset) -> list[Line]:
     if "of_case" not in dataset.coords:
         return plain_lines(dataset.sizes["case"])
     discs = [int(disc) for disc in dataset["disc"].values]
-    colours = dataset["of_case"].values
+    colours: Any = dataset["of_case"].values
     if len(set(colours)) == 1:  # by what differs: cranks before discs, which differ in their dashes
         colours = discs if np.ptp(dataset["crank"].values) == 0 else dataset["crank"].values
     return [
