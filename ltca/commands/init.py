@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", type=path_argument("FILE"), help="TOML file to write, e.g. my.toml")
     parser.add_argument(
         "--like",
-        choices=("paper", "robot-joint"),
+        choices=("paper", "robot-joint", "rv"),
         default="paper",
         help="the paper's drive: one disc, pin shaft held (default); or a made-up robot joint's: two discs, housing held",
     )

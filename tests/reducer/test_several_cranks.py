@@ -1,0 +1,334 @@
+"""Several cranks on the carrier, crankshafts and a wheel that yield: closed forms, work, invariances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance import half_space
+from ltca.compliance.rollers import RollerState
+from ltca.drive.parts import CrankSupport
+from ltca.drive.single_discs import equal_parts
+from ltca.equilibrium.balance import lever_arms
+from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_responses
+from ltca.equilibrium.supports import crank_stiffness, support_stiffness
+from ltca.errors import DriveError
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.placement import position_angles
+from ltca.laws.beam import shaft_flexibility
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.testing.balance_check import find_imbalance
+
+ANGLES = np.array([0.31, 1.7, 4.4])
+SUPPORT = CrankSupport(diameter=20.0, positions=(-22.0, 22.0), stiffness=(3e5, 4e5))
+LOAD = 1e-4
+"""Loads of equal drives solved from different sides, N: the balance closes to 1e-9 of 16 kN, and stiffness adds a digit."""
+
+
+@pytest.fixture(scope="module")
+def rv():
+    return parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+
+
+def kind(rv, name):
+    """The made-up RV reducer with what yields, or with holes, in different makes."""
+    rigid = replace(rv, crank=replace(rv.crank, support=None))
+    if name == "rigid":
+        return rigid
+    if name == "cranks":
+        return replace(rv, crank=replace(rv.crank, support=SUPPORT))
+    if name == "wheel":
+        return replace(rigid, pin_wheel=replace(rv.pin_wheel, support_stiffness=5e5))
+    if name == "carrier":  # cranks turned in the carrier
+        return replace(rv, installation=replace(rv.installation, first_stage_ratio=None))
+    if name == "shaft held":
+        return replace(rv, installation=replace(rv.installation, held="pin-shaft"))
+    joint = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
+    if name == "central crank yields":
+        return replace(
+            joint,
+            crank=replace(joint.crank, support=SUPPORT),
+            pin_wheel=replace(joint.pin_wheel, support_stiffness=5e5),
+        )
+    assert name == "holes"
+    shaft = replace(joint.pin_shaft, number_of_pins=3, pin_circle_radius=45.0, pin_radius=8.0, hole_radius=9.26)
+    return replace(rv, crank=replace(rv.crank, angle=np.pi / 3.0), pin_shaft=shaft, clearance=joint.clearance)
+
+
+KINDS = ["rigid", "cranks", "wheel", "carrier", "shaft held", "central crank yields", "holes"]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_every_kind_is_balanced_by_energies_alone(rv, name):
+    drive = kind(rv, name)
+    model = HalfSpace().prepare(drive).model
+    found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+    for position in range(ANGLES.size):
+        assert find_imbalance(drive, model, found, position, torque=drive.load.torque) == []
+
+
+@dataclass(frozen=True)
+class LinearBearings:
+    """Every bearing an isotropic linear spring without play: what `balance_rollers` answers then."""
+
+    stiffness: float
+
+    def __call__(self, rays, displacement, laws, start=None):
+        ray, each = rays.direction, self.stiffness / (0.5 * 14)
+        along = (ray.conjugate() * displacement).real
+        zeros = np.zeros(ray.shape)
+        pairs = np.stack((ray.real, ray.imag), axis=-1)
+        return RollerState(
+            share=zeros,
+            inner_approach=zeros,
+            outer_approach=zeros,
+            inner_load=zeros,
+            outer_load=-each * along,
+            outer_direction=ray,
+            tangent=each * pairs[..., :, None] * pairs[..., None, :],
+        )
+
+
+@pytest.mark.parametrize("cranks", [2, 3, 4])
+def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
+    """Resultant/n on each crank and moment/(n r) at a right angle to its turned arm; radially K r (1 − cos of the rotation)."""
+    stiffness = 4e5
+    monkeypatch.setattr(half_space, "balance_rollers", LinearBearings(stiffness))
+    drive = kind(rv, "shaft held")
+    drive = replace(drive, crank=replace(drive.crank, support=None, number=cranks))
+    model = HalfSpace().prepare(drive).model
+    found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+    for number, part in enumerate(disc_responses(found.response)):
+        on_disc = -np.einsum("bi,bij->bj", part.pin_load, part.flank.gradient)
+        resultant, moment = on_disc[:, X] + 1j * on_disc[:, Y], on_disc[:, DISC_ROTATION]
+        place = model.discs[number].geometry.placement
+        rotation = found.pose[:, model.coordinates.columns(number)[DISC_ROTATION]]
+        arm = np.array(drive.crank.places) * np.exp(1j * rotation)[:, None]
+        radius = drive.crank.circle_radius
+        force = bearing_forces(model, ANGLES, found.response)[:, number] * place.eccentric_directions(ANGLES)
+        left = (force + resultant[:, None] / cranks) / (arm / radius)
+        size = np.abs(resultant).max()
+        np.testing.assert_allclose(left.imag, (-moment / (cranks * radius))[:, None] * np.ones(cranks), atol=1e-9 * size)
+        expected = -stiffness * radius * (1.0 - np.cos(rotation))[:, None] * np.ones(cranks)
+        np.testing.assert_allclose(left.real, expected, atol=1e-9 * size)
+        assert np.min(np.abs(moment)) > 1e3 * radius  # there is something to share
+
+
+def stored(model, response, pose):
+    """ΣU of contacts and supports, N·mm, and ∂U/∂ρ of every wheel pin, N, by differences of the law alone."""
+    total, slopes = np.zeros(pose.shape[0]), []
+    for disc, part in zip(model.discs, disc_responses(response), strict=True):
+        laws, flank = disc.roller_laws, part.flank
+        total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
+        total = total + 0.5 * disc.hole_stiffness * (np.maximum(part.holes.approach, 0.0) ** 2).sum(axis=1)
+        total = total + laws.inner.energy(part.rollers.inner_approach, laws.inner_radius).sum(axis=1)
+        total = total + laws.outer.energy(part.rollers.outer_approach, laws.outer_radius).sum(axis=1)
+        step = 1e-4 * flank.effective_radius
+        ends = [disc.pin_law.energy(flank.approach, flank.effective_radius + side * step) for side in (1.0, -1.0)]
+        slopes.append((ends[0] - ends[1]) / (2.0 * step))
+    if isinstance(model, Reducer) and model.supports is not None:
+        total = total + 0.5 * np.einsum("bi,ij,bj->b", pose, model.supports, pose)
+    return total, np.concatenate(slopes, axis=1)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_virtual_work_at_every_position(rv, name):
+    """T_C + T_W (1/u + w′) = U′ − Σ ∂U/∂ρ ρ′, T_C of all cranks with their cages, the supports' energy in U."""
+    drive = kind(rv, name)
+    model = HalfSpace().prepare(drive).model
+    angle = ANGLES + 0.05
+    centre = solve_at_output(model, drive, angle, drive.load.torque)
+    crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
+    slope = stored(model, centre.response, centre.pose)[1]
+
+    def left(step):
+        ends = []
+        for side in (1.0, -1.0):
+            found = solve_at_output(model, drive, angle + side * step, drive.load.torque, centre.pose)
+            energy = stored(model, found.response, found.pose)[0]
+            ends.append((energy, found.pose[:, WHEEL_ANGLE], found.response.flank.effective_radius))
+        (up, wheel_up, radius_up), (down, wheel_down, radius_down) = ends
+        turn = (wheel_up - wheel_down) / (2.0 * step)
+        work = (up - down) / (2.0 * step) - (slope * (radius_up - radius_down) / (2.0 * step)).sum(axis=1)
+        return crank + centre.wheel_moment * (1.0 / drive.reduction_ratio + turn) - work
+
+    # differences of second order, taken to fourth by two of them (Richardson)
+    closed = (4.0 * left(1e-4) - left(2e-4)) / 3.0
+    np.testing.assert_allclose(closed / drive.load.torque, 0.0, atol=1e-7)
+
+
+@dataclass(frozen=True)
+class HeldRadius:
+    """The law at held ρ: its dependence on the place is no force."""
+
+    law: object
+    radius: np.ndarray
+
+    def load_and_stiffness(self, approach, effective_radius):
+        return self.law.load_and_stiffness(approach, self.radius)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_tangent_is_the_slope_of_the_force(rv, name):
+    drive = kind(rv, name)
+    model = HalfSpace().prepare(drive).model
+    balanced = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
+    parts = zip(model.discs, disc_responses(balanced.response), strict=True)
+    held = tuple(replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts)
+    fixed, tangent = Reducer(discs=held, supports=support_stiffness(drive)), balanced.response.tangent[0]
+    lever, step = lever_arms(model), 1e-7
+    scaled = tangent / np.outer(lever, lever)
+    for column in range(lever.size):
+        moved = [balanced.pose + side * step * (np.arange(lever.size) == column) / lever[column] for side in (1, -1)]
+        up, down = (fixed.respond(ANGLES[:1], each).force[0] / lever for each in moved)
+        # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
+        np.testing.assert_allclose((up - down) / (2 * step), scaled[:, column], rtol=0.0, atol=2e-6 * np.abs(scaled).max())
+
+
+@pytest.mark.parametrize("name", ["cranks", "holes"])
+def test_numbering_of_the_cranks_is_a_matter_of_names(rv, name):
+    """The first crank a pitch further on: the same drive with other numbers, rollers with theirs."""
+    drive = with_fields(kind(rv, name), {"crank.of.1.eccentricity_error": 0.004, "crank.of.5.phase_error": 2e-3})
+    pitch = 2.0 * np.pi / 3.0
+    turned = with_fields(drive, {"crank.angle": drive.crank.angle + pitch})
+    of = tuple(replace(entry, crank=(entry.crank - 1) % 3) for entry in drive.crank.of)
+    turned = replace(turned, crank=replace(turned.crank, of=of))
+    first, second = analyse(drive, ANGLES), analyse(turned, ANGLES)
+    np.testing.assert_allclose(first.full.response.pin_load, second.full.response.pin_load, rtol=0.0, atol=LOAD)
+    np.testing.assert_allclose(
+        np.roll(first.bearing_tangential, -1, axis=2), second.bearing_tangential, rtol=0.0, atol=LOAD
+    )
+    assert np.ptp(first.bearing_tangential, axis=2).min() > 1e3 * LOAD
+
+
+def test_reverse_is_the_mirror_image(rv):
+    drive = with_fields(kind(rv, "cranks"), {"crank.of.1.phase_error": 1e-3, "crank.of.2.phase_error": 2e-3})
+    mirrored = {"load.direction": "cw", "crank.of.1.phase_error": -2e-3, "crank.of.2.phase_error": -1e-3}
+    forward, reverse = analyse(drive, -ANGLES), analyse(with_fields(drive, mirrored), ANGLES)
+    swapped = [0, 2, 1]  # cranks above and below the axis of the first
+    np.testing.assert_allclose(
+        forward.bearing_tangential, -reverse.bearing_tangential[..., swapped], rtol=0.0, atol=LOAD
+    )
+    np.testing.assert_allclose(forward.bearing_radial, reverse.bearing_radial[..., swapped], rtol=0.0, atol=LOAD)
+    np.testing.assert_allclose(forward.transmission_error, -reverse.transmission_error, rtol=0.0, atol=1e-11)
+
+
+def test_first_stage_and_carrier(rv):
+    """i = 1 + i₁ z_P; |T_wheel| = T_out (i − 1)/i in the mean, the sun's moment position by position; TE = −w (i − 1)/i."""
+    geared, carried = rv, kind(rv, "carrier")
+    ratio = 1.0 + 2.0 * 40.0
+    assert (geared.transmission_ratio, carried.transmission_ratio) == (ratio, -40.0)
+    found = analyse(geared, position_angles(24))
+    assert np.mean(found.full.wheel_moment) == pytest.approx(-rv.load.torque * (ratio - 1.0) / ratio, rel=2e-4)
+    np.testing.assert_allclose(
+        found.transmission_error, -(ratio - 1.0) / ratio * found.full.pose[:, WHEEL_ANGLE], rtol=1e-14
+    )
+    # by hand: the pinions of the cranks, z₂ = i₁ z₁, give the sun their moments over i₁, turning the other way
+    cranks = crank_moments(found.model, found.full.crank_angle, found.full.pose, found.full.response).sum(axis=1)
+    np.testing.assert_allclose(found.full.wheel_moment - cranks / 2.0 + rv.load.torque, 0.0, atol=1e-8 * rv.load.torque)
+    alone = analyse(carried, ANGLES)
+    np.testing.assert_allclose(alone.full.wheel_moment, -rv.load.torque, rtol=1e-12)
+    np.testing.assert_array_equal(alone.transmission_error, -alone.full.pose[:, WHEEL_ANGLE])
+
+
+def test_shaft_under_opposite_forces():
+    """Two forces 180° apart at ±a on supports at ±b: bending F a (b − a)²/(6 E I b), and the springs' share F a²/(2 k b²)."""
+    a, b, diameter, modulus, k = 7.0, 22.0, 20.0, 206e3, 4e5
+    rigidity = modulus * np.pi * diameter**4 / 64.0
+    found = shaft_flexibility([-a, a], (-b, b), (k, k), diameter, modulus)
+    deflection = found @ np.array([-1.0, 1.0])
+    expected = a * a * (b - a) ** 2 / (6.0 * rigidity * b) * 2.0 + a * a / (2.0 * k * b * b) * 2.0
+    assert deflection[1] == pytest.approx(expected, rel=1e-12)
+    assert deflection[0] == pytest.approx(-expected, rel=1e-12)
+
+
+def test_overhanging_shaft_is_a_cantilever_behind_a_turned_support():
+    """A force at c beyond the second support: c³/3EI and the slope of the span there, c² L/3EI."""
+    span, c, rigidity = 30.0, 11.0, 2e5 * np.pi * 12.0**4 / 64.0
+    found = shaft_flexibility([span + c], (0.0, span), (1e30, 1e30), 12.0, 2e5)
+    assert found[0, 0] == pytest.approx(c * c * (span + c) / (3.0 * rigidity), rel=1e-10)
+
+
+def test_stiff_supports_tend_to_rigid_ones(rv):
+    """What supports add to the wheel's angle falls with their flexibility, in first order."""
+    rigid = analyse(kind(rv, "rigid"), ANGLES).full.pose[:, WHEEL_ANGLE]
+
+    def added(factor):
+        modulus = {"materials.crankshaft.youngs_modulus": 206e3 * factor}
+        support = replace(SUPPORT, stiffness=tuple(factor * k for k in SUPPORT.stiffness))
+        drive = with_fields(kind(rv, "cranks"), modulus)
+        drive = replace(drive, crank=replace(drive.crank, support=support))
+        wheel = replace(drive.pin_wheel, support_stiffness=5e5 * factor)
+        return analyse(replace(drive, pin_wheel=wheel), ANGLES).full.pose[:, WHEEL_ANGLE] - rigid
+
+    # 1 % and 0.5 % of the flexibility: what is of second order is of that size
+    np.testing.assert_allclose(added(100.0) / added(200.0), 2.0, rtol=0.02)
+    assert np.all(np.abs(added(1.0)) > 1e-5)
+
+
+def test_crank_stiffness_belongs_to_the_planes_of_the_discs(rv):
+    """Planes count where shafts bend: the farther apart, the farther an end moves when the shaft tilts on its bearings."""
+    drive = kind(rv, "cranks")
+    wide = with_fields(drive, {"disc.planes": (-15.0, 15.0)})
+    assert np.linalg.norm(crank_stiffness(wide)) < np.linalg.norm(crank_stiffness(drive))
+    moved = analyse(wide, ANGLES).transmission_error - analyse(drive, ANGLES).transmission_error
+    assert np.all(np.abs(moved) > 1e-6)
+
+
+def test_bore_errors_are_forced_on_the_cranks(rv):
+    """A bore outward by d: its crank and the others carry it against each other, in first order in d."""
+    drive = with_fields(kind(rv, "rigid"), {"clearance.bearing": 0.0})
+    plain = analyse(drive, ANGLES).bearing_radial
+
+    def change(size):
+        errors = {"disc.of.0.bore_errors.radial": (size, 0.0, 0.0), "disc.of.0.bore_errors.tangential": (0.0, size, 0.0)}
+        return analyse(with_fields(drive, errors), ANGLES).bearing_radial - plain
+
+    small, double = change(1e-5), change(2e-5)
+    np.testing.assert_allclose(double, 2.0 * small, rtol=0.0, atol=0.02 * np.abs(double).max())
+    assert np.abs(small[:, 0]).max() > np.abs(small[:, 1]).max()  # disc 1 feels it through the wheel alone
+
+
+@pytest.mark.parametrize(
+    ("cranks", "teeth", "alike"), [(2, 39, True), (3, 39, False), (4, 39, True), (2, 40, False), (3, 40, False)]
+)
+def test_equal_parts_by_counting(rv, cranks, teeth, alike):
+    """Half a turn of phase is 1/2 + j z_C/s turns of the flank's pitch: whole for an even number of cranks and odd teeth."""
+    drive = replace(
+        rv,
+        crank=replace(rv.crank, number=cranks),
+        disc=replace(rv.disc, number_of_teeth=teeth),
+        pin_wheel=replace(rv.pin_wheel, number_of_pins=teeth + 1),
+    )
+    counted = any(abs((0.5 + j * teeth / cranks) % 1.0) < 1e-9 for j in range(cranks))
+    assert equal_parts(drive) == counted == alike
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"crank.circle_radius": 70.0}, r"crank\.circle_radius = 70 mm: bores cut through the root circle .* less than"),
+        ({"crank.circle_radius": 15.0}, r"crank\.circle_radius = 15 mm: neighbouring bores .* greater than 20\.7892 mm"),
+        ({"crank.number": 1}, r"pin_shaft: must be given with one crank"),
+        ({"crank.number": 1}, r"crank\.circle_radius = 42 mm: must be left out with one crank"),
+        ({"crank.number": 1}, r"installation\.first_stage_ratio = 2: must be left out with one crank"),
+        ({"crank.number": 3, "clearance.pin_hole": 0.01}, r"clearance\.pin_hole = 0\.01 mm: must be left out without a pin"),
+        ({"crank.support.positions": (22.0, -22.0)}, r"crank\.support\.positions holds 22 and -22 mm: must ascend"),
+        ({"crank.support.diameter": 27.0}, r"crank\.support\.diameter = 27 mm: must be at most 26 mm"),
+        ({"crank.support.stiffness": (0.0, 1e5)}, r"crank\.support\.stiffness"),
+        ({"disc.of.0.bore_errors.radial": (0.001,)}, r"bore_errors\.radial has 1 values: must have 3"),
+        ({"pin_shaft.stiffness": 1e5}, r"pin_shaft\.stiffness: there is no pin_shaft"),
+        ({"disc.hole_errors.radial": (0.001,) * 3}, r"disc\.hole_errors\.radial: there is no pin_shaft"),
+        ({"crank.of.6.phase_error": 0.001}, r"crank\.of\.6: there is no eccentric 6; disc\.number_of_discs = 2, crank\.number = 3"),
+    ],
+)
+def test_bad_input_is_one_clear_line(rv, words, message):
+    with pytest.raises(DriveError, match=message) as caught:
+        with_fields(rv, words)
+    assert all("\n" not in problem for problem in caught.value.problems)
