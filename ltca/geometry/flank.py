@@ -149,9 +149,10 @@ class FlankProfile:
         c, dc, ddc : arrays of complex, same shape
             mm, mm/rad, mm/rad².
         """
-        return self._locus(unit(parameter))
+        return self.at(unit(parameter))
 
-    def _locus(self, direction: ComplexArray) -> CurvePoints:
+    def at(self, direction: ComplexArray) -> CurvePoints:
+        """Return the design trochoid as `locus` does, at e^{iθ}."""
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))
@@ -182,7 +183,7 @@ class FlankProfile:
         CurvePoints
             The trochoid; with a deviation the flank itself.
         """
-        c, dc, ddc = self._locus(direction)
+        c, dc, ddc = self.at(direction)
         if self.deviation is None:
             return CurvePoints(c + self.centre, dc, ddc)
         # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
