@@ -141,7 +141,9 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
     designed = _hollow_radius(float(profile.locus_curvature(np.zeros(1))[0]), profile.offset)
     theta, actual = 0.0, designed
     if profile.deviation is not None:
-        waves = max((drive.pin_wheel.number_of_pins, *profile.deviation.orders, len(drive.disc.profile_errors.parameter)))
+        waves = max(
+            (drive.pin_wheel.number_of_pins, *profile.deviation.orders, len(drive.disc.profile_errors.parameter))
+        )
         places, direction = _looked_at(profile.generating_radius, profile.eccentricity, profile.reduction_ratio, waves)
         design, flank = profile.at(direction), profile.contact_curve(direction)
         forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
