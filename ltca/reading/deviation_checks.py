@@ -138,13 +138,15 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
     profile = FlankProfile.of_drive(drive)
     # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
     # is hollow at all.
-    designed = _hollow_radius(float(profile.locus_curvature(np.zeros(1))[0]), profile.offset)
+    designed = _hollow_radius(float(profile.locus_curvature(np.zeros(1))[0]), float(profile.offset))
     theta, actual = 0.0, designed
     if profile.deviation is not None:
         waves = max(
             (drive.pin_wheel.number_of_pins, *profile.deviation.orders, len(drive.disc.profile_errors.parameter))
         )
-        places, direction = _looked_at(profile.generating_radius, profile.eccentricity, profile.reduction_ratio, waves)
+        places, direction = _looked_at(
+            float(profile.generating_radius), float(profile.eccentricity), profile.reduction_ratio, waves
+        )
         design, flank = profile.at(direction), profile.contact_curve(direction)
         forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
         if np.min(forward) <= 0.0:
@@ -152,7 +154,10 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
             yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
             return
         hollowest = np.argmin(curvature := flank.curvature)
-        theta, actual = float(places[hollowest]), _hollow_radius(float(curvature[hollowest]), profile.contact_offset)
+        theta, actual = (
+            float(places[hollowest]),
+            _hollow_radius(float(curvature[hollowest]), float(profile.contact_offset)),
+        )
     yield from _hollow(drive, designed, actual, theta)
 
 
