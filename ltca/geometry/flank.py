@@ -32,6 +32,8 @@ ComplexArray = NDArray[np.complex128]
 
 SETTLED = 1e-8
 """Step of Newton's method, rad, that leaves a contact point wrong by less than round-off: convergence is quadratic."""
+THERE = 1e-13
+"""Step, rad, that is round-off itself: the curve is that of the place before it."""
 
 
 class CurvePoints(NamedTuple):
@@ -298,7 +300,12 @@ class FlankProfile:
             value = tangent.real * away.real + tangent.imag * away.imag
             slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
             # Beyond a centre of curvature the slope is negative, the point next to a largest distance: leave it.
-            step = (value / np.maximum(np.abs(slope), 1e-3 * speed)).clip(-bound, bound)
+            safe = np.maximum(np.abs(slope), 1e-3 * speed)
+            step = value / safe
+            if iteration:  # Halley's correction, the bend of g from the last two slopes
+                bend = np.divide(slope_before - slope, last, out=np.zeros(theta.shape), where=last != 0.0)
+                step /= 1.0 - (0.5 * step * bend / safe).clip(-0.5, 0.5)
+            step = step.clip(-bound, bound)
             if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
                 bracketed = np.isfinite(high - low)
@@ -308,10 +315,12 @@ class FlankProfile:
                 outside = bracketed & far
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta -= step
-            direction = direction * small_turn(-step)
+            slope_before, last = slope, step
             history.append(float(np.max(np.abs(step), initial=0.0)))
+            if history[-1] > THERE:
+                direction = direction * small_turn(-step)
             if history[-1] <= SETTLED:
-                found = NearestPoint(theta, self.contact_curve(direction))
+                found = NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
                 return self._nearer_side(point, found) if across_root else found
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
