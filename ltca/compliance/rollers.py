@@ -21,6 +21,8 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
+SETTLED = 1e-6
+"""Last change of a share: loads follow it in line, and what that leaves out is its square."""
 
 Law = TypeVar("Law", bound=LoadLaw)
 
@@ -178,13 +180,16 @@ def _balance_pressed(
         following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
         following = np.where(imbalance != 0.0, following, share)
         history.append(float(np.max(np.abs(following - share), initial=0.0)))
-        if history[-1] <= 1e-11:
+        if history[-1] <= SETTLED:
             break
         share = following
     else:
         raise ConvergenceError("rollers do not balance between the races; change of their share", history)
+    moved = (following - share) * total
+    inner_approach, inner_load = inner_approach + moved, inner_load + inner_stiffness * moved
+    outer_approach, outer_load = outer_approach - cosine * moved, outer_load - outer_stiffness * cosine * moved
     tangent = _eliminated_tangent(direction, outward, cosine, length, outer_load, outer_stiffness, safe)
-    return share, inner_approach, outer_approach, inner_load, outer_load, outward, tangent
+    return following, inner_approach, outer_approach, inner_load, outer_load, outward, tangent
 
 
 def _eliminated_tangent(
