@@ -39,7 +39,7 @@ class Response:
         N.
     warm_start : array of object, shape (positions,)
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
-        wants nothing. It saves work and alters no answer.
+        wants nothing. It saves work and alters no answer. Of several discs shape (positions, discs).
     """
 
     force: FloatArray
@@ -220,7 +220,8 @@ def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -
 
 def take_positions(part: Any, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Any:
     """Return what belongs to some of the positions: arrays, or tuples and dataclasses of them."""
-    return _of_arrays(lambda array: array[rows], part)
+    numbers = np.nonzero(rows)[0] if rows.dtype == bool else rows
+    return _of_arrays(lambda array: array.take(numbers, axis=0), part)
 
 
 def put_positions(part: Any, rows: NDArray[np.intp], other: Any) -> Any:

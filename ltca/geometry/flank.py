@@ -291,6 +291,7 @@ class FlankProfile:
         direction = unit(theta)
         bound = 0.4 * np.pi / self.reduction_ratio
         low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
+        last = slope_before = np.zeros(theta.shape)
         history: list[float] = []
         for iteration in range(limit):
             curve = self.contact_curve(direction)
