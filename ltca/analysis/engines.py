@@ -21,7 +21,7 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
-from ltca.compliance.response import ComplianceModel
+from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
@@ -111,7 +111,7 @@ class _FromTables:
         near = solve_at_output(self.tables, self.drive, crank_angle, torque, start)
         # Grids wider than the bodies are curved have no separation: refused before they are laid.
         check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
-        return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose)
+        return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.balance`
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
@@ -41,7 +41,7 @@ class Response:
         N.
     warm_start : array of object, shape (positions,)
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
-        wants nothing. It saves work and alters no answer.
+        wants nothing. It saves work and alters no answer. Of several discs shape (positions, discs).
     """
 
     force: FloatArray
@@ -162,35 +162,9 @@ class Start:
         """Return the start that a response gives for the next pose."""
         return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
 
-    @classmethod
-    def nothing(cls) -> Start:
-        """Return the start of no position."""
-        return cls(parameter=np.zeros((0, 0)), share=np.zeros((0, 0)), warm_start=np.zeros(0, dtype=object))
-
-    def enlarged(self, positions: int, rows: NDArray[np.intp], other: Start) -> Start:
-        """Return the start of all positions with some taken from another start; nothing is known of those of neither."""
-        if self.warm_start.size == positions:
-            return self.replaced(rows, other)
-        whole = Start(
-            parameter=np.zeros((positions, other.parameter.shape[1])),
-            share=np.zeros((positions, other.share.shape[1])),
-            warm_start=np.full(positions, None, dtype=object),
-        )
-        return whole.replaced(rows, other)
-
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
         return Start(parameter=self.parameter[rows], share=self.share[rows], warm_start=self.warm_start[rows])
-
-    def replaced(self, rows: NDArray[np.intp] | NDArray[np.bool_], other: Start) -> Start:
-        """Return a copy with some positions taken from another start, given for just these."""
-        fresh = Start(parameter=self.parameter.copy(), share=self.share.copy(), warm_start=self.warm_start.copy())
-        fresh.parameter[rows], fresh.share[rows], fresh.warm_start[rows] = (
-            other.parameter,
-            other.share,
-            other.warm_start,
-        )
-        return fresh
 
 
 def assemble_response(
@@ -276,14 +250,35 @@ def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -
     return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))
 
 
+def take_positions(part: Any, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Any:
+    """Return what belongs to some of the positions: arrays, or tuples and dataclasses of them."""
+    numbers = np.nonzero(rows)[0] if rows.dtype == bool else rows
+    return _of_arrays(lambda array: array.take(numbers, axis=0), part)
+
+
+def put_positions(part: Any, rows: NDArray[np.intp], other: Any) -> Any:
+    """Return a copy with some positions taken from another answer, given for just these; see `take_positions`."""
+
+    def put(array: NDArray[Any], fresh: NDArray[Any]) -> NDArray[Any]:
+        copy = array.copy()
+        copy[rows] = fresh
+        return copy
+
+    return _of_arrays(put, part, other)
+
+
 def join_positions(parts: Sequence[Any]) -> Any:
-    """Return what belongs to several groups of positions as that of all: arrays, or tuples and dataclasses of them, joined."""
+    """Return what belongs to several groups of positions as that of all, group after group; see `take_positions`."""
     if len(parts) == 1:
         return parts[0]
+    return _of_arrays(lambda *arrays: np.concatenate(arrays), *parts)
+
+
+def _of_arrays(function: Callable[..., NDArray[Any]], *parts: Any) -> Any:
     first = parts[0]
     if isinstance(first, np.ndarray):
-        return np.concatenate(parts)
+        return function(*parts)
     if isinstance(first, tuple):
-        return tuple(join_positions(items) for items in zip(*parts, strict=True))
-    joined = {item.name: join_positions([getattr(part, item.name) for part in parts]) for item in fields(first)}
-    return type(first)(**joined)
+        return tuple(_of_arrays(function, *items) for items in zip(*parts, strict=True))
+    changed = {item.name: _of_arrays(function, *(getattr(part, item.name) for part in parts)) for item in fields(first)}
+    return type(first)(**changed)

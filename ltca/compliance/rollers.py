@@ -21,6 +21,10 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
+SETTLED = 1e-6
+"""Last change of a share by Newton's method: loads follow it in line, and what that leaves out is its square."""
+CLOSED = 1e-11
+"""Last change of a share by bisection."""
 
 Law = TypeVar("Law", bound=LoadLaw)
 
@@ -173,18 +177,22 @@ def _balance_pressed(
         low = np.where(imbalance < 0.0, share, low)
         high = np.where(imbalance > 0.0, share, high)
         safe = np.where(stiffness > 0.0, stiffness, 1.0)
-        following = share - imbalance / (safe * total)
+        newton = share - imbalance / (safe * total)
         # Newton within the bracket, bisection where it leaves it.
-        following = np.where((following >= low) & (following <= high), following, 0.5 * (low + high))
+        following = np.where((newton >= low) & (newton <= high), newton, 0.5 * (low + high))
         following = np.where(imbalance != 0.0, following, share)
-        history.append(float(np.max(np.abs(following - share), initial=0.0)))
-        if history[-1] <= 1e-11:
+        change = np.abs(following - share)
+        history.append(float(np.max(change, initial=0.0)))
+        if np.all(change <= np.where(following == newton, SETTLED, CLOSED)):
             break
         share = following
     else:
         raise ConvergenceError("rollers do not balance between the races; change of their share", history)
+    inward = (following - share) * total
+    inner_approach, inner_load = inner_approach + inward, inner_load + inner_stiffness * inward
+    outer_approach, outer_load = outer_approach - cosine * inward, outer_load - outer_stiffness * cosine * inward
     tangent = _eliminated_tangent(direction, outward, cosine, length, outer_load, outer_stiffness, safe)
-    return share, inner_approach, outer_approach, inner_load, outer_load, outward, tangent
+    return following, inner_approach, outer_approach, inner_load, outer_load, outward, tangent
 
 
 def _eliminated_tangent(

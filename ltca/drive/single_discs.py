@@ -59,6 +59,8 @@ def is_single(drive: Drive) -> bool:
 
 def without_own(drive: Drive) -> Drive:
     """Return the drive with discs that have nothing of their own."""
+    if not drive.disc.of and not drive.crank.of:
+        return drive
     return replace(drive, disc=replace(drive.disc, of=()), crank=replace(drive.crank, of=()))
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Response
+from ltca.compliance.response import ComplianceModel, Response, Start
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import at_rows, disc_responses, geometries
@@ -96,7 +96,8 @@ def solve_equilibrium(
     model: ComplianceModel,
     crank_angle: FloatArray,
     wheel_moment: FloatArray | float,
-    start: FloatArray | None = None,
+    start: FloatArray | Equilibrium | None = None,
+    inner: Start | None = None,
 ) -> Equilibrium:
     """Find the pose in which every position of a batch balances.
 
@@ -108,8 +109,11 @@ def solve_equilibrium(
         Held crank angles φ_C, rad.
     wheel_moment : float or array, shape (positions,)
         External moment on the wheel, ccw positive, N·mm.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
+    start : array, shape (positions, coordinates), or Equilibrium, optional
+        Poses to start from, or what this model answered under other moments; by default the discs on the inner-race
+        centres and the wheel turned to first contact.
+    inner : Start, optional
+        Inner unknowns near the poses to start from.
 
     Returns
     -------
@@ -125,40 +129,49 @@ def solve_equilibrium(
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     lever = lever_arms(model)
     load = np.abs(moment) / lever[..., WHEEL_ANGLE]
-    first = leading_positions(model.discs[0].geometry, angle, moment)
-    pose = np.zeros((angle.size, lever.shape[-1]))
-    if start is None:
-        pose[first] = _at_first_contact(at_rows(model, first), angle[first], moment[first])
+    if isinstance(start, Equilibrium):
+        search = Search(model, angle, moment, lever, load, start.pose.copy())
+        left = search.iterate(ITERATIONS, begin=start.response)
     else:
-        pose[:] = start
-    search = Search(model, angle, moment, lever, load, pose)
-    left = search.iterate(ITERATIONS, first)
-    rest = np.setdiff1d(np.arange(angle.size), first)
-    if rest.size:
-        # A start that leads somewhere in a few steps is as good as what lies between neighbours.
-        between = start is None or np.median(search.iterations[first]) > FEW
-        known = np.setdiff1d(first, left)
-        inner = None
-        if between and known.size:
-            pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
-            ratio = model.discs[0].geometry.placement.reduction_ratio
-            inner = start_between(angle[known], search.known.take(known), angle[rest], ratio)
-        elif start is None:
-            pose[rest] = _at_first_contact(at_rows(model, rest), angle[rest], moment[rest])
-        left = np.union1d(left, search.iterate(ITERATIONS, rest, inner))
+        search = Search(model, angle, moment, lever, load, np.zeros((angle.size, lever.shape[-1])))
+        left = _solve_by_neighbours(search, start, inner)
     if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
     if left.size:
         raise _failure(search, left)
-    response, gradient, _ = search.evaluate(np.arange(angle.size), search.pose, search.known)
     return Equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(moment),
         pose=search.pose,
-        response=response,
-        residual=np.max(np.abs(gradient), axis=1),
+        response=search.contacts()[1],
+        residual=search.residual,
         iterations=search.iterations,
     )
+
+
+def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start | None) -> NDArray[np.intp]:
+    """Balance leading positions from their starts, then the others from between them; return what does not balance."""
+    model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
+    first = leading_positions(model.discs[0].geometry, angle, moment)
+    if start is None:
+        pose[first] = _at_first_contact(at_rows(model, first), angle[first], moment[first])
+    else:
+        pose[:] = start
+    left = search.iterate(ITERATIONS, first, None if inner is None else inner.take(first))
+    rest = np.setdiff1d(np.arange(angle.size), first)
+    if rest.size == 0:
+        return left
+    begin = None if inner is None else inner.take(rest)
+    # A start that leads somewhere in a few steps is as good as what lies between neighbours.
+    between = start is None or np.median(search.iterations[first]) > FEW
+    if between and search.balanced:
+        known, contacts = search.contacts()
+        pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
+        ratio = model.discs[0].geometry.placement.reduction_ratio
+        begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
+    elif start is None:
+        pose[rest] = _at_first_contact(at_rows(model, rest), angle[rest], moment[rest])
+    return np.union1d(left, search.iterate(ITERATIONS, rest, begin))
 
 
 def _at_first_contact(model: ComplianceModel, angle: FloatArray, moment: FloatArray) -> FloatArray:
@@ -204,15 +217,17 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
         ratio[going[lost]] = np.sqrt(ratio[going[lost]])
         there = going[found][target[found] == 1.0]
         if there.size:
-            search.pose[rows[there]] = pose[there]
-            search.known = search.known.replaced(rows[there], part.known.take(found[target[found] == 1.0]))
+            kept, contacts = part.contacts()
+            own = np.isin(kept, found[target[found] == 1.0])
+            search.pose[rows[there]], search.residual[rows[there]] = pose[there], part.residual[kept[own]]
+            search.keep(rows[going[kept]], contacts, own)
         going = going[(level[going] > 1.0) & (ratio[going] > LEAST_RATIO)]
     return np.asarray(rows[level != 1.0])
 
 
 def _below_round_off(search: Search, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Whether loads are so small that round-off of the approaches, times their stiffness, is no small part of them."""
-    _, _, tangent = search.evaluate(rows, search.pose[rows], None)
+    _, tangent = search.scaled(rows, search.evaluate(rows, search.pose[rows], None))
     return np.asarray(search.round_off(tangent) > ROUND_OFF_BOUND * search.load[rows])
 
 

@@ -8,12 +8,18 @@ cycle is possible between contacts that take turns.
 
 from __future__ import annotations
 
-from typing import cast
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import BatchModel, ComplianceModel, Response, Start
+from ltca.compliance.response import (
+    ComplianceModel,
+    Response,
+    Start,
+    join_positions,
+    put_positions,
+    take_positions,
+)
+from ltca.equilibrium.reducer import at_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -52,8 +58,9 @@ class Search:
 
     Notes
     -----
-    ``history`` are the residuals of each iteration, N, ``iterations`` the number for each position, ``known`` the inner
-    unknowns at the poses, and ``slipped`` tells where wheel or disc had turned by more than half a pin pitch.
+    ``history`` are the residuals of each iteration, N, ``iterations`` the number for each position, ``balanced`` the
+    contacts of those that balance, group by group, and ``slipped`` tells where wheel or disc had turned by more than half
+    a pin pitch.
     """
 
     def __init__(
@@ -77,30 +84,31 @@ class Search:
         self.residual = np.full(angle.size, np.inf)
         self.iterations = np.zeros(angle.size, dtype=np.intp)
         self.slipped = np.zeros(angle.size, dtype=bool)
-        self.known = Start.nothing()
+        self.balanced: list[tuple[NDArray[np.intp], Response]] = []
 
     def levers(self, rows: NDArray[np.intp]) -> FloatArray:
         """Return the lever arms of some positions: one row for all where the drives are the same."""
         return self.lever[rows] if self.batch else self.lever
 
-    def evaluate(
-        self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None
-    ) -> tuple[Response, FloatArray, FloatArray]:
-        """Return the response, the scaled gradient and the scaled tangent (forces and lengths only)."""
-        whole = not self.batch or rows.size == self.angle.size
+    def evaluate(self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None) -> Response:
+        """Return the contacts of some positions at poses."""
+        model = self.model if rows.size == self.angle.size else at_rows(self.model, rows)
+        return model.respond(self.angle[rows], pose, start)
+
+    def scaled(self, rows: NDArray[np.intp], response: Response) -> tuple[FloatArray, FloatArray]:
+        """Return the scaled gradient and the scaled tangent (forces and lengths only)."""
         lever = self.levers(rows)
-        model = self.model if whole else cast(BatchModel, self.model).take(rows)
-        response = model.respond(self.angle[rows], pose, start)
         gradient = response.force.copy()
         gradient[:, WHEEL_ANGLE] -= self.moment[rows]
         gradient /= lever
         if np.isnan(gradient).any():
             row = rows[np.isnan(gradient).any(axis=1)][0]
             raise ConvergenceError(f"contact forces at crank angle {self.angle[row]:.6g} rad are no numbers")
-        tangent = response.tangent / (lever[..., :, None] * lever[..., None, :])
-        return response, gradient, tangent
+        return gradient, response.tangent / (lever[..., :, None] * lever[..., None, :])
 
-    def iterate(self, most: int, rows: NDArray[np.intp] | None = None, known: Start | None = None) -> NDArray[np.intp]:
+    def iterate(
+        self, most: int, rows: NDArray[np.intp] | None = None, begin: Start | Response | None = None
+    ) -> NDArray[np.intp]:
         """Move positions towards balance; return those of them that do not balance, ascending.
 
         Parameters
@@ -109,29 +117,30 @@ class Search:
             Iterations.
         rows : array of int, optional
             Which positions, ascending; all by default.
-        known : Start, optional
-            Inner unknowns near the poses of these positions.
+        begin : Start or Response, optional
+            Inner unknowns near the poses of these positions, or their contacts there.
         """
         active = asked = np.arange(self.angle.size) if rows is None else rows
         first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
         damping, bound = np.full(self.angle.size, 1e-6), np.full(self.angle.size, first_bound)
-        response, gradient, tangent = self.evaluate(active, self.pose[active], known)
-        start = Start.after(response)
-        whole = active.size == self.angle.size
-        self.known = start if whole else self.known.enlarged(self.angle.size, active, start)
+        response = begin if isinstance(begin, Response) else self.evaluate(active, self.pose[active], begin)
+        gradient, tangent = self.scaled(active, response)
         residual = self.residual
         residual[active] = np.max(np.abs(gradient), axis=1)
         for _ in range(most):
             self.history.append(residual.copy())
             # A residual that is no number does not balance either.
-            going = ~(residual[active] <= self.accepted(active, tangent)) & ~self.slipped[active]
-            active, start = active[going], start.take(going)
-            gradient, tangent = gradient[going], tangent[going]
+            balanced = residual[active] <= self.accepted(active, tangent)
+            going = ~(balanced | self.slipped[active])
+            if not going.all():
+                self.keep(active, response, balanced & ~self.slipped[active])
+                active, response = active[going], take_positions(response, going)
+                gradient, tangent = gradient[going], tangent[going]
             if active.size == 0:
                 break
             self.iterations[active] += 1
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
-            taken, gradient, tangent, start, fraction = self.walk(active, step, slope, start)
+            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.after(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = np.max(np.abs(gradient), axis=1)
@@ -139,8 +148,22 @@ class Search:
             bound[active] = bound[active].clip(1e-3 * first_bound, max(first_bound, 0.1 * self.smallest_pin))
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
-            self.known = self.known.replaced(active, start)
         return np.union1d(active, asked[self.slipped[asked]])
+
+    def keep(self, rows: NDArray[np.intp], response: Response, balanced: NDArray[np.bool_]) -> None:
+        """Remember the contacts of those of some positions that balance."""
+        if balanced.all():
+            self.balanced.append((rows, response))
+        elif balanced.any():
+            self.balanced.append((rows[balanced], take_positions(response, balanced)))
+
+    def contacts(self) -> tuple[NDArray[np.intp], Response]:
+        """Return the positions that balance so far, ascending, and their contacts."""
+        if len(self.balanced) > 1:
+            rows = np.concatenate([rows for rows, _ in self.balanced])
+            order = np.argsort(rows)
+            self.balanced = [(rows[order], take_positions(join_positions([part for _, part in self.balanced]), order))]
+        return self.balanced[0]
 
     def round_off(self, tangent: FloatArray) -> FloatArray:
         """Return what round-off of the approaches makes of the residual, N."""
@@ -154,15 +177,15 @@ class Search:
 
     def walk(
         self, rows: NDArray[np.intp], step: FloatArray, slope: FloatArray, start: Start
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Start, FloatArray]:
-        """Walk along the steps until Π stops falling: poses, gradients, tangents, starts there, parts of the steps."""
+    ) -> tuple[FloatArray, Response, FloatArray, FloatArray, FloatArray]:
+        """Walk along the steps until Π stops falling: poses, contacts, gradients, tangents there, parts of the steps."""
         low, high = np.zeros(rows.size), np.ones(rows.size)
         low_slope, high_slope = slope.copy(), np.zeros(rows.size)
         fraction = np.ones(rows.size)
         step_pose = step / self.levers(rows)
         pose = self.pose[rows] + step_pose
-        response, gradient, tangent = self.evaluate(rows, pose, start)
-        start = Start.after(response)
+        response = self.evaluate(rows, pose, start)
+        gradient, tangent = self.scaled(rows, response)
         # Longer than the minimum: round-off of the slope must not send a step back.
         noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
         end = np.einsum("bi,bi->b", gradient, step)
@@ -176,12 +199,13 @@ class Search:
             place = -low_slope[back] / (high_slope[back] - low_slope[back])
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            response, gradient[back], tangent[back] = self.evaluate(rows[back], pose[back], start.take(back))
-            start = start.replaced(back, Start.after(response))
+            again = self.evaluate(rows[back], pose[back], Start.after(response).take(back))
+            response = put_positions(response, back, again)
+            gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
             near = back[end[back] < 0.0]
             low[near], low_slope[near] = fraction[near], end[near]
-        return pose, gradient, tangent, start, fraction
+        return pose, response, gradient, tangent, fraction
 
 
 def _damped_step(

@@ -14,7 +14,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Response, bearing_pushes
+from ltca.compliance.response import (
+    ComplianceModel,
+    Response,
+    Start,
+    bearing_pushes,
+    put_positions,
+    take_positions,
+)
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.reducer import at_rows, disc_responses
@@ -23,6 +30,8 @@ from ltca.errors import ConvergenceError
 FloatArray = NDArray[np.float64]
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 """What balances positions: crank angles, moments on the wheel and poses to start from."""
+Begin = FloatArray | Equilibrium | None
+"""Poses to start from, or what was found under other moments."""
 
 ROUNDS = 30
 CLOSED = 1e-10
@@ -80,6 +89,7 @@ def solve_at_output(
     crank_angle: FloatArray,
     torque: FloatArray | float,
     start: FloatArray | None = None,
+    inner: Start | None = None,
 ) -> Equilibrium:
     """Balance positions at output torques.
 
@@ -95,6 +105,8 @@ def solve_at_output(
         On the output, N·mm, positive as `load.direction` says; a negative one loads the other way.
     start : array, shape (positions, coordinates), optional
         Poses to start from, first contact by default.
+    inner : Start, optional
+        Inner unknowns near those poses.
 
     Returns
     -------
@@ -113,9 +125,9 @@ def solve_at_output(
     held = np.repeat([drive.wheel_is_held for drive in each], repeats)
     signed = np.repeat([drive.driving_sign for drive in each], repeats) * loads
 
-    def balance(rows: NDArray[np.intp], moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
+    def balance(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
         part = model if rows.size == angle.size else at_rows(model, rows)
-        return solve_equilibrium(part, angle[rows], moment, begin)
+        return solve_equilibrium(part, angle[rows], moment, begin, None if isinstance(begin, Equilibrium) else inner)
 
     part = np.repeat([drive.input_per_crank_moment for drive in each], repeats)
     return _at_output(model, balance, angle, mean, signed, held, part, start)
@@ -150,8 +162,8 @@ def balance_at_output(
     mean = np.full(angle.size, drive.wheel_moment(torque))
     held = np.full(angle.size, drive.wheel_is_held)
 
-    def at(rows: NDArray[np.intp], moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
-        return balance(angle[rows], moment, begin)
+    def at(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
+        return balance(angle[rows], moment, begin.pose if isinstance(begin, Equilibrium) else begin)
 
     part = np.full(angle.size, drive.input_per_crank_moment)
     return _at_output(model, at, angle, mean, np.full(angle.size, drive.driving_sign * torque), held, part, start)
@@ -159,7 +171,7 @@ def balance_at_output(
 
 def _at_output(
     model: ComplianceModel,
-    balance: Callable[[NDArray[np.intp], FloatArray, FloatArray | None], Equilibrium],
+    balance: Callable[[NDArray[np.intp], FloatArray, Begin], Equilibrium],
     angle: FloatArray,
     mean: FloatArray,
     signed: FloatArray,
@@ -172,9 +184,8 @@ def _at_output(
     found = balance(everything, mean, start)
     if not np.any(held):
         return found
-    moment, pose = mean.copy(), found.pose.copy()
-    iterations = found.iterations.copy()
-    left = moment + input_moment(model, angle, pose, found.response, share) + signed
+    moment = mean.copy()
+    left = moment + input_moment(model, angle, found.pose, found.response, share) + signed
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
     slope = -signed / mean
     history = []
@@ -182,14 +193,16 @@ def _at_output(
         history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
         open_rows = np.nonzero(held & (np.abs(left) > CLOSED * np.abs(signed)))[0]
         if open_rows.size == 0:
-            break
+            return found
         step = -left[open_rows] / slope[open_rows]
         moment[open_rows] += step
-        part = balance(open_rows, moment[open_rows], pose[open_rows])
+        whole = open_rows.size == angle.size
+        begin = found if whole else take_positions(found, open_rows)
+        part = balance(open_rows, moment[open_rows], begin)
+        part = replace(part, iterations=begin.iterations + part.iterations)
+        found = part if whole else put_positions(found, open_rows, part)
         before = left[open_rows]
-        pose[open_rows] = part.pose
-        iterations[open_rows] += part.iterations
-        model_part = model if open_rows.size == angle.size else at_rows(model, open_rows)
+        model_part = model if whole else at_rows(model, open_rows)
         left[open_rows] = (
             moment[open_rows]
             + input_moment(model_part, angle[open_rows], part.pose, part.response, share[open_rows])
@@ -198,11 +211,8 @@ def _at_output(
         secant = (left[open_rows] - before) / step
         # Round-off of both ends makes no slope any more; a wrong one would only cost rounds.
         slope[open_rows] = np.where(np.abs(secant / slope[open_rows] - 1.0) < 0.5, secant, slope[open_rows])
-    else:
-        worst = int(np.argmax(np.abs(np.where(held, left, 0.0))))
-        raise ConvergenceError(
-            f"the moment that holds the wheel is not found at crank angle {angle[worst]:.6g} rad; moments left over in N·mm",
-            history,
-        )
-    final = balance(everything, moment, pose)
-    return replace(final, iterations=iterations + final.iterations)
+    worst = int(np.argmax(np.abs(np.where(held, left, 0.0))))
+    raise ConvergenceError(
+        f"the moment that holds the wheel is not found at crank angle {angle[worst]:.6g} rad; moments left over in N·mm",
+        history,
+    )

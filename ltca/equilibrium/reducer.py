@@ -98,9 +98,6 @@ class Reducer:
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
-        warm = np.empty(crank_angle.size, dtype=object)
-        for row in range(crank_angle.size):
-            warm[row] = tuple(part.warm_start[row] for part in parts)
         return ReducerResponse(
             force=force,
             tangent=tangent,
@@ -109,7 +106,7 @@ class Reducer:
             rollers=_beside([part.rollers for part in parts]),
             pin_load=_beside([part.pin_load for part in parts]),
             hole_load=_beside([part.hole_load for part in parts]),
-            warm_start=warm,
+            warm_start=np.stack([part.warm_start for part in parts], axis=1),
             parts=parts,
         )
 
@@ -204,14 +201,10 @@ def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) 
 
 
 def _split_start(start: Start, count: int) -> list[Start]:
-    parameters, shares = np.split(start.parameter, count, axis=1), np.split(start.share, count, axis=1)
-    starts = []
-    for number, (parameter, share) in enumerate(zip(parameters, shares, strict=True)):
-        warm = np.empty(start.warm_start.size, dtype=object)
-        for row, kept in enumerate(start.warm_start):
-            warm[row] = None if kept is None else kept[number]
-        starts.append(Start(parameter=parameter, share=share, warm_start=warm))
-    return starts
+    columns = zip(
+        np.split(start.parameter, count, axis=1), np.split(start.share, count, axis=1), start.warm_start.T, strict=True
+    )
+    return [Start(parameter=parameter, share=share, warm_start=warm) for parameter, share, warm in columns]
 
 
 def _beside(values: Sequence[Any]) -> Any:

@@ -21,6 +21,8 @@ STEEP = 1e-3
 """Lever arm of a pin's contact normal, as a part of e u, above which Newton's method finds where it touches."""
 TOUCHING = 1e-12
 """Interference that counts as touching, as a part of the pin circle radius: some thousand times the round-off."""
+CLOSE = 1e-15
+"""Rotation, rad, that is round-off."""
 ROUNDS, BISECTIONS = 60, 60
 
 
@@ -147,54 +149,76 @@ def _quarter(geometry: ContactGeometry) -> float:
     return 0.5 * np.pi / geometry.placement.reduction_ratio  # of a pitch, rad
 
 
+def _approaches(
+    geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Approach of every pin and its slope by the rotation."""
+    pose = np.zeros((angle.size, 4))
+    pose[:, coordinate] = rotation
+    motion = geometry.flank(angle, pose)
+    return motion.approach, motion.gradient[..., coordinate]
+
+
 def _largest_approach(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
 ) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
     """Largest approach of all pins, its slope by the rotation, and the pin."""
-    pose = np.zeros((angle.size, 4))
-    pose[:, coordinate] = rotation
-    motion = geometry.flank(angle, pose)
-    rows, pin = np.arange(angle.size), np.argmax(motion.approach, axis=1)
-    return motion.approach[rows, pin], motion.gradient[rows, pin, coordinate], pin
+    approach, slope = _approaches(geometry, angle, coordinate, rotation)
+    rows, pin = np.arange(angle.size), np.argmax(approach, axis=1)
+    return approach[rows, pin], slope[rows, pin], pin
 
 
 def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate: int) -> tuple[FloatArray, FloatArray]:
     """Rotation at which the largest approach is no interference, or the least one, and that approach.
 
-    The largest approach is a valley over the rotation: its slope says on which side of a place the bottom lies. With
-    unmodified flanks that is where all pins touch; with equal offsets it is just below zero.
+    The largest approach is a valley over the rotation: its slope says on which side of a place the bottom lies. There two
+    pins, each the one that presses most on its side, press alike. With unmodified flanks that is where all pins touch;
+    with equal offsets it is just below zero.
     """
     quarter, touching = _quarter(geometry), TOUCHING * _size(geometry)
-    bottom = np.zeros(angle.size)
+    rows, bottom = np.arange(angle.size), np.zeros(angle.size)
     low, high = np.full(angle.size, -quarter), np.full(angle.size, quarter)
-    largest, slope, _ = _largest_approach(geometry, angle, coordinate, bottom)
+    left = right = np.full(angle.size, -1)
     for _ in range(BISECTIONS):
-        free = largest <= touching
-        if np.all(free):
+        approach, slope = _approaches(geometry, angle, coordinate, bottom)
+        pin = np.argmax(approach, axis=1)
+        largest, falling = approach[rows, pin], slope[rows, pin] < 0.0
+        low, high = np.where(falling, bottom, low), np.where(falling, high, bottom)
+        left, right = np.where(falling, pin, left), np.where(falling, right, pin)
+        closing = slope[rows, right] - slope[rows, left]
+        meets = (left >= 0) & (right >= 0) & (closing > 0.0)
+        alike = bottom + (approach[rows, left] - approach[rows, right]) / np.where(meets, closing, 1.0)
+        place = np.where(meets & (alike > low) & (alike < high), alike, 0.5 * (low + high))
+        if np.all((largest <= touching) | (np.abs(place - bottom) < CLOSE)):
             break
-        low, high = np.where(slope < 0.0, bottom, low), np.where(slope < 0.0, high, bottom)
-        bottom = np.where(free, bottom, 0.5 * (low + high))
-        largest, slope, _ = _largest_approach(geometry, angle, coordinate, bottom)
+        bottom = np.where(largest <= touching, bottom, place)
     return bottom, largest
 
 
 def _farthest_free(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int, start: FloatArray
 ) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_]]:
-    """How far it can turn from a start until a pin presses, by bisection, which one, and whether one does."""
+    """How far it can turn from a start until a pin presses, which one, and whether one does.
+
+    Newton's method between a place where a pin presses and one where none does; where it leaves them, their middle.
+    """
     # Where all touch at the start, round-off of their approaches is no way to go.
     level = np.maximum(_largest_approach(geometry, angle, coordinate, start)[0], 0.0)
     step = sense * _quarter(geometry)
     inside, outside = start, start + step
     outside = np.where(_largest_approach(geometry, angle, coordinate, outside)[0] > level, outside, outside + step)
-    stopping, _, pin = _largest_approach(geometry, angle, coordinate, outside)
+    largest, slope, pin = _largest_approach(geometry, angle, coordinate, outside)
+    stops, place = largest > level, outside
     for _ in range(BISECTIONS):
-        middle = 0.5 * (inside + outside)
-        largest, _, found = _largest_approach(geometry, angle, coordinate, middle)
+        newton = place - (largest - level) / np.where(slope == 0.0, np.nan, slope)
+        following = np.where((newton - inside) * (newton - outside) < 0.0, newton, 0.5 * (inside + outside))
+        if np.all(np.abs(following - place) < CLOSE):
+            break
+        place = following
+        largest, slope, pin = _largest_approach(geometry, angle, coordinate, place)
         over = largest > level
-        inside, outside = np.where(over, inside, middle), np.where(over, middle, outside)
-        pin = np.where(over, found, pin)
-    return inside, pin, stopping > level
+        inside, outside = np.where(over, inside, place), np.where(over, place, outside)
+    return place, pin, stops
 
 
 def backlash(

@@ -30,6 +30,11 @@ from ltca.geometry.rotation import integer_power, small_turn, unit
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+SETTLED = 1e-8
+"""Step of Newton's method, rad, that leaves a contact point wrong by less than round-off: convergence is quadratic."""
+THERE = 1e-13
+"""Step, rad, that is round-off itself: the curve is that of the place before it."""
+
 
 class CurvePoints(NamedTuple):
     """Points of a curve with two derivatives by θ: complex, mm, mm/rad, mm/rad²."""
@@ -149,9 +154,10 @@ class FlankProfile:
         c, dc, ddc : arrays of complex, same shape
             mm, mm/rad, mm/rad².
         """
-        return self._locus(unit(parameter))
+        return self.at(unit(parameter))
 
-    def _locus(self, direction: ComplexArray) -> CurvePoints:
+    def at(self, direction: ComplexArray) -> CurvePoints:
+        """Return the design trochoid as `locus` does, at e^{iθ}."""
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))
@@ -182,27 +188,33 @@ class FlankProfile:
         CurvePoints
             The trochoid; with a deviation the flank itself.
         """
-        c, dc, ddc = self._locus(direction)
+        c, dc, ddc = self.at(direction)
         if self.deviation is None:
             return CurvePoints(c + self.centre, dc, ddc)
         # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
         u = self.reduction_ratio
         circle = self.generating_radius * direction * self.turn
         dddc = 1j * (u**3 * (circle - c) - circle)
-        speed = np.abs(dc)
+        back = dc.conjugate()
+        square = dc.real**2 + dc.imag**2
+        speed = np.sqrt(square)
         t = dc / speed
-        n = -1j * t
-        square = speed * speed
-        w = (dc.conjugate() * ddc).imag / square
-        ds = (dc.conjugate() * ddc).real / speed
-        dw = (dc.conjugate() * dddc).imag / square - 2.0 * w * ds / speed
+        turning = back * ddc
+        w, ds = turning.imag / square, turning.real / speed
+        dw = (back * dddc).imag / square - 2.0 * w * ds / speed
         delta, slope, bend = self.deviation.value_and_derivatives(direction)
         d = self.offset - delta
         along = speed - d * w
+
+        def framed(along_tangent: FloatArray, along_normal: FloatArray) -> ComplexArray:
+            parts = np.empty(t.shape, dtype=complex)
+            parts.real, parts.imag = along_tangent, -along_normal
+            return parts * t
+
         return CurvePoints(
-            c - d * n + self.centre,
-            along * t + slope * n,
-            (ds + 2.0 * slope * w - d * dw) * t + (bend - w * along) * n,
+            c + 1j * d * t + self.centre,
+            framed(along, slope),
+            framed(ds + 2.0 * slope * w - d * dw, bend - w * along),
         )
 
     def normal(self, parameter: FloatArray) -> ComplexArray:
@@ -235,18 +247,15 @@ class FlankProfile:
         """Return the effective radius of curvature of flank and pin: 1/ρ = 1/r_pin + κ_flank, mm."""
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
-    def nearest_parameter(
-        self, point: ComplexArray, start: FloatArray, *, tolerance: float = 1e-13, limit: int = 100
-    ) -> FloatArray:
+    def nearest_parameter(self, point: ComplexArray, start: FloatArray, *, limit: int = 100) -> FloatArray:
         """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
-        return self.nearest_point(point, start, tolerance=tolerance, limit=limit).parameter
+        return self.nearest_point(point, start, limit=limit).parameter
 
     def nearest_point(
         self,
         point: ComplexArray,
         start: FloatArray,
         *,
-        tolerance: float = 1e-13,
         limit: int = 100,
         across_root: bool = True,
     ) -> NearestPoint:
@@ -263,8 +272,6 @@ class FlankProfile:
             Points in the disc frame, mm.
         start : array of float, same shape
             First guess of θ, rad.
-        tolerance : float
-            Largest accepted step, rad.
         limit : int
             Iterations.
         across_root : bool
@@ -284,6 +291,7 @@ class FlankProfile:
         direction = unit(theta)
         bound = 0.4 * np.pi / self.reduction_ratio
         low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
+        last = slope_before = np.zeros(theta.shape)
         history: list[float] = []
         for iteration in range(limit):
             curve = self.contact_curve(direction)
@@ -293,7 +301,12 @@ class FlankProfile:
             value = tangent.real * away.real + tangent.imag * away.imag
             slope = speed + curve.second.real * away.real + curve.second.imag * away.imag
             # Beyond a centre of curvature the slope is negative, the point next to a largest distance: leave it.
-            step = np.clip(value / np.maximum(np.abs(slope), 1e-3 * speed), -bound, bound)
+            safe = np.maximum(np.abs(slope), 1e-3 * speed)
+            step = value / safe
+            if iteration:  # Halley's correction, the bend of g from the last two slopes
+                bend = np.divide(slope_before - slope, last, out=np.zeros(theta.shape), where=last != 0.0)
+                step /= 1.0 - (0.5 * step * bend / safe).clip(-0.5, 0.5)
+            step = step.clip(-bound, bound)
             if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
                 bracketed = np.isfinite(high - low)
@@ -303,11 +316,12 @@ class FlankProfile:
                 outside = bracketed & far
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta -= step
-            direction = direction * small_turn(-step)
+            slope_before, last = slope, step
             history.append(float(np.max(np.abs(step), initial=0.0)))
-            # Convergence is quadratic: a step of 1e-8 leaves an error below round-off.
-            if history[-1] <= max(tolerance, 1e-8) and (len(history) > 1 or history[-1] <= tolerance):
-                found = NearestPoint(theta, self.contact_curve(direction))
+            if history[-1] > THERE:
+                direction = direction * small_turn(-step)
+            if history[-1] <= SETTLED:
+                found = NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
                 return self._nearer_side(point, found) if across_root else found
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
@@ -323,9 +337,7 @@ class FlankProfile:
             return found
         sharp = (self.generating_radius - self.eccentricity * u) ** 2 / np.where(bend > 0.0, bend, np.nan)
         theta = found.parameter
-        # Without a deviation the contact curve is the trochoid.
-        trochoid = found.curve.point if self.deviation is None else self.locus(theta).point + self.centre
-        away = np.abs(trochoid - point)
+        away = self._off_path(point, found)
         pitch = 2.0 * np.pi / (u - 1.0)
         root = pitch * np.round(theta / pitch)
         doubtful = (away > 0.3 * sharp) & (np.abs(theta - root) < 0.25 * pitch)
@@ -337,8 +349,7 @@ class FlankProfile:
         flank = self if single else self.take(rows)
         point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
         other = flank.nearest_point(point, start, across_root=False)
-        apart = np.abs(flank.locus(other.parameter).point + flank.centre - point)
-        nearer = doubtful[rows] & (apart < away[rows])
+        nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
 
         def chosen(here: NDArray[Any], there: NDArray[Any]) -> NDArray[Any]:
             mixed = here.copy()
@@ -347,6 +358,10 @@ class FlankProfile:
 
         curve = CurvePoints(*(chosen(here, there) for here, there in zip(found.curve, other.curve, strict=True)))
         return NearestPoint(chosen(theta, other.parameter), curve)
+
+    def _off_path(self, point: ComplexArray, found: NearestPoint) -> FloatArray:
+        """How far points are from the path of a pin that touches the flank, mm."""
+        return np.asarray(np.abs(np.abs(found.curve.point - point) - (self.offset - self.contact_offset)))
 
     def distance(self, point: ComplexArray, parameter: FloatArray) -> FloatArray:
         """Return the signed distance of points from the flank along the normal at θ, mm, positive outside."""

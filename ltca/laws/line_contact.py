@@ -106,20 +106,21 @@ class LineContactLaw:
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load and its exact derivative by the approach, N and N/mm."""
-        delta, radius = np.broadcast_arrays(
-            np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
-        )
+        delta = np.asarray(approach, dtype=float)
+        product = delta * np.asarray(effective_radius, dtype=float)
+        if delta.shape != product.shape:
+            delta = np.broadcast_to(delta, product.shape)
         closed = delta > 0.0
         if closed.all():
-            return self._closed(delta, radius)
+            return self._closed(delta, product)
         # Most pins of a drive are open: they cost nothing.
         load, stiffness = np.zeros(delta.shape), np.zeros(delta.shape)
-        load[closed], stiffness[closed] = self._closed(delta[closed], radius[closed])
+        load[closed], stiffness[closed] = self._closed(delta[closed], product[closed])
         return load, stiffness
 
-    def _closed(self, pressed: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Load and stiffness of contacts that are all closed."""
-        place = np.log(pressed * radius / (self.length * self.length))
+    def _closed(self, pressed: FloatArray, product: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Load and stiffness of contacts that are all closed, from approaches and their products with the radius."""
+        place = np.log(product / (self.length * self.length))
         w, first, second = self.table.inverse_energy.value_and_derivatives(place)
         inverse = 1.0 / w
         scale = (self.contact_modulus * self.length) * inverse

@@ -152,14 +152,14 @@ class SlendernessCurve:
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""
         piece, t, inside = self._locate(x)
-        c0, c1, c2, c3, c4, c5 = (row.take(piece) for row in self.coefficients)
+        c0, c1, c2, c3, c4, c5 = self.coefficients.take(piece, axis=1)
         value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
         return np.asarray(value if inside else self._beyond(x, value)[0])
 
     def value_and_derivatives(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Value, first and second derivative at ``x``, each of its shape."""
         piece, t, inside = self._locate(x)
-        c0, c1, c2, c3, c4, c5 = (row.take(piece) for row in self.coefficients)
+        c0, c1, c2, c3, c4, c5 = self.coefficients.take(piece, axis=1)
         inverse = 1.0 / self.spacing
         fifth = t * c5
         value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + fifth))))
@@ -174,9 +174,11 @@ class SlendernessCurve:
         place = (x - self.start) * (1.0 / self.spacing)
         pieces = self.coefficients.shape[1]
         inside = bool(place.size == 0 or (place.min() >= 0.0 and place.max() < pieces))
-        if not inside:
-            place = np.clip(place, 0.0, float(pieces))
-        piece = np.minimum(place.astype(np.intp), pieces - 1)
+        if inside:
+            piece = place.astype(np.intp)
+        else:
+            place = place.clip(0.0, float(pieces))
+            piece = np.minimum(place.astype(np.intp), pieces - 1)
         return piece, place - piece, inside
 
     def _beyond(self, x: FloatArray, *found: FloatArray) -> tuple[FloatArray, ...]:

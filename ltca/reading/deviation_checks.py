@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from math import pi
 
@@ -17,6 +17,7 @@ from ltca.geometry.flank import FlankProfile
 from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 POINTS_PER_WAVE = 24
 """Points on which the flank is looked at, for each wave of the highest order."""
@@ -192,30 +193,36 @@ def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
 def find_flank_problems(drive: Drive) -> Iterator[str]:
     """Yield what no flank can be, designed or deviated: folded, or hollower than its pins are round."""
     profile = FlankProfile.of_drive(drive)
+    # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
+    # is hollow at all.
+    designed = _hollow_radius(float(profile.locus_curvature(np.zeros(1))[0]), float(profile.offset))
+    theta, actual = 0.0, designed
     if profile.deviation is not None:
-        theta = _looked_at(drive, profile)
-        design, flank = profile.locus(theta), profile.contact_curve(unit(theta))
+        waves = max(
+            (drive.pin_wheel.number_of_pins, *profile.deviation.orders, len(drive.disc.profile_errors.parameter))
+        )
+        places, direction = _looked_at(
+            float(profile.generating_radius), float(profile.eccentricity), profile.reduction_ratio, waves
+        )
+        design, flank = profile.at(direction), profile.contact_curve(direction)
         forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
         if np.min(forward) <= 0.0:
-            worst = float(theta[np.argmin(forward)])
+            worst = float(places[np.argmin(forward)])
             yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
             return
-    yield from _hollow(drive, profile)
+        hollowest = np.argmin(curvature := flank.curvature)
+        theta, actual = (
+            float(places[hollowest]),
+            _hollow_radius(float(curvature[hollowest]), float(profile.contact_offset)),
+        )
+    yield from _hollow(drive, designed, actual, theta)
 
 
-def _hollow(drive: Drive, profile: FlankProfile) -> Iterator[str]:
+def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Iterator[str]:
     """A pin rounder than a hollow of the flank touches it at two points, and none of them is its nearest for long."""
     nominal = drive.pin_wheel.pin_radius
     growth = max(drive.pin_wheel.pin_errors.diameter, default=0.0)
     largest = nominal + 0.5 * max(growth, 0.0)
-    # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
-    # is hollow at all.
-    theta, designed = 0.0, _hollow_radius(replace(profile, deviation=None), np.zeros(1))[0]
-    actual = designed
-    if profile.deviation is not None:
-        places = _looked_at(drive, profile)
-        radii = _hollow_radius(profile, places)
-        theta, actual = float(places[np.argmin(radii)]), float(np.min(radii))
     if actual > largest:
         return
     if designed <= nominal:
@@ -230,20 +237,25 @@ def _hollow(drive: Drive, profile: FlankProfile) -> Iterator[str]:
     )
 
 
-def _hollow_radius(profile: FlankProfile, theta: FloatArray) -> FloatArray:
-    """Radius of the flank where it is hollow, infinite elsewhere, mm."""
-    hollow = -profile.curvature(theta)
-    return np.asarray(1.0 / np.maximum(hollow, 1e-300))
+def _hollow_radius(curvature: float, offset: float) -> float:
+    """Radius of a flank where it is hollow, infinite elsewhere, mm, from the curvature of its parallel at an offset."""
+    return 1.0 / max(-curvature / (1.0 - offset * curvature), 1e-300)
 
 
-def _looked_at(drive: Drive, profile: FlankProfile) -> FloatArray:
-    """Parameters at which a deviated flank is looked at: every wave of it, and the roots, however sharp they are."""
-    errors, u, teeth = drive.disc.profile_errors, drive.reduction_ratio, drive.disc.number_of_teeth
-    waves = max((drive.pin_wheel.number_of_pins, *errors.orders, len(errors.parameter)))
+@lru_cache(maxsize=8)
+def _looked_at(radius: float, eccentricity: float, ratio: float, waves: int) -> tuple[FloatArray, ComplexArray]:
+    """Parameters θ at which a deviated flank is looked at, and e^{iθ}: every wave of it, and the roots, however sharp.
+
+    They are kept, since studies check one design thousands of times.
+    """
     even = np.linspace(0.0, 2.0 * pi, POINTS_PER_WAVE * waves, endpoint=False)
     # |c′|² = (R − e u)² + 2 R e u (1 − cos (u − 1)θ): what is special in a root is so within this of it.
-    pitch_radius, radius = profile.eccentricity * u, profile.generating_radius
-    sharp = (radius - pitch_radius) / (np.sqrt(radius * pitch_radius) * (u - 1.0))
+    pitch_radius, teeth = eccentricity * ratio, round(ratio) - 1
+    sharp = (radius - pitch_radius) / (np.sqrt(radius * pitch_radius) * (ratio - 1.0))
     about = sharp * np.linspace(-3.0, 3.0, POINTS_PER_WAVE + 1)
     roots = 2.0 * pi * np.arange(teeth)[:, None] / teeth + about
-    return np.asarray(np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi))
+    places = np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi)
+    direction = unit(places)
+    for kept in (places, direction):
+        kept.setflags(write=False)
+    return places, direction

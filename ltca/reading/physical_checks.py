@@ -45,6 +45,8 @@ def find_contradictions(drive: Drive) -> list[str]:
     common = single_discs(without_own(drive))[0]
     problems = _find_in_disc(common)
     for number, single in enumerate(single_discs(drive)):
+        if single is common:
+            continue
         alike = replace(single, disc=replace(single.disc, phases=common.disc.phases, planes=common.disc.planes))
         if alike != common:
             own = [named_in_disc(drive, problem, number) for problem in _find_in_disc(single)]

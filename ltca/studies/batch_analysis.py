@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
+from ltca.compliance.response import Start
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
@@ -32,12 +33,12 @@ class Nominal:
 
     Attributes
     ----------
-    full, light : array, shape (positions, coordinates)
-        Poses at its torque and its light torque.
+    full, light : Equilibrium
+        At its torque and at its light torque.
     """
 
-    full: FloatArray
-    light: FloatArray
+    full: Equilibrium
+    light: Equilibrium
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,10 +101,10 @@ def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
         When it does not balance.
     """
     solved = _Batch([drive], settings)
-    full = solved.balance([drive.load.torque], None).pose
+    full = solved.balance([drive.load.torque], None)
     light = full
     if any(QUANTITIES[name].stage == "light" for name in settings.quantities):
-        light = solved.balance([drive.load.light_torque], full).pose
+        light = solved.balance([drive.load.light_torque], full)
     return Nominal(full=full, light=light)
 
 
@@ -121,11 +122,16 @@ class _Batch:
             self.prepared = with_kept_coefficients(settings.engine, drive).prepare(drive)
             self.model = self.prepared.model
 
-    def balance(self, torques: list[float], start: FloatArray | None) -> Equilibrium:
-        """Balance the drives at their torques."""
+    def balance(self, torques: list[float], near: Equilibrium | None) -> Equilibrium:
+        """Balance the drives at their torques, from what is near: one position for each of theirs, or for each angle."""
         if self.prepared is not None:
-            return self.prepared.balance(self.angle, torques[0], start)
-        return solve_at_output(self.model, self.drives, self.angle, np.repeat(torques, self.positions), start)
+            return self.prepared.balance(self.angle, torques[0], None if near is None else near.pose)
+        loads = np.repeat(torques, self.positions)
+        if near is None:
+            return solve_at_output(self.model, self.drives, self.angle, loads)
+        rows = np.arange(self.angle.size) % near.crank_angle.size
+        inner = Start.after(near.response).take(rows)
+        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner)
 
 
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
@@ -197,17 +203,15 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     DriveError
         When a torque cannot be carried (`ltca.analysis.half_width_guard`).
     """
-    samples = len(drives)
     stages = {QUANTITIES[name].stage for name in settings.quantities}
     solved = _Batch(drives, settings)
-    start = None if nominal is None else np.tile(nominal.full, (samples, 1))
-    full = solved.balance([drive.load.torque for drive in drives], start)
+    full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full)
     pressures = solved.model.pressures(full.response)
     check_half_widths(drives[0], full.response, pressures)
     light, play = None, None
     if "light" in stages:
-        start = full.pose if nominal is None else np.tile(nominal.light, (samples, 1))
-        light = solved.balance([drive.load.light_torque for drive in drives], start)
+        near = full if nominal is None else nominal.light
+        light = solved.balance([drive.load.light_torque for drive in drives], near)
     if "backlash" in stages:
         play = backlash(geometries(solved.model), solved.angle, WHEEL_ANGLE)
     return SampleBatch(

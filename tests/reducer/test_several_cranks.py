@@ -114,7 +114,9 @@ def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
         force = bearing_forces(model, ANGLES, found.response)[:, number] * place.eccentric_directions(ANGLES)
         left = (force + resultant[:, None] / cranks) / (arm / radius)
         size = np.abs(resultant).max()
-        np.testing.assert_allclose(left.imag, (-moment / (cranks * radius))[:, None] * np.ones(cranks), atol=1e-9 * size)
+        np.testing.assert_allclose(
+            left.imag, (-moment / (cranks * radius))[:, None] * np.ones(cranks), atol=1e-9 * size
+        )
         expected = -stiffness * radius * (1.0 - np.cos(rotation))[:, None] * np.ones(cranks)
         np.testing.assert_allclose(left.real, expected, atol=1e-9 * size)
         assert np.min(np.abs(moment)) > 1e3 * radius  # there is something to share
@@ -188,7 +190,9 @@ def test_tangent_is_the_slope_of_the_force(rv, name):
         moved = [balanced.pose + side * step * (np.arange(lever.size) == column) / lever[column] for side in (1, -1)]
         up, down = (fixed.respond(ANGLES[:1], each).force[0] / lever for each in moved)
         # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
-        np.testing.assert_allclose((up - down) / (2 * step), scaled[:, column], rtol=0.0, atol=2e-6 * np.abs(scaled).max())
+        np.testing.assert_allclose(
+            (up - down) / (2 * step), scaled[:, column], rtol=0.0, atol=2e-6 * np.abs(scaled).max()
+        )
 
 
 @pytest.mark.parametrize("name", ["cranks", "holes"])
@@ -287,7 +291,10 @@ def test_bore_errors_are_forced_on_the_cranks(rv):
     plain = analyse(drive, ANGLES).bearing_radial
 
     def change(size):
-        errors = {"disc.of.0.bore_errors.radial": (size, 0.0, 0.0), "disc.of.0.bore_errors.tangential": (0.0, size, 0.0)}
+        errors = {
+            "disc.of.0.bore_errors.radial": (size, 0.0, 0.0),
+            "disc.of.0.bore_errors.tangential": (0.0, size, 0.0),
+        }
         return analyse(with_fields(drive, errors), ANGLES).bearing_radial - plain
 
     small, double = change(1e-5), change(2e-5)
@@ -313,19 +320,31 @@ def test_equal_parts_by_counting(rv, cranks, teeth, alike):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"crank.circle_radius": 70.0}, r"crank\.circle_radius = 70 mm: bores cut through the root circle .* less than"),
-        ({"crank.circle_radius": 15.0}, r"crank\.circle_radius = 15 mm: neighbouring bores .* greater than 20\.7892 mm"),
+        (
+            {"crank.circle_radius": 70.0},
+            r"crank\.circle_radius = 70 mm: bores cut through the root circle .* less than",
+        ),
+        (
+            {"crank.circle_radius": 15.0},
+            r"crank\.circle_radius = 15 mm: neighbouring bores .* greater than 20\.7892 mm",
+        ),
         ({"crank.number": 1}, r"pin_shaft: must be given with one crank"),
         ({"crank.number": 1}, r"crank\.circle_radius = 42 mm: must be left out with one crank"),
         ({"crank.number": 1}, r"installation\.first_stage_ratio = 2: must be left out with one crank"),
-        ({"crank.number": 3, "clearance.pin_hole": 0.01}, r"clearance\.pin_hole = 0\.01 mm: must be left out without a pin"),
+        (
+            {"crank.number": 3, "clearance.pin_hole": 0.01},
+            r"clearance\.pin_hole = 0\.01 mm: must be left out without a pin",
+        ),
         ({"crank.support.positions": (22.0, -22.0)}, r"crank\.support\.positions holds 22 and -22 mm: must ascend"),
         ({"crank.support.diameter": 27.0}, r"crank\.support\.diameter = 27 mm: must be at most 26 mm"),
         ({"crank.support.stiffness": (0.0, 1e5)}, r"crank\.support\.stiffness"),
         ({"disc.of.0.bore_errors.radial": (0.001,)}, r"bore_errors\.radial has 1 values: must have 3"),
         ({"pin_shaft.stiffness": 1e5}, r"pin_shaft\.stiffness: there is no pin_shaft"),
         ({"disc.hole_errors.radial": (0.001,) * 3}, r"disc\.hole_errors\.radial: there is no pin_shaft"),
-        ({"crank.of.6.phase_error": 0.001}, r"crank\.of\.6: there is no eccentric 6; disc\.number_of_discs = 2, crank\.number = 3"),
+        (
+            {"crank.of.6.phase_error": 0.001},
+            r"crank\.of\.6: there is no eccentric 6; disc\.number_of_discs = 2, crank\.number = 3",
+        ),
     ],
 )
 def test_bad_input_is_one_clear_line(rv, words, message):

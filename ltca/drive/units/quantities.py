@@ -77,29 +77,26 @@ class QuantityCheck:
 
     def __call__(self, value: Any) -> float:
         """Return the value in the unit of the field, or refuse it."""
-        number = _number(value, self.unit)
+        number = value if type(value) is float else _number(value, self.unit)
         if not math.isfinite(number):
             raise PydanticCustomError("quantity", "must be finite{unit}", {"unit": _in(self.unit)})
-        unit = f" {label(self.unit)}".rstrip()
-        gt, ge, lt, le = (bound for _, bound in self.bounds)
+        (_, gt), (_, ge), (_, lt), (_, le) = self.bounds
         holds = (
             (gt is None or number > gt)
             and (ge is None or number >= ge)
             and (lt is None or number < lt)
             and (le is None or number <= le)
         )
+        # Beyond any drive, and so that no product of a few of them leaves the range of floats.
+        smallest, largest = range_of(self.unit)
+        if holds and abs(number) <= largest and (gt != 0.0 or number >= smallest):
+            return number
+        unit = f" {label(self.unit)}".rstrip()
         if not holds:
             text = " and ".join(f"{word} {bound:g}" for word, bound in self.bounds if bound is not None)
             raise PydanticCustomError("quantity", "must be {text}{unit}", {"text": text, "unit": unit})
-        # Beyond any drive, and so that no product of a few of them leaves the range of floats.
-        smallest, largest = range_of(self.unit)
-        if abs(number) > largest:
-            text = f"at most {largest:g}{unit} in size"
-            raise PydanticCustomError("quantity", "must be {text}", {"text": text})
-        if gt == 0.0 and number < smallest:
-            text = f"at least {smallest:g}{unit}"
-            raise PydanticCustomError("quantity", "must be {text}", {"text": text})
-        return number
+        text = f"at most {largest:g}{unit} in size" if abs(number) > largest else f"at least {smallest:g}{unit}"
+        raise PydanticCustomError("quantity", "must be {text}", {"text": text})
 
 
 MOST_COUNTED = 10**15

@@ -10,6 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 
 from ltca.errors import shortened
 
@@ -233,6 +234,7 @@ RANGES = {
 length from a picometre to a kilometre), well inside of the range of floats, also when a few are multiplied."""
 
 
+@cache
 def range_of(unit: str) -> tuple[float, float]:
     """Return the smallest positive and the largest size accepted of a quantity, in a unit."""
     wanted = unit_named(unit)
