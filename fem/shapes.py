@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import require_one_bore
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
@@ -348,6 +349,7 @@ class DriveShapes:
         MeshError
             When a given radius leaves no material.
         """
+        require_one_bore(drive, "finite elements of a disc")
         placement = Placement.of_drive(drive)
         if core_radius is None:
             core_radius = min(DEFAULT_CORE_RADIUS, LARGEST_CORE_SHARE * float(placement.wheel_pin_radii.min()))

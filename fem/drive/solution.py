@@ -28,7 +28,7 @@ from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.shaft_pins import mesh_shaft_pins
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.plane_strain import require_plane_strain, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
@@ -247,6 +247,7 @@ def solve_disc(
         When the meshes would not fit into memory.
     """
     require_plane_strain(drive, "full finite elements")
+    require_rigid_members(drive, "full finite elements")
     say, watch = progress or _silent, _Stopwatch()
     shapes = DriveShapes.of_drive(drive)
     guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)

@@ -21,6 +21,7 @@ from fem.drive.solution import solve_disc, solve_moment
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
@@ -215,6 +216,7 @@ def solve_reducer(
     MemoryLimitError
         When the meshes would not fit into memory.
     """
+    require_rigid_members(drive, "full finite elements")
     singles = single_discs(drive)
     task = _Task(
         drive=drive,

@@ -31,7 +31,28 @@ def require_plane_strain(drive: Drive, model: str) -> None:
         raise DriveError(problems)
 
 
-def require_central_crank(drive: Drive, model: str) -> None:
+def require_one_bore(drive: Drive, model: str) -> None:
+    """Refuse a drive of several cranks.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    model : str
+        What it is refused by, for the message.
+
+    Raises
+    ------
+    DriveError
+        With the number of cranks.
+    """
+    if drive.crank.number > 1:
+        raise DriveError(
+            [f"crank.number = {drive.crank.number}: must be 1 for {model}, which knows discs with one bore"]
+        )
+
+
+def require_rigid_members(drive: Drive, model: str) -> None:
     """Refuse a drive of several cranks, or of members that yield on their supports.
 
     Parameters
@@ -46,20 +67,16 @@ def require_central_crank(drive: Drive, model: str) -> None:
     DriveError
         One sentence for each field.
     """
-    problems = []
-    if drive.crank.number > 1:
-        problems.append(f"crank.number = {drive.crank.number}: must be 1 for {model}, which knows discs with one bore")
-    problems += _find_supports(drive, model)
+    problems, stiffness = [], drive.pin_wheel.support_stiffness
+    if drive.crank.support is not None:
+        problems.append(f"crank.support: must be left out for {model}, where cranks are rigid")
+    if stiffness is not None:
+        problems.append(
+            f"pin_wheel.support_stiffness = {stiffness:g} N/mm: must be left out for {model}, where the wheel's axis stands still"
+        )
     if problems:
         raise DriveError(problems)
-
-
-def _find_supports(drive: Drive, model: str) -> Iterator[str]:
-    stiffness = drive.pin_wheel.support_stiffness
-    if drive.crank.support is not None:
-        yield f"crank.support: must be left out for {model}, where cranks are rigid"
-    if stiffness is not None:
-        yield f"pin_wheel.support_stiffness = {stiffness:g} N/mm: must be left out for {model}, where the wheel is rigid"
+    require_one_bore(drive, model)
 
 
 def _find_problems(drive: Drive, model: str) -> Iterator[str]:

@@ -23,7 +23,7 @@ from ltca.errors import CycloError, DriveError, did_you_mean, shortened
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
-from ltca.studies.quantities import QUANTITIES, check_quantities
+from ltca.studies.quantities import QUANTITIES, check_quantities, quantities_for
 from ltca.studies.shapes import shapes_of
 
 FloatArray = NDArray[np.float64]
@@ -160,6 +160,7 @@ def batch_analysis(problem: Problem, positions: int, engine: Engine | None = Non
         How bodies yield; half-spaces by default.
     """
     used: Engine = HalfSpace() if engine is None else engine
+    quantities_for(problem.drive, problem.quantities)
     settings = BatchSettings(crank_angle=position_angles(positions), quantities=problem.quantities, engine=used)
     return lambda drives: analyse_samples(drives, settings).values
 

@@ -195,6 +195,29 @@ DEFAULT_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quan
 """What the solution at the torque of the drive gives; the others cost another solution and come when named."""
 
 
+OF_THE_PIN_SHAFT = ("max_pin_shaft_load", "max_pin_shaft_pressure_mid", "mean_loaded_pin_shaft_pins")
+"""What a drive without pin shaft has not."""
+
+
+def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
+    """Return the quantities of a study of a drive: names of `QUANTITIES`, by default and for ``all`` those that it has.
+
+    Raises
+    ------
+    DriveError
+        When a name is not one of them, or none of this drive.
+    """
+    missing = OF_THE_PIN_SHAFT if drive.pin_shaft is None else ()
+    if names is not None:
+        names = check_quantities(names)
+    if names is None or names == tuple(QUANTITIES):
+        return tuple(name for name in (names or DEFAULT_QUANTITIES) if name not in missing)
+    absent = [name for name in names if name in missing]
+    if absent:
+        raise DriveError([f"{name}: {drive.name} has no pin shaft" for name in absent])
+    return names
+
+
 def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names in the order of `QUANTITIES`, ``all`` meaning every one.
 

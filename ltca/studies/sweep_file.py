@@ -40,7 +40,7 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import listed, load_drive
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.designs import SweepDesign, SweepFactor
-from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
+from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities, quantities_for
 from ltca.studies.study import Study
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
@@ -129,6 +129,10 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     except DriveError as error:
         raise DriveError([f"{problem} (of {drive})" for problem in error.problems], source) from error
     base = next(iter(selected.values()))
+    try:
+        names = quantities_for(base, names if "quantities" in table else None)
+    except DriveError as error:
+        reader.problems += [f"quantities: {problem}" for problem in error.problems]
     factors = tuple(_factors(factors_table, base, file.cases, reader))
     design = _design(table.get("design", {}), factors, reader)
     reader.check()

@@ -9,7 +9,7 @@ from ltca.drive.tolerances import Factors
 from ltca.errors import DriveError
 from ltca.reading.drive_file import DriveFile
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
-from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities
+from ltca.studies.quantities import quantities_for
 from ltca.studies.study import Study
 
 
@@ -37,7 +37,7 @@ def tolerance_study(
     sequence : {"random", "sobol", "saltelli"}
         See `ltca.studies.designs.ToleranceDesign`.
     quantities : tuple of str, optional
-        What is kept; by default `DEFAULT_QUANTITIES`.
+        What is kept; by default as `ltca.studies.quantities.quantities_for` says.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
 
@@ -52,7 +52,7 @@ def tolerance_study(
     """
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
-    kept = DEFAULT_QUANTITIES if quantities is None else check_quantities(quantities)
+    kept = quantities_for(drive, quantities)
     design = ToleranceDesign(
         factors=Factors.of_tolerances(drive, file.tolerances), samples=samples, seed=seed, sequence=sequence
     )
