@@ -23,7 +23,7 @@ from fem.drive.expected_contacts import ExpectedContacts, expect_contacts, requi
 from fem.drive.full_solution import FullSolution
 from fem.drive.grading import grade_contacts, measure_gaps
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, mesh_drive, require_model_memory
-from fem.drive.model import DriveModel
+from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.shaft_pins import mesh_shaft_pins
 from fem.shapes import DriveShapes
@@ -48,6 +48,8 @@ LARGEST_GRADINGS = 5
 SLACK = 1.1
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 RESERVE = 0.96
+# Condensed pins and rollers that travel from one position to the next: a drive without part errors needs some twenty.
+ROUNDS_KEPT = 40
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,7 +67,11 @@ class _Task:
     say: Callable[[str], None]
 
     def solve_guess(
-        self, guess: ExpectedContacts, start: tuple[float, float, float, float] | None, watch: _Stopwatch
+        self,
+        guess: ExpectedContacts,
+        start: tuple[float, float, float, float] | None,
+        rounds: tuple[RoundGroup, ...],
+        watch: _Stopwatch,
     ) -> tuple[DriveModel, PoseSolution]:
         """Solve on coarse meshes wherever the guess has a load."""
         place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
@@ -73,14 +79,21 @@ class _Task:
         contacts = self.grade(place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
         watch.lap("guess")
         self.say("coarse meshes")
-        model = self.condense(contacts, max(COARSE_SCALE, self.scale), _Stopwatch())
+        model = self.condense(contacts, max(COARSE_SCALE, self.scale), rounds, _Stopwatch())
         first = None if start is None else model.start_pose(start)
         solution = solve_pose(model, self.moment, start=first, progress=self.say)
         watch.lap("coarse")
         return model, solution
 
     def solve_graded(
-        self, model: DriveModel, solution: PoseSolution, grading: int, watch: _Stopwatch, *, fine_walls: bool
+        self,
+        model: DriveModel,
+        solution: PoseSolution,
+        grading: int,
+        rounds: tuple[RoundGroup, ...],
+        watch: _Stopwatch,
+        *,
+        fine_walls: bool,
     ) -> tuple[DriveModel, PoseSolution]:
         """Solve on meshes graded for the contacts of another solution."""
         results, pose = summarise_contacts(model, solution), solution.pose
@@ -90,19 +103,28 @@ class _Task:
         margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
         contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
         self.say("meshes")
-        graded = self.condense(contacts, self.scale * RESERVE, watch, fine_walls=fine_walls)
+        graded = self.condense(contacts, self.scale * RESERVE, rounds, watch, fine_walls=fine_walls)
         watch.lap("assembly and factorisation")
         found = solve_pose(graded, self.moment, start=solution.pose, progress=self.say)
         watch.lap("contact and pose")
         return graded, found
 
     def condense(
-        self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch, *, fine_walls: bool = False
+        self,
+        contacts: ExpectedContacts,
+        scale: float,
+        rounds: tuple[RoundGroup, ...],
+        watch: _Stopwatch,
+        *,
+        fine_walls: bool = False,
     ) -> DriveModel:
-        meshes = mesh_drive(self.shapes, contacts, scale=scale, fine_walls=fine_walls)
+        known = {group.made_of.grading: group.body for group in rounds}
+        meshes = mesh_drive(self.shapes, contacts, scale=scale, fine_walls=fine_walls, known=known)
         pins = mesh_shaft_pins(self.shapes, contacts, scale) if self.elastic_shaft_pins else ()
         watch.lap("mesh")
-        return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins)
+        return condense_drive(
+            self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins, known=rounds
+        )
 
     def grade(
         self,
@@ -147,6 +169,7 @@ def solve_drive(
     elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
+    rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
     """Solve a drive of one disc with the pin shaft held at one crank angle from nothing.
@@ -159,7 +182,7 @@ def solve_drive(
         φ_C, rad.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    scale, state, elastic_shaft_pins, fine_walls, start, progress
+    scale, state, elastic_shaft_pins, fine_walls, start, rounds, progress
         As for `solve_disc`.
 
     Returns
@@ -192,6 +215,7 @@ def solve_drive(
         elastic_shaft_pins=elastic_shaft_pins,
         fine_walls=fine_walls,
         start=start,
+        rounds=rounds,
         progress=progress,
     )
 
@@ -207,6 +231,7 @@ def solve_disc(
     elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
+    rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
     """Solve one disc with wheel, crank and pin shaft at one crank angle from nothing.
@@ -229,6 +254,9 @@ def solve_disc(
         Whether the walls of the disc are meshed finely enough for the stress along them, whatever the scale.
     start : tuple of four floats, optional
         First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
+    rounds : tuple of RoundGroup
+        Condensed pins and rollers of another solution (`FullSolution.rounds`), of any crank angle or disc: they save time
+        and change no bit of the result.
     progress : callable, optional
         Called with one line for each step.
 
@@ -262,10 +290,11 @@ def solve_disc(
         say=say,
     )
     require_model_memory([(shapes, guess)], scale)
-    model, solution = task.solve_guess(guess, start, watch)
-    complaint = ""
+    model, solution = task.solve_guess(guess, start, rounds, watch)
+    rounds, complaint = keep_rounds(rounds, model.groups), ""
     for grading in range(1, LARGEST_GRADINGS + 1):
-        model, solution = task.solve_graded(model, solution, grading, watch, fine_walls=fine_walls)
+        model, solution = task.solve_graded(model, solution, grading, rounds, watch, fine_walls=fine_walls)
+        rounds = keep_rounds(rounds, model.groups)
         complaint = find_shortcoming(model, solution, scale)
         results = summarise_contacts(model, solution)
         watch.lap("check")
@@ -279,6 +308,7 @@ def solve_disc(
                 plane_state=state,
                 fine_walls=fine_walls,
                 pose_iterations=solution.iterations,
+                rounds=rounds,
                 seconds=watch.seconds,
             )
         say(f"meshes graded anew ({grading}): {complaint}")
@@ -351,6 +381,7 @@ def solve_moment(
             state=previous.plane_state,
             elastic_shaft_pins=bool(model.shaft_pins),
             fine_walls=previous.fine_walls,
+            rounds=previous.rounds,
             progress=progress,
         )
     watch.seconds["total"] = sum(watch.seconds.values())
@@ -361,6 +392,20 @@ def solve_moment(
         pose_iterations=solution.iterations,
         seconds=watch.seconds,
     )
+
+
+def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
+    """Return the condensed pins and rollers to go on with: those just used last, the oldest dropped.
+
+    Parameters
+    ----------
+    known : tuple of RoundGroup
+        Those so far.
+    used : tuple of RoundGroup
+        Of the last model.
+    """
+    just_used = {group.made_of for group in used}
+    return (*(group for group in known if group.made_of not in just_used), *used)[-ROUNDS_KEPT:]
 
 
 def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:
