@@ -218,14 +218,18 @@ class BorderedFactor:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Return the solution of L D Lᵀ x = right, shape as right."""
-        forward = spla.spsolve_triangular(self.lower, right, lower=True, unit_diagonal=True)
+        # What overwriting means here: ones on the diagonal are set to one. A copy would cost ten times the solve.
+        forward = spla.spsolve_triangular(self.lower, right, lower=True, unit_diagonal=True, overwrite_A=True)
         scaled = forward / self.diagonal[:, None]
-        return np.asarray(spla.spsolve_triangular(self.lower.T, scaled, lower=False, unit_diagonal=True))
+        return np.asarray(
+            spla.spsolve_triangular(self.lower.T, scaled, lower=False, unit_diagonal=True, overwrite_A=True)
+        )
 
 
 def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -> tuple[FloatArray, BorderedFactor]:
     """Return Bᵀ K⁻¹ B over the kept unknowns and the factor of the bordered matrix."""
-    inner = stiffness.tocsr()[kept].tocsc()[:, kept]
+    # The columns of a symmetric matrix are its rows: no conversion is needed to pick them.
+    inner = stiffness.T[kept].tocsc()[:, kept]
     border = loads.tocsr()[kept]
     count = len(kept)
     matrix = sp.vstack([sp.hstack([inner, border]), sp.hstack([border.T, sp.csr_matrix((loads.shape[1],) * 2)])])

@@ -96,9 +96,7 @@ def condense_drive(
         groups=groups,
         pairs=tuple(pairs.found),
         placement=place,
-        shaft_pins=tuple(
-            mesh.placed(shape.name) for mesh, shape in zip(shaft_pins, shapes.shaft_pins, strict=False)
-        ),
+        shaft_pins=tuple(mesh.placed(shape.name) for mesh, shape in zip(shaft_pins, shapes.shaft_pins, strict=False)),
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.element_size import Refinement
+from fem.mesh.element_size import DEFAULT_GROWTH, Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, DriveShapes, Shape
@@ -60,6 +60,8 @@ class RoundGrading:
         Element edge far from them, mm.
     order : int
         1 or 2.
+    growth : float
+        Growth of the edge by distance from a contact.
     """
 
     radius: float
@@ -67,6 +69,7 @@ class RoundGrading:
     ends: tuple[RoundEnd, ...]
     coarse_size: float
     order: int = 2
+    growth: float = DEFAULT_GROWTH
 
     @property
     def refinements(self) -> tuple[Refinement, ...]:
@@ -80,7 +83,7 @@ class RoundGrading:
     def mesh(self, name: str) -> BodyMesh:
         """Return the mesh under the name of a body."""
         shape = CircleShape(name=name, radius=self.radius, core_radius=self.core_radius)
-        return mesh_circle(shape, self.refinements, coarse_size=self.coarse_size, order=self.order)
+        return mesh_circle(shape, self.refinements, coarse_size=self.coarse_size, growth=self.growth, order=self.order)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,7 +197,7 @@ def coarse_edge(shape: Shape, scale: float) -> float:
 
 
 def _plan_circles(
-    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], scale: float, order: int
+    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], scale: float, order: int, growth: float
 ) -> list[tuple[str, RoundGrading, float]]:
     """Return name, grading and turn of each pin or roller; a roller's contacts lie opposite each other."""
     plan = []
@@ -211,6 +214,7 @@ def _plan_circles(
             ends=ends,
             coarse_size=coarse_edge(shape, scale),
             order=order,
+            growth=growth,
         )
         plan.append((shape.name, grading, float(groups[0].direction[index])))
     return plan
@@ -251,6 +255,7 @@ def mesh_drive(
     *,
     scale: float = 1.0,
     order: int = 2,
+    growth: float = DEFAULT_GROWTH,
     fine_walls: bool = False,
     known: Mapping[RoundGrading, BodyMesh] | None = None,
     report: Callable[[BodyMesh], None] | None = None,
@@ -270,6 +275,8 @@ def mesh_drive(
         Element edge as a multiple of the default, 8 elements for each half-width.
     order : int
         1 or 2.
+    growth : float
+        Growth of the edge by distance from a contact.
     fine_walls : bool
         Whether the disc's walls are fine enough for the stress along them (`wall_refinements`).
     known : mapping of RoundGrading to BodyMesh, optional
@@ -294,15 +301,17 @@ def mesh_drive(
     disc_spots, race_spots = disc_refinements(contacts, scale), race_refinements(contacts, scale)
     if fine_walls:
         disc_spots += wall_refinements(shapes.disc)
-    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale, order)
-    rollers = _plan_circles(shapes.rollers, (contacts.rollers_outer, contacts.rollers_inner), scale, order)
+    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale, order, growth)
+    ends = (contacts.rollers_outer, contacts.rollers_inner)
+    rollers = _plan_circles(shapes.rollers, ends, scale, order, growth)
     planned: list[tuple[Shape, tuple[Refinement, ...]]] = [(shapes.disc, disc_spots), (shapes.inner_race, race_spots)]
     planned += [
         (shape, grading.refinements)
         for shape, (_, grading, _) in zip(shapes.wheel_pins + shapes.rollers, pins + rollers, strict=True)
     ]
     total = sum(
-        estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, scale), order=order) for shape, spots in planned
+        estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, scale), growth=growth, order=order)
+        for shape, spots in planned
     )
     require_memory(total, solution_memory(total), "the drive's mesh")
 
@@ -318,15 +327,19 @@ def mesh_drive(
             made[grading] = grading.mesh(name)
         return RoundMesh(grading=grading, body=made[grading], turn=turn)
 
-    disc = announce(mesh_disc(shapes.disc, disc_spots, coarse_size=coarse_edge(shapes.disc, scale), order=order))
+    disc_edge, race_edge = coarse_edge(shapes.disc, scale), coarse_edge(shapes.inner_race, scale)
+    disc = announce(mesh_disc(shapes.disc, disc_spots, coarse_size=disc_edge, growth=growth, order=order))
     unturned_pins = tuple(circle(*item) for item in pins)
     unturned_rollers = tuple(circle(*item) for item in rollers)
-    race_edge = coarse_edge(shapes.inner_race, scale)
     return DriveMeshes(
         disc=disc,
         wheel_pins=tuple(announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_pins, pins, strict=True)),
-        rollers=tuple(announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_rollers, rollers, strict=True)),
-        inner_race=announce(mesh_ring(shapes.inner_race, race_spots, coarse_size=race_edge, order=order)),
+        rollers=tuple(
+            announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_rollers, rollers, strict=True)
+        ),
+        inner_race=announce(
+            mesh_ring(shapes.inner_race, race_spots, coarse_size=race_edge, growth=growth, order=order)
+        ),
         unturned_pins=unturned_pins,
         unturned_rollers=unturned_rollers,
     )
