@@ -55,7 +55,9 @@ def jacobians(body: BodyMesh, elements: IntArray, slopes: FloatArray) -> FloatAr
 def elastic_blocks(
     body: BodyMesh, elements: IntArray, quadrature: int, *, lam: float, mu: float, straight: bool
 ) -> FloatArray:
-    r"""Return the stiffness :math:`\int \lambda N_{i,a} N_{j,b} + \mu (N_{i,b} N_{j,a} + \delta_{ab} \nabla N_i \cdot \nabla N_j)\,dA`.
+    r"""Return the stiffness of elements.
+
+    .. math:: \int \lambda N_{i,a} N_{j,b} + \mu (N_{i,b} N_{j,a} + \delta_{ab} \nabla N_i \cdot \nabla N_j)\,dA
 
     Parameters
     ----------

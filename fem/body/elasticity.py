@@ -141,7 +141,8 @@ def area_loads(body: BodyMesh, centre: complex = 0j) -> FloatArray:
 
     def integrate(field: FloatArray) -> FloatArray:
         """∫ N_i f dA of a field given at the quadrature points of every element."""
-        return np.bincount(nodes.ravel(), weights=(values.T @ (area * field)).ravel(), minlength=body.node_count)
+        amounts = (values.T @ (area * field)).ravel()
+        return np.asarray(np.bincount(nodes.ravel(), weights=amounts, minlength=body.node_count), dtype=float)
 
     loads = np.zeros((body.unknowns, 3))
     loads[0::2, 0] = loads[1::2, 1] = integrate(np.ones_like(x))
