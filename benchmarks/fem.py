@@ -73,6 +73,7 @@ def measure(size: float, further: bool) -> dict:
 def solve_series(size: float, positions: int, refereed: int) -> dict:
     """Solve a turn of the crank in this process and let CalculiX solve some positions; return the seconds of both."""
     import math
+    import resource
     import tempfile
     import time
 
@@ -83,7 +84,15 @@ def solve_series(size: float, positions: int, refereed: int) -> dict:
 
     angles = [ANGLE + 2.0 * math.pi * position / positions for position in range(positions)]
     chosen = {round(place * positions / refereed) for place in range(refereed)}
-    row: dict = {"size": size, "unknowns": [], "seconds": [], "cpu_seconds": [], "ccx_seconds": {}, "ours_less_ccx": {}}
+    row: dict = {
+        "size": size,
+        "memory_MB": 0.0,
+        "unknowns": [],
+        "seconds": [],
+        "cpu_seconds": [],
+        "ccx_seconds": {},
+        "ours_less_ccx": {},
+    }
     solutions = solve_positions(load_drive("paper").cases[CASE], angles, scale=size)
     with tempfile.TemporaryDirectory() as folder:
         for position in range(positions):
@@ -97,6 +106,7 @@ def solve_series(size: float, positions: int, refereed: int) -> dict:
                 answer = ask_calculix(disc, write_deck(disc, Path(folder) / "deck.inp"), find_calculix())
                 row["ccx_seconds"][position] = answer.seconds
                 row["ours_less_ccx"][position] = arcseconds(solution.wheel_angle - answer.wheel_angle)
+    row["memory_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     return row
 
 
@@ -226,7 +236,7 @@ def time_series(size: float, positions: int, refereed: int) -> dict:
     each = " ".join(f"{seconds:.1f}" for seconds in ours)
     print(
         f"\n{positions} positions of size {size:g}, {min(row['unknowns']):,} to {max(row['unknowns']):,} unknowns: "
-        f"{sum(ours):.1f} s (CPU {sum(row['cpu_seconds']):.1f} s): {each}"
+        f"{sum(ours):.1f} s (CPU {sum(row['cpu_seconds']):.1f} s), {row['memory_MB']:.0f} MB: {each}"
     )
     if theirs:
         mean = sum(theirs.values()) / len(theirs)

@@ -60,6 +60,11 @@ class CondensedBody:
     _area: FloatArray | None
     _trailing: FloatArray
 
+    @property
+    def entries(self) -> int:
+        """Numbers that it holds: those of the factor, most of all."""
+        return int(self._factor.lower.nnz) + self.compliance.size + self._trailing.size
+
     def displacement(self, amounts: FloatArray) -> FloatArray:
         """Return the nodal displacement under amounts of the unit loads.
 

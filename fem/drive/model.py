@@ -105,6 +105,11 @@ class RoundGroup:
     condensed: CondensedBody
     zones: tuple[OppositeZone, ...]
 
+    @property
+    def entries(self) -> int:
+        """Numbers that it holds."""
+        return self.condensed.entries
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactPair:

@@ -52,8 +52,9 @@ LARGEST_GRADINGS = 5
 SLACK = 1.1
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 RESERVE = 0.96
-# Condensed pins and rollers that travel from one position to the next: a drive without part errors needs some twenty.
-ROUNDS_KEPT = 40
+# Numbers in condensed pins and rollers that travel from one position to the next, half a gigabyte: three times what the
+# paper's drive needs for all positions, and little beside a disc whose own pins and rollers need as much.
+ENTRIES_KEPT = 40_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -408,7 +409,7 @@ def solve_moment(
 
 
 def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
-    """Return the condensed pins and rollers to go on with: those just used last, the oldest dropped.
+    """Return the condensed pins and rollers to go on with: those just used last, the oldest of others dropped.
 
     Parameters
     ----------
@@ -418,7 +419,14 @@ def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> 
         Of the last model.
     """
     just_used = {group.made_of for group in used}
-    return (*(group for group in known if group.made_of not in just_used), *used)[-ROUNDS_KEPT:]
+    room = ENTRIES_KEPT - sum(group.entries for group in used)
+    kept: list[RoundGroup] = []
+    for group in reversed([group for group in known if group.made_of not in just_used]):
+        room -= group.entries
+        if room < 0:
+            break
+        kept.insert(0, group)
+    return (*kept, *used)
 
 
 def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:

@@ -12,7 +12,7 @@ import fem.drive.solution as stages
 from fem.drive.condensed import condense_drive
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.meshes import mesh_drive
-from fem.drive.solution import ROUNDS_KEPT, keep_rounds
+from fem.drive.solution import ENTRIES_KEPT, keep_rounds
 from fem.errors import MeshError
 from fem.reducer.series import solve_positions
 from fem.reducer.solution import solve_reducer
@@ -88,10 +88,12 @@ def test_a_coarse_mesh_too_flat_for_fast_growth_is_made_with_slow_growth():
 
 
 def test_the_oldest_pins_and_rollers_are_dropped_first():
-    groups = [SimpleNamespace(made_of=number) for number in range(ROUNDS_KEPT + 5)]
-    known = keep_rounds((), tuple(groups[:ROUNDS_KEPT]))
-    known = keep_rounds(known, (groups[0], *groups[ROUNDS_KEPT:]))
-    assert len(known) == ROUNDS_KEPT
-    # 1 to 5 made room; 0 was used again and counts as new
-    assert [group.made_of for group in known[:2]] == [6, 7]
-    assert [group.made_of for group in known[-6:]] == [0, *range(ROUNDS_KEPT, ROUNDS_KEPT + 5)]
+    """What travels is bounded, so that a long series needs no more memory than a short one."""
+    groups = [SimpleNamespace(made_of=number, entries=ENTRIES_KEPT // 10) for number in range(13)]
+    known = keep_rounds((), tuple(groups[:10]))
+    known = keep_rounds(known, (groups[0], *groups[10:]))
+    # 1 to 3 made room; 0 was used again and counts as new
+    assert [group.made_of for group in known] == [4, 5, 6, 7, 8, 9, 0, 10, 11, 12]
+    # What is in use stays, however much it is.
+    large = SimpleNamespace(made_of="large", entries=2 * ENTRIES_KEPT)
+    assert keep_rounds(known, (large,)) == (large,)
