@@ -26,6 +26,9 @@ ComplexArray = NDArray[np.complex128]
 # factor of four doubles the half-width and still ends inside.
 PRESSURE_REACH = 2.4
 OPPOSITE_REACH = 3.6
+# Numbers in condensed pins and rollers that travel from one position to the next, half a gigabyte: twice what the paper's
+# drive needs for a turn of the crank.
+ENTRIES_KEPT = 40_000_000
 
 
 def condense_drive(
@@ -98,6 +101,27 @@ def condense_drive(
         placement=place,
         shaft_pins=tuple(mesh.placed(shape.name) for mesh, shape in zip(shaft_pins, shapes.shaft_pins, strict=False)),
     )
+
+
+def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
+    """Return the condensed pins and rollers to go on with: those just used last, the oldest of others dropped.
+
+    Parameters
+    ----------
+    known : tuple of RoundGroup
+        Those so far.
+    used : tuple of RoundGroup
+        Of the last model.
+    """
+    just_used = {group.made_of for group in used}
+    room = ENTRIES_KEPT - sum(group.entries for group in used)
+    kept: list[RoundGroup] = []
+    for group in reversed([group for group in known if group.made_of not in just_used]):
+        room -= group.entries
+        if room < 0:
+            break
+        kept.insert(0, group)
+    return (*kept, *used)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

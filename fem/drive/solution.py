@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
-from fem.drive.condensed import condense_drive
+from fem.drive.condensed import condense_drive, keep_rounds
 from fem.drive.contact_results import open_gaps, summarise_contacts
 from fem.drive.expected_contacts import ExpectedContacts, expect_contacts, require_one_disc
 from fem.drive.full_solution import FullSolution
-from fem.drive.grading import grade_contacts, measure_gaps
-from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, mesh_drive, require_model_memory
+from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts, measure_gaps
+from fem.drive.meshes import mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.shaft_pins import mesh_shaft_pins
@@ -44,17 +44,11 @@ COARSE_SCALE = 3.5
 COARSE_GROWTH = 0.6
 COARSE_SHARE = 0.25
 COARSE_MARGIN = 1.0
-FINE_SHARE = 0.05
 # Open contacts within this part of the largest approach stay candidates of the fine stage.
 FINE_MARGIN = 0.15
 LARGEST_GRADINGS = 5
-# Elements may be this much larger than asked for before the meshes are graded anew.
-SLACK = 1.1
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 RESERVE = 0.96
-# Numbers in condensed pins and rollers that travel from one position to the next, half a gigabyte: three times what the
-# paper's drive needs for all positions, and little beside a disc whose own pins and rollers need as much.
-ENTRIES_KEPT = 40_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -406,73 +400,6 @@ def solve_moment(
         pose_iterations=solution.iterations,
         seconds=watch.seconds,
     )
-
-
-def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
-    """Return the condensed pins and rollers to go on with: those just used last, the oldest of others dropped.
-
-    Parameters
-    ----------
-    known : tuple of RoundGroup
-        Those so far.
-    used : tuple of RoundGroup
-        Of the last model.
-    """
-    just_used = {group.made_of for group in used}
-    room = ENTRIES_KEPT - sum(group.entries for group in used)
-    kept: list[RoundGroup] = []
-    for group in reversed([group for group in known if group.made_of not in just_used]):
-        room -= group.entries
-        if room < 0:
-            break
-        kept.insert(0, group)
-    return (*kept, *used)
-
-
-def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:
-    """Return why the meshes do not serve a solution, "" when they do."""
-    results = summarise_contacts(model, solution)
-    for pair, detail in zip(model.pairs, results.details, strict=True):
-        own = solution.contact.pressure[pair.unknowns]
-        name = f"{pair.kind.replace('_', ' ')} {pair.index}"
-        if own[0] > 0.0 or own[-1] > 0.0:
-            return f"the pressure of {name} reaches the end of its zone"
-        if (
-            detail.share > FINE_SHARE
-            and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH
-        ):
-            return (
-                f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
-                f"not {ELEMENTS_PER_HALF_WIDTH / scale:.3g}"
-            )
-    return _closed_without_zone(model, solution)
-
-
-def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
-    pose, place = solution.pose, model.placement
-    gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-    elastic = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
-    moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
-    nodes = model.meshes.disc.mesh.doflocs[0] + 1j * model.meshes.disc.mesh.doflocs[1]
-    turn = np.exp(1j * pose.disc_rotation)
-    rays = model.roller_rays
-    flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
-    bore = place.bore_radius * rays / turn
-    holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
-    candidates = {(pair.kind, pair.index) for pair in model.pairs}
-    for kind, gap, points, normals in (
-        ("pin", gaps.pins, flank, gaps.pin_normals),
-        ("roller_outer", gaps.rollers, bore, -rays),
-        ("hole", gaps.holes, holes, -gaps.hole_directions),
-    ):
-        for index in range(len(gap)):
-            if (kind, index) in candidates:
-                continue
-            nearest = int(np.argmin(np.abs(nodes - points[index])))
-            left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
-            if left < 0.0:
-                return f"{kind.replace('_outer', '')} {index} closes by {-1e3 * left:.3g} µm and has no contact zone"
-    return ""
 
 
 def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
+from fem.drive.condensed import keep_rounds
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import FullSolution
 from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
-from fem.drive.solution import keep_rounds, solve_disc, solve_moment
+from fem.drive.solution import solve_disc, solve_moment
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive

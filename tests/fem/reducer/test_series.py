@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import fem.drive.solution as stages
-from fem.drive.condensed import condense_drive
+from fem.drive.condensed import ENTRIES_KEPT, condense_drive, keep_rounds
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.meshes import mesh_drive
-from fem.drive.solution import ENTRIES_KEPT, keep_rounds
 from fem.errors import MeshError
 from fem.reducer.series import solve_positions
 from fem.reducer.solution import solve_reducer
