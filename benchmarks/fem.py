@@ -91,6 +91,7 @@ def solve_series(size: float, positions: int, refereed: int) -> dict:
         "seconds": [],
         "cpu_seconds": [],
         "ccx_seconds": {},
+        "ccx_cpu_seconds": {},
         "ours_less_ccx": {},
     }
     solutions = solve_positions(load_drive("paper").cases[CASE], angles, scale=size)
@@ -105,6 +106,9 @@ def solve_series(size: float, positions: int, refereed: int) -> dict:
                 (disc,) = solution.discs
                 answer = ask_calculix(disc, write_deck(disc, Path(folder) / "deck.inp"), find_calculix())
                 row["ccx_seconds"][position] = answer.seconds
+                used = resource.getrusage(resource.RUSAGE_CHILDREN)
+                before = sum(row["ccx_cpu_seconds"].values())
+                row["ccx_cpu_seconds"][position] = used.ru_utime + used.ru_stime - before
                 row["ours_less_ccx"][position] = arcseconds(solution.wheel_angle - answer.wheel_angle)
     row["memory_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     return row
@@ -240,9 +244,11 @@ def time_series(size: float, positions: int, refereed: int) -> dict:
     )
     if theirs:
         mean = sum(theirs.values()) / len(theirs)
+        processor = positions * sum(row["ccx_cpu_seconds"].values()) / len(theirs) / sum(row["cpu_seconds"])
         print(
             f"CalculiX: {mean:.1f} s a position (of {len(theirs)}), {positions * mean:.0f} s for {positions}: "
-            f"{positions * mean / sum(ours):.0f} times ours; wheel angles, ours less theirs: "
+            f"{positions * mean / sum(ours):.0f} times ours "
+            f"({processor:.0f} in processor time); wheel angles, ours less theirs: "
             + ", ".join(f"{value:+.3f}″" for value in row["ours_less_ccx"].values())
         )
     return row
