@@ -80,6 +80,7 @@ def solve_series(size: float, positions: int, refereed: int) -> dict:
     from fem.reducer.series import solve_positions
     from fem.referee.calculix import ask_calculix
     from fem.referee.calculix_deck import find_calculix, write_deck
+    from ltca.errors import CycloError
     from ltca.reading.drive_file import load_drive
 
     angles = [ANGLE + 2.0 * math.pi * position / positions for position in range(positions)]
@@ -104,12 +105,19 @@ def solve_series(size: float, positions: int, refereed: int) -> dict:
             row["unknowns"].append(solution.unknowns)
             if position in chosen:
                 (disc,) = solution.discs
-                answer = ask_calculix(disc, write_deck(disc, Path(folder) / "deck.inp"), find_calculix())
-                row["ccx_seconds"][position] = answer.seconds
+                deck = write_deck(disc, Path(folder) / "deck.inp")
+                start = time.perf_counter()
+                try:
+                    answer = ask_calculix(disc, deck, find_calculix())
+                    row["ours_less_ccx"][position] = arcseconds(solution.wheel_angle - answer.wheel_angle)
+                    row["ccx_seconds"][position] = answer.seconds
+                except CycloError as error:
+                    # It took its time, whatever came of it.
+                    print(f"position {position}: {error}", file=sys.stderr, flush=True)
+                    row["ccx_seconds"][position] = time.perf_counter() - start
                 used = resource.getrusage(resource.RUSAGE_CHILDREN)
                 before = sum(row["ccx_cpu_seconds"].values())
                 row["ccx_cpu_seconds"][position] = used.ru_utime + used.ru_stime - before
-                row["ours_less_ccx"][position] = arcseconds(solution.wheel_angle - answer.wheel_angle)
     row["memory_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     return row
 
