@@ -4,6 +4,9 @@
 size, each in a process of its own (peak memory is that of the process), then a further load and a further position at
 the default size; with ``--ccx`` CalculiX solves the decks of these sizes (the default one) in the same run.
 
+``--sizes --series 12 [--series-size 1] [--refereed 12]``: a whole turn of the crank in so many positions, each taking from the
+one before what it can; CalculiX solves the decks of the refereed ones (evenly spread), and its mean stands for the others.
+
 ``--sizes --ccx 6 4 3 2`` (no timing) shows what coarse meshes do to the wheel's angle: ours, ours on the same mesh with
 every other pressure alone (both ways to choose them), CalculiX's. With every other pressure the mesh of size 3 has as few of
 them as that of size 6 (1.3 for each half-width) and its displacements stay: what then moves, the pressures move.
@@ -62,8 +65,60 @@ def measure(size: float, further: bool) -> dict:
                 "same_meshes": more.model is solution.model,
             }
         start, cpu = time.perf_counter(), time.process_time()
-        solve_drive(drive, ANGLE + 0.3, scale=size)
+        solve_drive(drive, ANGLE + 0.3, scale=size, rounds=solution.rounds)
         row["further position"] = {"seconds": time.perf_counter() - start, "cpu_seconds": time.process_time() - cpu}
+    return row
+
+
+def solve_series(size: float, positions: int, refereed: int) -> dict:
+    """Solve a turn of the crank in this process and let CalculiX solve some positions; return the seconds of both."""
+    import math
+    import resource
+    import tempfile
+    import time
+
+    from fem.reducer.series import solve_positions
+    from fem.referee.calculix import ask_calculix
+    from fem.referee.calculix_deck import find_calculix, write_deck
+    from ltca.errors import CycloError
+    from ltca.reading.drive_file import load_drive
+
+    angles = [ANGLE + 2.0 * math.pi * position / positions for position in range(positions)]
+    chosen = {round(place * positions / refereed) for place in range(refereed)}
+    row: dict = {
+        "size": size,
+        "memory_MB": 0.0,
+        "unknowns": [],
+        "seconds": [],
+        "cpu_seconds": [],
+        "ccx_seconds": {},
+        "ccx_cpu_seconds": {},
+        "ours_less_ccx": {},
+    }
+    solutions = solve_positions(load_drive("paper").cases[CASE], angles, scale=size)
+    with tempfile.TemporaryDirectory() as folder:
+        for position in range(positions):
+            start, cpu = time.perf_counter(), time.process_time()
+            solution = next(solutions)
+            row["seconds"].append(time.perf_counter() - start)
+            row["cpu_seconds"].append(time.process_time() - cpu)
+            row["unknowns"].append(solution.unknowns)
+            if position in chosen:
+                (disc,) = solution.discs
+                deck = write_deck(disc, Path(folder) / "deck.inp")
+                start = time.perf_counter()
+                try:
+                    answer = ask_calculix(disc, deck, find_calculix())
+                    row["ours_less_ccx"][position] = arcseconds(solution.wheel_angle - answer.wheel_angle)
+                    row["ccx_seconds"][position] = answer.seconds
+                except CycloError as error:
+                    # It took its time, whatever came of it.
+                    print(f"position {position}: {error}", file=sys.stderr, flush=True)
+                    row["ccx_seconds"][position] = time.perf_counter() - start
+                used = resource.getrusage(resource.RUSAGE_CHILDREN)
+                before = sum(row["ccx_cpu_seconds"].values())
+                row["ccx_cpu_seconds"][position] = used.ru_utime + used.ru_stime - before
+    row["memory_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     return row
 
 
@@ -133,24 +188,35 @@ def main() -> None:
     parser.add_argument("--sizes", type=float, nargs="*", default=[6.0, 2.0, 1.0, 0.5, 0.38])
     parser.add_argument("--ccx", type=float, nargs="*", metavar="SIZE", help="CalculiX on decks of these sizes (1)")
     parser.add_argument("--penalty", type=float, nargs="+", default=[], help="its penalty factors (the deck's)")
+    parser.add_argument("--series", type=int, metavar="N", help="a turn of the crank in N positions")
+    parser.add_argument("--series-size", type=float, default=1.0, help="their element edge (1)")
+    parser.add_argument(
+        "--refereed", type=int, default=0, metavar="N", help="how many of them CalculiX solves, too (0)"
+    )
     parser.add_argument("--out", type=Path)
     parser.add_argument("--worker", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.worker is not None:
         task, size = arguments.worker.split(":")
-        done = compare(float(size), arguments.penalty) if task == "ccx" else measure(float(size), float(size) == 1.0)
+        if task == "series":
+            done = solve_series(float(size), arguments.series, arguments.refereed)
+        else:
+            done = (
+                compare(float(size), arguments.penalty) if task == "ccx" else measure(float(size), float(size) == 1.0)
+            )
         print(json.dumps(done))
         return
     rows = time_sizes(arguments.sizes) if arguments.sizes else []
     compared = [] if arguments.ccx is None else compare_sizes(arguments.ccx or [1.0], arguments.penalty)
+    series = time_series(arguments.series_size, arguments.series, arguments.refereed) if arguments.series else None
     if arguments.out:
-        content = {"load_average": os.getloadavg(), "rows": rows, "calculix": compared}
+        content = {"load_average": os.getloadavg(), "rows": rows, "calculix": compared, "series": series}
         arguments.out.write_text(json.dumps(content, indent=1) + "\n")
 
 
-def run_worker(task: str, size: float, penalties: list[float]) -> dict:
+def run_worker(task: str, size: float, penalties: list[float], *options: str) -> dict:
     """Do one task in a process of its own."""
-    words = [sys.executable, __file__, "--worker", f"{task}:{size}"]
+    words = [sys.executable, __file__, "--worker", f"{task}:{size}", *options]
     words += ["--penalty", *map(str, penalties)] if penalties else []
     done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True)
     return json.loads(done.stdout.splitlines()[-1])
@@ -173,6 +239,27 @@ def time_sizes(sizes: list[float]) -> list[dict]:
             if name in row:
                 print(f"  {name}: {row[name]}")
     return rows
+
+
+def time_series(size: float, positions: int, refereed: int) -> dict:
+    """Time a series and print it, with the ratio to CalculiX where that solved some of it."""
+    row = run_worker("series", size, [], "--series", str(positions), "--refereed", str(refereed))
+    ours, theirs = row["seconds"], row["ccx_seconds"]
+    each = " ".join(f"{seconds:.1f}" for seconds in ours)
+    print(
+        f"\n{positions} positions of size {size:g}, {min(row['unknowns']):,} to {max(row['unknowns']):,} unknowns: "
+        f"{sum(ours):.1f} s (CPU {sum(row['cpu_seconds']):.1f} s), {row['memory_MB']:.0f} MB: {each}"
+    )
+    if theirs:
+        mean = sum(theirs.values()) / len(theirs)
+        processor = positions * sum(row["ccx_cpu_seconds"].values()) / len(theirs) / sum(row["cpu_seconds"])
+        print(
+            f"CalculiX: {mean:.1f} s a position (of {len(theirs)}), {positions * mean:.0f} s for {positions}: "
+            f"{positions * mean / sum(ours):.0f} times ours "
+            f"({processor:.0f} in processor time); wheel angles, ours less theirs: "
+            + ", ".join(f"{value:+.3f}″" for value in row["ours_less_ccx"].values())
+        )
+    return row
 
 
 def compare_sizes(sizes: list[float], penalties: list[float]) -> list[dict]:

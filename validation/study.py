@@ -15,7 +15,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
 from validation.compare.derived_coefficients import coefficients_of, disc_coefficients_of, nominal_coefficients_of
-from validation.compare.finite_element_positions import FullPosition, Settings, solve_position
+from validation.compare.finite_element_positions import FullPosition, Settings, solve_positions
 from validation.compare.model_positions import DiscCoefficients
 from validation.levels.closed_forms import check_closed_forms
 from validation.levels.coefficients import check_file, halved_mesh_row
@@ -234,19 +234,16 @@ def _solve_positions(
     pictured = plan.crank_angles[len(plan.crank_angles) // 2]
     solved: dict[str, list[FullPosition]] = {}
     for case, drive in plan.drives.items():
-        solved[case] = []
-        for angle in plan.crank_angles:
-            step(f"full FE of {case} at {angle:.4g} rad")
-            solved[case].extend(
-                solve_position(
-                    drive,
-                    case,
-                    angle,
-                    folder,
-                    plan.settings,
-                    pictures=angle == pictured,
-                    title=f"{plan.name}, {case}, {angle:.4g} rad",
-                    progress=say,
-                )
-            )
+        series = solve_positions(
+            drive,
+            case,
+            plan.crank_angles,
+            folder,
+            plan.settings,
+            pictured=pictured,
+            title=f"{plan.name}, {case}",
+            begin=step,
+            progress=say,
+        )
+        solved[case] = [position for positions in series for position in positions]
     return solved

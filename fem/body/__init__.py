@@ -3,6 +3,7 @@
 Modules in the order data passes:
 
 ============  ============================================================
+assembly      Stiffness of all elements in one product of matrices, and its sum by nodes
 elasticity    Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
 surface       Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
 condensation  Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them

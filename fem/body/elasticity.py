@@ -13,9 +13,10 @@ from typing import Literal
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
-from skfem.models.elasticity import lame_parameters, linear_elasticity
+from skfem import ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
+from skfem.models.elasticity import lame_parameters
 
+from fem.body.assembly import elastic_blocks, element_nodes, jacobians, shape_functions, sum_by_nodes
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from ltca.drive.parts import Material
 
@@ -90,20 +91,18 @@ def assemble_stiffness(
         N/mm, symmetric, with the three rigid modes as null space.
     """
     lam, mu = plane_lame_parameters(material, state)
-    form = linear_elasticity(thickness * lam, thickness * mu)
-    element = _vector_element(body)
     curved = curved_elements(body)
-    # Curved elements cost twice as many points; they lie along the boundary only.
-    total: sp.csc_matrix | None = None
-    for elements, order in (
-        (np.flatnonzero(~curved), STRAIGHT_QUADRATURE),
-        (np.flatnonzero(curved), CURVED_QUADRATURE),
-    ):
-        if len(elements):
-            part = form.assemble(Basis(body.mesh, element, intorder=order, elements=elements))
-            total = part.tocsc() if total is None else total + part.tocsc()
-    assert total is not None
-    return total
+    straight, bent = np.flatnonzero(~curved), np.flatnonzero(curved)
+    lam, mu = thickness * lam, thickness * mu
+    # Curved elements cost six times as many points; they lie along the boundary only.
+    blocks = np.concatenate(
+        [
+            elastic_blocks(body, straight, STRAIGHT_QUADRATURE, lam=lam, mu=mu, straight=True),
+            elastic_blocks(body, bent, CURVED_QUADRATURE, lam=lam, mu=mu, straight=False),
+        ],
+        axis=-1,
+    )
+    return sum_by_nodes(body, np.concatenate([straight, bent]), blocks)
 
 
 def rigid_modes(body: BodyMesh, centre: complex = 0j) -> FloatArray:
@@ -134,18 +133,22 @@ def area_loads(body: BodyMesh, centre: complex = 0j) -> FloatArray:
     array, shape (2 nodes, 3)
         mm², mm², mm³ for each unit of body force.
     """
-    basis = Basis(body.mesh, _vector_element(body), intorder=CURVED_QUADRATURE)
+    nodes = element_nodes(body)
+    values, slopes, weights = shape_functions(body, CURVED_QUADRATURE)
+    jacobian = jacobians(body, np.arange(nodes.shape[1]), slopes)
+    area = weights[:, None] * (jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0])
+    x, y = np.einsum("qn,ane->aqe", values, body.mesh.doflocs[:, nodes], optimize=True)
 
-    def translation_x(v, w):  # type: ignore[no-untyped-def]
-        return v[0]
+    def integrate(field: FloatArray) -> FloatArray:
+        """∫ N_i f dA of a field given at the quadrature points of every element."""
+        amounts = (values.T @ (area * field)).ravel()
+        return np.asarray(np.bincount(nodes.ravel(), weights=amounts, minlength=body.node_count), dtype=float)
 
-    def translation_y(v, w):  # type: ignore[no-untyped-def]
-        return v[1]
-
-    def rotation(v, w):  # type: ignore[no-untyped-def]
-        return -(w.x[1] - centre.imag) * v[0] + (w.x[0] - centre.real) * v[1]
-
-    return np.column_stack([LinearForm(form).assemble(basis) for form in (translation_x, translation_y, rotation)])
+    loads = np.zeros((body.unknowns, 3))
+    loads[0::2, 0] = loads[1::2, 1] = integrate(np.ones_like(x))
+    loads[0::2, 2] = -integrate(y - centre.imag)
+    loads[1::2, 2] = integrate(x - centre.real)
+    return loads
 
 
 def unknowns_of_nodes(nodes: IntArray) -> IntArray:

@@ -13,10 +13,10 @@ condensed          Condensation of all bodies of a drive: zones on the meshes, o
                    mesh
 pose               Iteration of the pose: contact solved about the pose of the bodies, bodies moved there, gaps
                    rebuilt
-grading            Where the contacts of rigid bodies lie at a given pose, how far open they are, and how to grade
-                   meshes for them
 contact_results    From contact unknowns to the numbers of each part: loads, peak pressures, half-widths, forces on
                    the disc
+grading            Where the contacts of rigid bodies lie at a given pose, how far open they are, how to grade
+                   meshes for them, and why meshes do not serve a solution
 full_solution      Solution of one disc with wheel, crank and pin shaft at one crank angle, and what follows from it
 solution           The way to it: coarse, graded anew, fine, checked
 fields             Fields of a full solution on the nodes of every body, in the fixed frame at the loaded pose

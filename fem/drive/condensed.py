@@ -12,8 +12,8 @@ from fem.body.condensation import CondensedBody, condense_body
 from fem.body.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
 from fem.body.surface import OppositeZone, PressureZone
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
-from fem.drive.meshes import DriveMeshes
-from fem.drive.model import ContactPair, DriveModel, PairKind, RoundGroup
+from fem.drive.meshes import DriveMeshes, RoundMesh
+from fem.drive.model import ContactPair, DriveModel, PairKind, RoundBody, RoundGroup
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve, DriveShapes
 from ltca.drive.parts import Drive, Material
@@ -26,6 +26,9 @@ ComplexArray = NDArray[np.complex128]
 # factor of four doubles the half-width and still ends inside.
 PRESSURE_REACH = 2.4
 OPPOSITE_REACH = 3.6
+# Numbers in condensed pins and rollers that travel from one position to the next, half a gigabyte: twice what the paper's
+# drive needs for a turn of the crank.
+ENTRIES_KEPT = 40_000_000
 
 
 def condense_drive(
@@ -35,7 +38,8 @@ def condense_drive(
     meshes: DriveMeshes,
     *,
     state: PlaneState = "strain",
-    shaft_pins: tuple[BodyMesh, ...] = (),
+    shaft_pins: tuple[RoundMesh, ...] = (),
+    known: tuple[RoundGroup, ...] = (),
 ) -> DriveModel:
     """Assemble, factorise and condense all bodies.
 
@@ -51,8 +55,10 @@ def condense_drive(
         Meshes graded for them.
     state : {"strain", "stress"}
         Plane strain or plane stress.
-    shaft_pins : tuple of BodyMesh
+    shaft_pins : tuple of RoundMesh
         Meshes of elastic shaft pins, from `fem.drive.shaft_pins.mesh_shaft_pins`; rigid circles without them.
+    known : tuple of RoundGroup
+        Pins and rollers condensed before; those of the same make are taken as they are.
 
     Returns
     -------
@@ -67,9 +73,10 @@ def condense_drive(
     place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=state)
     materials, holes = drive.materials, contacts.holes
     outer, inner = contacts.rollers_outer, contacts.rollers_inner
-    pins = _condense_round(meshes.wheel_pins, (contacts.pins,), materials.wheel_pin, slab, held="core")
-    rollers = _condense_round(meshes.rollers, (outer, inner), materials.roller, slab)
-    elastic = _condense_round(shaft_pins, (holes,), materials.shaft_pin, slab) if shaft_pins else _RoundBodies()
+    stock = {group.made_of: group for group in known}
+    pins = _condense_round(meshes.unturned_pins, contacts.pins, materials.wheel_pin, slab, stock, held="core")
+    rollers = _condense_round(meshes.unturned_rollers, outer, materials.roller, slab, stock)
+    elastic = _condense_round(shaft_pins, holes, materials.shaft_pin, slab, stock)
     pairs = _PairList(thickness=slab.thickness)
     groups = (*pins.groups, *rollers.groups, *elastic.groups)
     rollers = rollers.counted_from(len(pins.groups))
@@ -92,8 +99,29 @@ def condense_drive(
         groups=groups,
         pairs=tuple(pairs.found),
         placement=place,
-        shaft_pins=shaft_pins,
+        shaft_pins=tuple(mesh.placed(shape.name) for mesh, shape in zip(shaft_pins, shapes.shaft_pins, strict=False)),
     )
+
+
+def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
+    """Return the condensed pins and rollers to go on with: those just used last, the oldest of others dropped.
+
+    Parameters
+    ----------
+    known : tuple of RoundGroup
+        Those so far.
+    used : tuple of RoundGroup
+        Of the last model.
+    """
+    just_used = {group.made_of for group in used}
+    room = ENTRIES_KEPT - sum(group.entries for group in used)
+    kept: list[RoundGroup] = []
+    for group in reversed([group for group in known if group.made_of not in just_used]):
+        room -= group.entries
+        if room < 0:
+            break
+        kept.insert(0, group)
+    return (*kept, *used)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,34 +146,54 @@ class _RoundBodies:
 
 
 def _condense_round(
-    bodies: tuple[BodyMesh, ...],
-    expected: tuple[ContactGroup, ...],
+    meshes: tuple[RoundMesh, ...],
+    expected: ContactGroup,
     material: Material,
     slab: _Slab,
+    stock: dict[RoundBody, RoundGroup],
     held: str = "",
 ) -> _RoundBodies:
-    """Condense pins or rollers: bodies of one mesh share a factorisation; `held` is a boundary that does not move."""
-    directions = expected[0].direction
-    shared: dict[int, list[int]] = {}
-    for index, body in enumerate(bodies):
-        if expected[0].half_width[index] > 0.0:
-            shared.setdefault(id(body.mesh.t), []).append(index)
+    """Condense pins or rollers: equal ones share a factorisation; `held` is a boundary that does not move."""
     groups: list[RoundGroup] = []
+    numbers: dict[RoundBody, int] = {}
     places: dict[int, tuple[int, float]] = {}
-    for members in shared.values():
-        first, body = members[0], bodies[members[0]]
-        radius = float(np.abs(body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]).max())
-        zones = []
-        for side in expected:
-            place = radius * np.exp(1j * side.direction[first])
-            reach = OPPOSITE_REACH * float(side.half_width[members].max())
-            zones.append(OppositeZone.on_circle(body, "surface", complex(place), reach))
-        loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
-        condensed = _condense(body, loads, material, slab, held)
-        for index in members:
-            places[index] = (len(groups), float(directions[index] - directions[first]))
-        groups.append(RoundGroup(body=body, condensed=condensed, zones=tuple(zones)))
+    for index, mesh in enumerate(meshes):
+        if not expected.half_width[index] > 0.0:
+            continue
+        made_of = RoundBody(
+            grading=mesh.grading, material=material, thickness=slab.thickness, state=slab.state, held=held
+        )
+        if made_of not in numbers:
+            numbers[made_of] = len(groups)
+            groups.append(stock.get(made_of) or condense_round_body(made_of, mesh.body))
+        places[index] = (numbers[made_of], mesh.turn)
     return _RoundBodies(groups=tuple(groups), places=places)
+
+
+def condense_round_body(made_of: RoundBody, body: BodyMesh) -> RoundGroup:
+    """Condense a pin or roller to unit forces on the nodes of its zones.
+
+    Parameters
+    ----------
+    made_of : RoundBody
+        What it is made of.
+    body : BodyMesh
+        Its mesh, first contact at polar angle 0.
+
+    Returns
+    -------
+    RoundGroup
+        For all bodies of that make.
+    """
+    grading = made_of.grading
+    zones = tuple(
+        OppositeZone.on_circle(body, "surface", complex(side * grading.radius), OPPOSITE_REACH * end.half_width)
+        for side, end in zip((1.0, -1.0), grading.ends, strict=False)
+    )
+    loads = sp.hstack([zone.unit_loads(body.unknowns) for zone in zones], format="csc")
+    slab = _Slab(thickness=made_of.thickness, state=made_of.state)
+    condensed = _condense(body, loads, made_of.material, slab, made_of.held)
+    return RoundGroup(made_of=made_of, body=body, condensed=condensed, zones=zones)
 
 
 def _condense_carrier(

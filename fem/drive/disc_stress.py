@@ -19,8 +19,8 @@ from fem.body.wall_stress import WallStress, stress_along_wall
 from fem.contact.subsurface_shear import largest_shear_below
 from fem.drive.contact_results import PairResult
 from fem.drive.full_solution import FullSolution
+from fem.drive.grading import FINE_SHARE
 from fem.drive.model import ContactPair
-from fem.drive.solution import FINE_SHARE
 
 FloatArray = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.body.elasticity import PlaneState
 from fem.drive.contact_results import ContactResults
-from fem.drive.model import DriveModel, DrivePose
+from fem.drive.model import DriveModel, DrivePose, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
 
 
@@ -32,6 +32,8 @@ class FullSolution:
         Whether the walls of the disc are meshed finely enough for the stress along them.
     pose_iterations : int
         Steps on the final meshes.
+    rounds : tuple of RoundGroup
+        Condensed pins and rollers, coarse ones, too, to start another solution with.
     seconds : dict of str to float
         Wall time of each stage; ``total`` is their sum.
     """
@@ -43,6 +45,7 @@ class FullSolution:
     plane_state: PlaneState
     fine_walls: bool
     pose_iterations: int
+    rounds: tuple[RoundGroup, ...]
     seconds: dict[str, float]
 
     @property

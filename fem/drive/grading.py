@@ -1,7 +1,8 @@
 """Where the contacts of rigid bodies lie at a given pose, how far open they are, and how to grade meshes for them.
 
 `fem.drive.expected_contacts` guesses pose and loads from springs; here pose and loads come from a finite-element
-solution on coarser meshes, so that the final meshes are graded for the contacts that are really there.
+solution on coarser meshes, so that the final meshes are graded for the contacts that are really there. What those do
+not serve after all is found here, too.
 """
 
 from __future__ import annotations
@@ -11,13 +12,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.drive.contact_results import summarise_contacts
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, on_turned_flank
+from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
+from fem.drive.model import DriveModel
+from fem.drive.pose import PoseSolution
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+# Contacts under this share of the largest load of their kind get elements as if they carried it (design.md: 5 %).
+FINE_SHARE = 0.05
+# Elements may be this much larger than asked for before the meshes are graded anew.
+SLACK = 1.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,3 +198,49 @@ def _reach_to_bore(displacement: complex, place: Placement, rays: ComplexArray) 
     inward = (displacement * rays.conjugate()).real
     across = (displacement * rays.conjugate()).imag
     return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))
+
+
+def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:
+    """Return why the meshes do not serve a solution, "" when they do."""
+    results = summarise_contacts(model, solution)
+    for pair, detail in zip(model.pairs, results.details, strict=True):
+        own = solution.contact.pressure[pair.unknowns]
+        name = f"{pair.kind.replace('_', ' ')} {pair.index}"
+        if own[0] > 0.0 or own[-1] > 0.0:
+            return f"the pressure of {name} reaches the end of its zone"
+        if (
+            detail.share > FINE_SHARE
+            and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH
+        ):
+            return (
+                f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
+                f"not {ELEMENTS_PER_HALF_WIDTH / scale:.3g}"
+            )
+    return _closed_without_zone(model, solution)
+
+
+def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
+    pose, place = solution.pose, model.placement
+    gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+    elastic = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
+    moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
+    nodes = model.meshes.disc.mesh.doflocs[0] + 1j * model.meshes.disc.mesh.doflocs[1]
+    turn = np.exp(1j * pose.disc_rotation)
+    rays = model.roller_rays
+    flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
+    bore = place.bore_radius * rays / turn
+    holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
+    candidates = {(pair.kind, pair.index) for pair in model.pairs}
+    for kind, gap, points, normals in (
+        ("pin", gaps.pins, flank, gaps.pin_normals),
+        ("roller_outer", gaps.rollers, bore, -rays),
+        ("hole", gaps.holes, holes, -gaps.hole_directions),
+    ):
+        for index in range(len(gap)):
+            if (kind, index) in candidates:
+                continue
+            nearest = int(np.argmin(np.abs(nodes - points[index])))
+            left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
+            if left < 0.0:
+                return f"{kind.replace('_outer', '')} {index} closes by {-1e3 * left:.3g} µm and has no contact zone"
+    return ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.element_size import Refinement
+from fem.mesh.element_size import DEFAULT_GROWTH, Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, DriveShapes, Shape
@@ -31,6 +31,85 @@ CLASS_RATIO = np.sqrt(2.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RoundEnd:
+    """Small elements of a pin or roller at one of its contacts.
+
+    Attributes
+    ----------
+    edge : float
+        Element edge, mm.
+    half_width : float
+        Largest half-width that they serve, mm; 0 where there is no contact.
+    """
+
+    edge: float
+    half_width: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundGrading:
+    """All that the mesh of a pin or roller depends on; equal gradings have equal meshes, to the last bit.
+
+    Attributes
+    ----------
+    radius, core_radius : float
+        As in `fem.shapes.CircleShape`, mm.
+    ends : tuple of RoundEnd
+        First contact at polar angle 0, second opposite.
+    coarse_size : float
+        Element edge far from them, mm.
+    order : int
+        1 or 2.
+    growth : float
+        Growth of the edge by distance from a contact.
+    """
+
+    radius: float
+    core_radius: float
+    ends: tuple[RoundEnd, ...]
+    coarse_size: float
+    order: int = 2
+    growth: float = DEFAULT_GROWTH
+
+    @property
+    def refinements(self) -> tuple[Refinement, ...]:
+        """Small elements at the contacts."""
+        return tuple(
+            Refinement.polar(self.radius, angle, size=end.edge, radius=ZONE_HALF_WIDTHS * end.half_width)
+            for angle, end in zip((0.0, np.pi), self.ends, strict=False)
+            if end.half_width > 0.0
+        )
+
+    def mesh(self, name: str) -> BodyMesh:
+        """Return the mesh under the name of a body."""
+        shape = CircleShape(name=name, radius=self.radius, core_radius=self.core_radius)
+        return mesh_circle(shape, self.refinements, coarse_size=self.coarse_size, growth=self.growth, order=self.order)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundMesh:
+    """Mesh of a pin or roller with its first contact at polar angle 0, and how it stands in the drive.
+
+    Attributes
+    ----------
+    grading : RoundGrading
+        By which it was meshed.
+    body : BodyMesh
+        Before it is turned; may serve several bodies.
+    turn : float
+        Polar angle of the first contact in fixed axes, rad.
+    """
+
+    grading: RoundGrading
+    body: BodyMesh
+    turn: float
+
+    def placed(self, name: str) -> BodyMesh:
+        """Return the mesh turned to its contact, axes as the fixed ones."""
+        return self.body.turned(self.turn, name)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DriveMeshes:
     """Meshes of all bodies of a drive, each in its own frame, axes of pins, rollers and race as the fixed ones.
 
@@ -40,12 +119,16 @@ class DriveMeshes:
         One each.
     wheel_pins, rollers : tuple of BodyMesh
         In the order of their numbers.
+    unturned_pins, unturned_rollers : tuple of RoundMesh
+        Of the same bodies: those of one grading share a mesh.
     """
 
     disc: BodyMesh
     wheel_pins: tuple[BodyMesh, ...]
     rollers: tuple[BodyMesh, ...]
     inner_race: BodyMesh
+    unturned_pins: tuple[RoundMesh, ...]
+    unturned_rollers: tuple[RoundMesh, ...]
 
     @property
     def bodies(self) -> tuple[BodyMesh, ...]:
@@ -105,33 +188,35 @@ def _class_of(half_width: float) -> float:
     return float(CLASS_RATIO ** np.floor(np.log(half_width) / np.log(CLASS_RATIO)))
 
 
-def circle_refinements(
-    shape: CircleShape, angles: tuple[float, ...], classes: tuple[float, ...], scale: float = 1.0
-) -> tuple[Refinement, ...]:
-    """Return refinements of a pin or roller at polar angles, for half-widths from a class up to √2 times it."""
-    return tuple(
-        Refinement.polar(
-            shape.radius,
-            angle,
-            size=scale * width / ELEMENTS_PER_HALF_WIDTH,
-            radius=ZONE_HALF_WIDTHS * CLASS_RATIO * width,
-        )
-        for angle, width in zip(angles, classes, strict=True)
-        if width > 0.0
-    )
+def coarse_edge(shape: Shape, scale: float) -> float:
+    """Return the element edge far from all contacts, mm.
+
+    The interior is smooth and far from its limit of accuracy: it need not follow a finer scale in full.
+    """
+    return default_coarse_size(shape, min(1.0, float(np.sqrt(scale))) if scale < 1.0 else scale)
 
 
 def _plan_circles(
-    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], scale: float
-) -> list[tuple[CircleShape, tuple[Refinement, ...], float]]:
-    """Return shape, refinements (first contact at polar angle 0) and turn of each pin or roller."""
+    shapes: tuple[CircleShape, ...], groups: tuple[ContactGroup, ...], scale: float, order: int, growth: float
+) -> list[tuple[str, RoundGrading, float]]:
+    """Return name, grading and turn of each pin or roller; a roller's contacts lie opposite each other."""
     plan = []
     for index, shape in enumerate(shapes):
-        directions = [float(group.direction[index]) for group in groups]
-        # Contacts of a roller lie opposite each other.
-        angles = (0.0, np.pi)[: len(groups)]
-        classes = tuple(_class_of(float(group.half_width[index])) for group in groups)
-        plan.append((shape, circle_refinements(shape, angles, classes, scale), directions[0]))
+        classes = [_class_of(float(group.half_width[index])) for group in groups]
+        # Elements for the lower end of a class, a zone for its upper end.
+        ends = tuple(
+            RoundEnd(edge=scale * width / ELEMENTS_PER_HALF_WIDTH, half_width=float(CLASS_RATIO * width))
+            for width in classes
+        )
+        grading = RoundGrading(
+            radius=shape.radius,
+            core_radius=shape.core_radius,
+            ends=ends,
+            coarse_size=coarse_edge(shape, scale),
+            order=order,
+            growth=growth,
+        )
+        plan.append((shape.name, grading, float(groups[0].direction[index])))
     return plan
 
 
@@ -170,7 +255,9 @@ def mesh_drive(
     *,
     scale: float = 1.0,
     order: int = 2,
+    growth: float = DEFAULT_GROWTH,
     fine_walls: bool = False,
+    known: Mapping[RoundGrading, BodyMesh] | None = None,
     report: Callable[[BodyMesh], None] | None = None,
 ) -> DriveMeshes:
     """Mesh all bodies of a drive for the contacts expected.
@@ -188,8 +275,12 @@ def mesh_drive(
         Element edge as a multiple of the default, 8 elements for each half-width.
     order : int
         1 or 2.
+    growth : float
+        Growth of the edge by distance from a contact.
     fine_walls : bool
         Whether the disc's walls are fine enough for the stress along them (`wall_refinements`).
+    known : mapping of RoundGrading to BodyMesh, optional
+        Meshes of pins and rollers that are there already.
     report : callable, optional
         Called with each mesh as soon as it is made.
 
@@ -210,16 +301,18 @@ def mesh_drive(
     disc_spots, race_spots = disc_refinements(contacts, scale), race_refinements(contacts, scale)
     if fine_walls:
         disc_spots += wall_refinements(shapes.disc)
-    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale)
-    rollers = _plan_circles(shapes.rollers, (contacts.rollers_outer, contacts.rollers_inner), scale)
-
-    # The interior is smooth and far from its limit of accuracy: it need not follow a finer scale in full.
-    def coarse(shape: Shape) -> float:
-        return default_coarse_size(shape, min(1.0, np.sqrt(scale)) if scale < 1.0 else scale)
-
+    pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale, order, growth)
+    ends = (contacts.rollers_outer, contacts.rollers_inner)
+    rollers = _plan_circles(shapes.rollers, ends, scale, order, growth)
     planned: list[tuple[Shape, tuple[Refinement, ...]]] = [(shapes.disc, disc_spots), (shapes.inner_race, race_spots)]
-    planned += [(shape, spots) for shape, spots, _ in pins + rollers]
-    total = sum(estimate_unknowns(shape, spots, coarse_size=coarse(shape), order=order) for shape, spots in planned)
+    planned += [
+        (shape, grading.refinements)
+        for shape, (_, grading, _) in zip(shapes.wheel_pins + shapes.rollers, pins + rollers, strict=True)
+    ]
+    total = sum(
+        estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, scale), growth=growth, order=order)
+        for shape, spots in planned
+    )
     require_memory(total, solution_memory(total), "the drive's mesh")
 
     def announce(body: BodyMesh) -> BodyMesh:
@@ -227,19 +320,26 @@ def mesh_drive(
             report(body)
         return body
 
-    made: dict[tuple[float, float, tuple[Refinement, ...]], BodyMesh] = {}
+    made = dict(known or {})
 
-    def circle(shape: CircleShape, spots: tuple[Refinement, ...], turn: float) -> BodyMesh:
-        key = (shape.radius, shape.core_radius, spots)
-        if key not in made:
-            made[key] = mesh_circle(shape, spots, coarse_size=coarse(shape), order=order)
-        return announce(made[key].turned(turn, shape.name))
+    def circle(name: str, grading: RoundGrading, turn: float) -> RoundMesh:
+        if grading not in made:
+            made[grading] = grading.mesh(name)
+        return RoundMesh(grading=grading, body=made[grading], turn=turn)
 
+    disc_edge, race_edge = coarse_edge(shapes.disc, scale), coarse_edge(shapes.inner_race, scale)
+    disc = announce(mesh_disc(shapes.disc, disc_spots, coarse_size=disc_edge, growth=growth, order=order))
+    unturned_pins = tuple(circle(*item) for item in pins)
+    unturned_rollers = tuple(circle(*item) for item in rollers)
     return DriveMeshes(
-        disc=announce(mesh_disc(shapes.disc, disc_spots, coarse_size=coarse(shapes.disc), order=order)),
-        wheel_pins=tuple(circle(*item) for item in pins),
-        rollers=tuple(circle(*item) for item in rollers),
-        inner_race=announce(
-            mesh_ring(shapes.inner_race, race_spots, coarse_size=coarse(shapes.inner_race), order=order)
+        disc=disc,
+        wheel_pins=tuple(announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_pins, pins, strict=True)),
+        rollers=tuple(
+            announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_rollers, rollers, strict=True)
         ),
+        inner_race=announce(
+            mesh_ring(shapes.inner_race, race_spots, coarse_size=race_edge, growth=growth, order=order)
+        ),
+        unturned_pins=unturned_pins,
+        unturned_rollers=unturned_rollers,
     )

@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body.condensation import CondensedBody
+from fem.body.elasticity import PlaneState
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.unilateral import ContactProblem
 from fem.drive.expected_contacts import ExpectedContacts
-from fem.drive.meshes import DriveMeshes
+from fem.drive.meshes import DriveMeshes, RoundGrading
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import DriveShapes
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, Material
 from ltca.geometry.placement import Placement
 
 FloatArray = NDArray[np.float64]
@@ -59,11 +60,38 @@ class DrivePose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RoundGroup:
-    """Condensed pin or roller whose mesh serves several bodies.
+class RoundBody:
+    """All that the condensed pin or roller depends on.
 
     Attributes
     ----------
+    grading : RoundGrading
+        Of its mesh.
+    material : Material
+        Of the body.
+    thickness : float
+        mm.
+    state : {"strain", "stress"}
+        Plane strain or plane stress.
+    held : str
+        Boundary that does not move; "" for none.
+    """
+
+    grading: RoundGrading
+    material: Material
+    thickness: float
+    state: PlaneState
+    held: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundGroup:
+    """Condensed pin or roller whose mesh serves several bodies, also those of other crank angles and discs.
+
+    Attributes
+    ----------
+    made_of : RoundBody
+        What it was made of: equal ones are equal to the last bit.
     body : BodyMesh
         The mesh in the frame in which it was condensed.
     condensed : CondensedBody
@@ -72,9 +100,15 @@ class RoundGroup:
         One for a pin; outer and inner for a roller.
     """
 
+    made_of: RoundBody
     body: BodyMesh
     condensed: CondensedBody
     zones: tuple[OppositeZone, ...]
+
+    @property
+    def entries(self) -> int:
+        """Numbers that it holds."""
+        return self.condensed.entries
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

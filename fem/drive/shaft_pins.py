@@ -6,17 +6,12 @@ of a roller.
 
 from __future__ import annotations
 
-import numpy as np
-
 from fem.drive.expected_contacts import ExpectedContacts
-from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, ZONE_HALF_WIDTHS
-from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.element_size import Refinement
-from fem.mesh.triangulation import default_coarse_size, mesh_circle
+from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, RoundEnd, RoundGrading, RoundMesh, coarse_edge
 from fem.shapes import DriveShapes
 
 
-def mesh_shaft_pins(shapes: DriveShapes, contacts: ExpectedContacts, scale: float) -> tuple[BodyMesh, ...]:
+def mesh_shaft_pins(shapes: DriveShapes, contacts: ExpectedContacts, scale: float) -> tuple[RoundMesh, ...]:
     """Return a mesh of every shaft pin, graded toward its hole.
 
     Parameters
@@ -30,17 +25,19 @@ def mesh_shaft_pins(shapes: DriveShapes, contacts: ExpectedContacts, scale: floa
 
     Returns
     -------
-    tuple of BodyMesh
-        About the origin, axes parallel to the fixed ones.
+    tuple of RoundMesh
+        About the origin.
     """
     meshes = []
     for shape, width, direction in zip(
         shapes.shaft_pins, contacts.holes.half_width.tolist(), contacts.holes.direction.tolist(), strict=True
     ):
-        spots = []
-        if width > 0.0:
-            size = scale * width / ELEMENTS_PER_HALF_WIDTH
-            spots.append(Refinement.polar(shape.radius, direction, size=size, radius=ZONE_HALF_WIDTHS * width))
-        coarse = default_coarse_size(shape, min(1.0, float(np.sqrt(scale))) if scale < 1.0 else scale)
-        meshes.append(mesh_circle(shape, spots, coarse_size=coarse))
+        end = RoundEnd(edge=scale * width / ELEMENTS_PER_HALF_WIDTH, half_width=width)
+        grading = RoundGrading(
+            radius=shape.radius,
+            core_radius=shape.core_radius,
+            ends=(end,),
+            coarse_size=coarse_edge(shape, scale),
+        )
+        meshes.append(RoundMesh(grading=grading, body=grading.mesh(shape.name), turn=direction))
     return tuple(meshes)

@@ -17,15 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
-from fem.drive.condensed import condense_drive
+from fem.drive.condensed import condense_drive, keep_rounds
 from fem.drive.contact_results import open_gaps, summarise_contacts
 from fem.drive.expected_contacts import ExpectedContacts, expect_contacts, require_one_disc
 from fem.drive.full_solution import FullSolution
-from fem.drive.grading import grade_contacts, measure_gaps
-from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH, mesh_drive, require_model_memory
-from fem.drive.model import DriveModel
+from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts, measure_gaps
+from fem.drive.meshes import mesh_drive, require_model_memory
+from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.drive.shaft_pins import mesh_shaft_pins
+from fem.errors import MeshError
+from fem.mesh.element_size import DEFAULT_GROWTH
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_plane_strain, require_rigid_members
@@ -38,14 +40,13 @@ FloatArray = NDArray[np.float64]
 # The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.
 COARSE_SCALE = 3.5
+# Elements of the coarse stage grow twice as fast away from the contacts: half as many, loads still good to 0.5 %.
+COARSE_GROWTH = 0.6
 COARSE_SHARE = 0.25
 COARSE_MARGIN = 1.0
-FINE_SHARE = 0.05
 # Open contacts within this part of the largest approach stay candidates of the fine stage.
 FINE_MARGIN = 0.15
 LARGEST_GRADINGS = 5
-# Elements may be this much larger than asked for before the meshes are graded anew.
-SLACK = 1.1
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 RESERVE = 0.96
 
@@ -65,7 +66,11 @@ class _Task:
     say: Callable[[str], None]
 
     def solve_guess(
-        self, guess: ExpectedContacts, start: tuple[float, float, float, float] | None, watch: _Stopwatch
+        self,
+        guess: ExpectedContacts,
+        start: tuple[float, float, float, float] | None,
+        rounds: tuple[RoundGroup, ...],
+        watch: _Stopwatch,
     ) -> tuple[DriveModel, PoseSolution]:
         """Solve on coarse meshes wherever the guess has a load."""
         place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
@@ -73,14 +78,29 @@ class _Task:
         contacts = self.grade(place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
         watch.lap("guess")
         self.say("coarse meshes")
-        model = self.condense(contacts, max(COARSE_SCALE, self.scale), _Stopwatch())
+        model = self._condense_coarse(contacts, rounds)
         first = None if start is None else model.start_pose(start)
         solution = solve_pose(model, self.moment, start=first, progress=self.say)
         watch.lap("coarse")
         return model, solution
 
+    def _condense_coarse(self, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]) -> DriveModel:
+        scale = max(COARSE_SCALE, self.scale)
+        try:
+            return self.condense(contacts, scale, rounds, _Stopwatch(), growth=COARSE_GROWTH)
+        except MeshError:
+            # Fast growth in a narrow place may end in too flat triangles; a drive is not refused for that.
+            return self.condense(contacts, scale, rounds, _Stopwatch())
+
     def solve_graded(
-        self, model: DriveModel, solution: PoseSolution, grading: int, watch: _Stopwatch, *, fine_walls: bool
+        self,
+        model: DriveModel,
+        solution: PoseSolution,
+        grading: int,
+        rounds: tuple[RoundGroup, ...],
+        watch: _Stopwatch,
+        *,
+        fine_walls: bool,
     ) -> tuple[DriveModel, PoseSolution]:
         """Solve on meshes graded for the contacts of another solution."""
         results, pose = summarise_contacts(model, solution), solution.pose
@@ -90,19 +110,29 @@ class _Task:
         margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
         contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
         self.say("meshes")
-        graded = self.condense(contacts, self.scale * RESERVE, watch, fine_walls=fine_walls)
+        graded = self.condense(contacts, self.scale * RESERVE, rounds, watch, fine_walls=fine_walls)
         watch.lap("assembly and factorisation")
         found = solve_pose(graded, self.moment, start=solution.pose, progress=self.say)
         watch.lap("contact and pose")
         return graded, found
 
     def condense(
-        self, contacts: ExpectedContacts, scale: float, watch: _Stopwatch, *, fine_walls: bool = False
+        self,
+        contacts: ExpectedContacts,
+        scale: float,
+        rounds: tuple[RoundGroup, ...],
+        watch: _Stopwatch,
+        *,
+        growth: float = DEFAULT_GROWTH,
+        fine_walls: bool = False,
     ) -> DriveModel:
-        meshes = mesh_drive(self.shapes, contacts, scale=scale, fine_walls=fine_walls)
+        known = {group.made_of.grading: group.body for group in rounds}
+        meshes = mesh_drive(self.shapes, contacts, scale=scale, growth=growth, fine_walls=fine_walls, known=known)
         pins = mesh_shaft_pins(self.shapes, contacts, scale) if self.elastic_shaft_pins else ()
         watch.lap("mesh")
-        return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins)
+        return condense_drive(
+            self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins, known=rounds
+        )
 
     def grade(
         self,
@@ -147,6 +177,7 @@ def solve_drive(
     elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
+    rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
     """Solve a drive of one disc with the pin shaft held at one crank angle from nothing.
@@ -159,7 +190,7 @@ def solve_drive(
         φ_C, rad.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    scale, state, elastic_shaft_pins, fine_walls, start, progress
+    scale, state, elastic_shaft_pins, fine_walls, start, rounds, progress
         As for `solve_disc`.
 
     Returns
@@ -192,6 +223,7 @@ def solve_drive(
         elastic_shaft_pins=elastic_shaft_pins,
         fine_walls=fine_walls,
         start=start,
+        rounds=rounds,
         progress=progress,
     )
 
@@ -207,6 +239,7 @@ def solve_disc(
     elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
+    rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
     """Solve one disc with wheel, crank and pin shaft at one crank angle from nothing.
@@ -229,6 +262,9 @@ def solve_disc(
         Whether the walls of the disc are meshed finely enough for the stress along them, whatever the scale.
     start : tuple of four floats, optional
         First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
+    rounds : tuple of RoundGroup
+        Condensed pins and rollers of another solution (`FullSolution.rounds`), of any crank angle or disc: they save time
+        and change no bit of the result.
     progress : callable, optional
         Called with one line for each step.
 
@@ -263,10 +299,11 @@ def solve_disc(
         say=say,
     )
     require_model_memory([(shapes, guess)], scale)
-    model, solution = task.solve_guess(guess, start, watch)
-    complaint = ""
+    model, solution = task.solve_guess(guess, start, rounds, watch)
+    rounds, complaint = keep_rounds(rounds, model.groups), ""
     for grading in range(1, LARGEST_GRADINGS + 1):
-        model, solution = task.solve_graded(model, solution, grading, watch, fine_walls=fine_walls)
+        model, solution = task.solve_graded(model, solution, grading, rounds, watch, fine_walls=fine_walls)
+        rounds = keep_rounds(rounds, model.groups)
         complaint = find_shortcoming(model, solution, scale)
         results = summarise_contacts(model, solution)
         watch.lap("check")
@@ -280,6 +317,7 @@ def solve_disc(
                 plane_state=state,
                 fine_walls=fine_walls,
                 pose_iterations=solution.iterations,
+                rounds=rounds,
                 seconds=watch.seconds,
             )
         say(f"meshes graded anew ({grading}): {complaint}")
@@ -352,6 +390,7 @@ def solve_moment(
             state=previous.plane_state,
             elastic_shaft_pins=bool(model.shaft_pins),
             fine_walls=previous.fine_walls,
+            rounds=previous.rounds,
             progress=progress,
         )
     watch.seconds["total"] = sum(watch.seconds.values())
@@ -362,52 +401,6 @@ def solve_moment(
         pose_iterations=solution.iterations,
         seconds=watch.seconds,
     )
-
-
-def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:
-    """Return why the meshes do not serve a solution, "" when they do."""
-    results = summarise_contacts(model, solution)
-    for pair, detail in zip(model.pairs, results.details, strict=True):
-        own = solution.contact.pressure[pair.unknowns]
-        name = f"{pair.kind.replace('_', ' ')} {pair.index}"
-        if own[0] > 0.0 or own[-1] > 0.0:
-            return f"the pressure of {name} reaches the end of its zone"
-        if (
-            detail.share > FINE_SHARE
-            and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH
-        ):
-            return (
-                f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
-                f"not {ELEMENTS_PER_HALF_WIDTH / scale:.3g}"
-            )
-    return _closed_without_zone(model, solution)
-
-
-def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
-    pose, place = solution.pose, model.placement
-    gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-    elastic = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
-    moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
-    nodes = model.meshes.disc.mesh.doflocs[0] + 1j * model.meshes.disc.mesh.doflocs[1]
-    turn = np.exp(1j * pose.disc_rotation)
-    rays = model.roller_rays
-    flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
-    bore = place.bore_radius * rays / turn
-    holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
-    candidates = {(pair.kind, pair.index) for pair in model.pairs}
-    for kind, gap, points, normals in (
-        ("pin", gaps.pins, flank, gaps.pin_normals),
-        ("roller_outer", gaps.rollers, bore, -rays),
-        ("hole", gaps.holes, holes, -gaps.hole_directions),
-    ):
-        for index in range(len(gap)):
-            if (kind, index) in candidates:
-                continue
-            nearest = int(np.argmin(np.abs(nodes - points[index])))
-            left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
-            if left < 0.0:
-                return f"{kind.replace('_outer', '')} {index} closes by {-1e3 * left:.3g} µm and has no contact zone"
-    return ""
 
 
 def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:

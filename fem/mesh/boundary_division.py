@@ -48,22 +48,32 @@ class DividedCurve:
 def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
     """Return parameters over one period, both ends included, dense where the size field asks for small edges."""
     parameters = np.linspace(0.0, 2.0 * np.pi, 2 * curve.samples + 1)
-    # Interval halving: each pass splits only intervals longer than a part of the wanted edge.
+    points = curve.points(parameters)
+    wanted = field.at(points)
+    found = [parameters]
+    # Interval halving: an interval is split as long as it is longer than a part of the wanted edge; only the halves of those
+    # split before can be. Rows: first and last end.
+    ends, places, sizes = (np.array([values[:-1], values[1:]]) for values in (parameters, points, wanted))
     for _ in range(40):
-        points = curve.points(parameters)
-        wanted = field.at(points)
-        length = np.abs(np.diff(points))
-        split = SAMPLES_PER_EDGE * length > np.minimum(wanted[1:], wanted[:-1])
+        length = np.abs(places[1] - places[0])
+        split = SAMPLES_PER_EDGE * length > np.minimum(sizes[1], sizes[0])
         # An interval may jump over a small ball: near every ball look at the distance to its zone, too.
         for ball in field.balls:
-            reach = np.abs(points - ball.point)
-            near = np.minimum(reach[1:], reach[:-1]) - length < ball.radius
-            split |= near & (SAMPLES_PER_EDGE * length > ball.size)
+            small = SAMPLES_PER_EDGE * length > ball.size
+            if np.any(small & ~split):
+                reach = np.abs(places - ball.point)
+                split |= small & (np.minimum(reach[1], reach[0]) - length < ball.radius)
         if not np.any(split):
             break
-        middles = 0.5 * (parameters[1:] + parameters[:-1])[split]
-        parameters = np.sort(np.concatenate([parameters, middles]))
-    return parameters
+        ends, places, sizes = ends[:, split], places[:, split], sizes[:, split]
+        middles = 0.5 * (ends[1] + ends[0])
+        between = curve.points(middles)
+        found.append(middles)
+        ends, places, sizes = (
+            np.hstack([[values[0], new], [new, values[1]]])
+            for values, new in ((ends, middles), (places, between), (sizes, field.at(between)))
+        )
+    return np.sort(np.concatenate(found))
 
 
 def divide_curve(curve: Curve, field: SizeField) -> DividedCurve:

@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
+from fem.drive.condensed import keep_rounds
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import FullSolution
 from fem.drive.meshes import require_model_memory
+from fem.drive.model import RoundGroup
 from fem.drive.solution import solve_disc, solve_moment
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
@@ -110,6 +112,14 @@ class ReducerSolution:
         return max(disc.contacts.equilibrium_residual for disc in self.discs)
 
     @property
+    def rounds(self) -> tuple[RoundGroup, ...]:
+        """Condensed pins and rollers of all discs, to start another solution with."""
+        found: tuple[RoundGroup, ...] = ()
+        for disc in self.discs:
+            found = keep_rounds(found, disc.rounds)
+        return found
+
+    @property
     def unknowns(self) -> int:
         """Displacement and pressure unknowns of all discs."""
         return sum(disc.unknowns for disc in self.discs)
@@ -130,7 +140,7 @@ class _Task:
     say: Callable[[str], None]
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def start(self, disc: int, moment: float) -> FullSolution:
+    def start(self, disc: int, moment: float, rounds: tuple[RoundGroup, ...]) -> FullSolution:
         return self.timed(
             solve_disc(
                 self.singles[disc],
@@ -140,13 +150,16 @@ class _Task:
                 state=self.state,
                 elastic_shaft_pins=self.elastic_shaft_pins,
                 fine_walls=self.fine_walls,
+                rounds=rounds,
                 progress=self.saying(disc),
             )
         )
 
-    def settle(self, disc: int, previous: FullSolution | None, moment: float) -> FullSolution:
+    def settle(
+        self, disc: int, previous: FullSolution | None, moment: float, rounds: tuple[RoundGroup, ...]
+    ) -> FullSolution:
         """Solve one disc under a moment to the last digit that its pose has."""
-        found = self.start(disc, moment) if previous is None else previous
+        found = self.start(disc, moment, rounds) if previous is None else previous
         while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
             found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))
         return found
@@ -179,6 +192,7 @@ def solve_reducer(
     state: PlaneState = "strain",
     elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
+    rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> ReducerSolution:
     """Solve a drive at one crank angle.
@@ -199,6 +213,9 @@ def solve_reducer(
         Whether shaft pins yield, too; rigid circles on their springs by default.
     fine_walls : bool
         Whether the walls of the discs are meshed finely enough for the stress along them, whatever the scale.
+    rounds : tuple of RoundGroup
+        Condensed pins and rollers of another solution (`ReducerSolution.rounds`): they save time and change no bit of the
+        result.
     progress : callable, optional
         Called with one line for each step.
 
@@ -231,7 +248,7 @@ def solve_reducer(
     )
     if len(singles) == 1 and not drive.wheel_is_held:
         return replace(
-            ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque))), drive=drive, torque=task.torque
+            ReducerSolution.of_disc(task.start(0, drive.wheel_moment(torque), rounds)), drive=drive, torque=task.torque
         )
     if len(singles) > 1:
         require_solution_memory(drive, crank_angle, scale)
@@ -239,7 +256,11 @@ def solve_reducer(
     discs: list[FullSolution | None] = [None] * len(singles)
 
     def answer(moments: FloatArray) -> SharedAnswer:
-        found = [task.settle(disc, discs[disc], float(own)) for disc, own in enumerate(moments)]
+        found: list[FullSolution] = []
+        for disc, own in enumerate(moments):
+            # Pins and rollers of one disc serve the next.
+            known = found[-1].rounds if found else rounds
+            found.append(task.settle(disc, discs[disc], float(own), known))
         discs[:] = found
         angle = np.array([disc.pose.wheel_angle for disc in found])
         shares = ", ".join(f"{share:.4f}" for share in moments / moments.sum())

@@ -2,10 +2,14 @@
 
 import numpy as np
 import pytest
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, LinearForm
+from skfem.models.elasticity import linear_elasticity
 
 from fem.body.elasticity import (
     area_loads,
     assemble_stiffness,
+    curved_elements,
+    plane_lame_parameters,
     rigid_modes,
     strain_energy,
     traction_load,
@@ -58,6 +62,27 @@ def test_patch(ring, state):
     for found, expected in ((stress.xx, xx), (stress.yy, yy), (stress.xy, xy)):
         np.testing.assert_allclose(found, expected, rtol=1e-9)
     np.testing.assert_allclose(stress.zz, nu * (xx + yy) if state == "strain" else 0.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("state", ["strain", "stress"])
+@pytest.mark.parametrize("order", [1, 2])
+def test_stiffness_and_area_loads_are_those_of_the_weak_forms(order, state):
+    """Element by element in scikit-fem: straight and curved triangles, either order."""
+    shape = RingShape(inner_radius=10.0, outer_radius=20.0, name="ring")
+    body = mesh_ring(shape, [Refinement(20.0, 0.0, 0.5, 0.5)], coarse_size=4.0, order=order)
+    assert 0 < curved_elements(body).sum() < body.mesh.t.shape[1] or order == 1
+    lam, mu = plane_lame_parameters(STEEL, state)
+    basis = Basis(body.mesh, ElementVector(ElementTriP2() if order == 2 else ElementTriP1()), intorder=4)
+    expected = linear_elasticity(11.8 * lam, 11.8 * mu).assemble(basis)
+    found = assemble_stiffness(body, STEEL, thickness=11.8, state=state)
+    # The same integrals summed in another order.
+    assert abs(found - expected).max() < 1e-11 * abs(expected).max()
+
+    def moment(v, w):
+        return -(w.x[1] - 1.0) * v[0] + (w.x[0] - 2.0) * v[1]
+
+    turned = LinearForm(moment).assemble(basis)
+    np.testing.assert_allclose(area_loads(body, 2.0 + 1.0j)[:, 2], turned, atol=1e-12 * np.abs(turned).max())
 
 
 def test_rigid_modes_are_free(ring):

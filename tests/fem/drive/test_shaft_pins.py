@@ -25,7 +25,8 @@ def rim(body):
 def test_loaded_pins_are_graded_toward_their_holes(scale):
     shapes = SimpleNamespace(shaft_pins=[CircleShape(name=f"shaft_pin_{k}", radius=RADIUS) for k in range(2)])
     holes = SimpleNamespace(half_width=np.array([WIDTH, 0.0]), direction=np.array([DIRECTION, 0.3]))
-    loaded, idle = mesh_shaft_pins(shapes, SimpleNamespace(holes=holes), scale)
+    meshes = mesh_shaft_pins(shapes, SimpleNamespace(holes=holes), scale)
+    loaded, idle = (mesh.placed(f"shaft_pin_{k}") for k, mesh in enumerate(meshes))
     angle, length = rim(loaded)
     away = np.abs(np.angle(np.exp(1j * (angle - DIRECTION))))
     wanted = scale * WIDTH / ELEMENTS_PER_HALF_WIDTH

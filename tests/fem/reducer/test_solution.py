@@ -56,6 +56,11 @@ def test_two_discs_at_one_wheel_angle(solved, uneven):
     assert solved.torque_share[1] - solved.torque_share[0] > 0.01
 
 
+def test_the_second_disc_takes_pins_and_rollers_of_the_first(solved):
+    first, second = ({id(group) for group in disc.model.groups} for disc in solved.discs)
+    assert first & second
+
+
 def test_the_ltca_on_plane_strain_bodies_says_the_same(solved, uneven, tmp_path):
     """Loads within 0.5 % of the largest of a kind, wheel within 0.3″; 0.43 % and 0.22″ on these meshes, 0.04 % and 0.02″
     on the default ones. Both discs are one part, turned, so one file serves them."""

@@ -12,7 +12,7 @@ import validation.compare.finite_element_positions as kept
 from fem.body.wall_stress import WallStress
 from fem.drive.disc_stress import DiscStress
 from ltca.errors import ConvergenceError
-from validation.compare.finite_element_positions import Settings, solve_position
+from validation.compare.finite_element_positions import Settings, solve_position, solve_positions
 
 ANGLE = 0.5
 
@@ -49,8 +49,8 @@ def solved(monkeypatch):
     calls = []
 
     def solve(drive, crank_angle, **options):
-        calls.append((crank_angle, options["scale"], options["state"]))
-        return SimpleNamespace(discs=(None,), drive=drive, crank_angle=crank_angle)
+        calls.append((crank_angle, options["scale"], options["state"], options["rounds"]))
+        return SimpleNamespace(discs=(None,), drive=drive, crank_angle=crank_angle, rounds=(crank_angle,))
 
     monkeypatch.setattr(kept, "solve_reducer", solve)
     monkeypatch.setattr(kept, "summarise", lambda solution: summary_of(solution.drive, solution.crank_angle))
@@ -75,6 +75,24 @@ def test_a_finished_position_is_not_solved_again(solved, paper_cases, tmp_path):
     # What is no number stays none through the file, where it is null.
     np.testing.assert_array_equal(again.stress.largest["flank"], [3.0, np.nan])
     np.testing.assert_array_equal(again.stress.shear["pin"], np.arange(14.0))
+
+
+def test_in_a_series_pins_and_rollers_travel_and_files_are_those_of_positions_alone(solved, paper_cases, tmp_path):
+    drive, said = paper_cases["CS-1"], []
+    (tmp_path / "alone").mkdir(), (tmp_path / "series").mkdir()
+    for angle in (0.1, 0.2, 0.3):
+        solve_position(drive, "CS-1", angle, tmp_path / "alone", Settings())
+    (tmp_path / "series" / next((tmp_path / "alone").glob("*_0.2*")).name).write_bytes(
+        next((tmp_path / "alone").glob("*_0.2*")).read_bytes()
+    )
+    solved.clear()
+    found = list(solve_positions(drive, "CS-1", (0.1, 0.2, 0.3), tmp_path / "series", Settings(), begin=said.append))
+    # The one kept is not solved again and passes on what came before it.
+    assert [(call[0], call[3]) for call in solved] == [(0.1, ()), (0.3, (0.1,))]
+    assert [position.crank_angle for (position,) in found] == [0.1, 0.2, 0.3]
+    assert said == [f"full FE of CS-1 at {angle} rad" for angle in (0.1, 0.2, 0.3)]
+    for path in (tmp_path / "alone").iterdir():
+        assert (tmp_path / "series" / path.name).read_bytes() == path.read_bytes()
 
 
 def test_another_drive_angle_or_setting_is_another_file(solved, paper_cases, tmp_path, vary):
