@@ -21,8 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
-from typing import TypeVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +38,7 @@ from ltca.compliance.response import (
     bearing_bend,
     join_positions,
     resultant,
+    take_positions,
 )
 from ltca.compliance.rollers import RollerState
 from ltca.contact.tracked_grid import ContactKind
@@ -170,7 +170,9 @@ class CoupledCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
         holes = self.geometry.holes(crank_angle, pose)
         parts = [
-            self._solve(crank_angle[rows], pose[rows], _take(flank, rows), _take(holes, rows), start, rows)
+            self._solve(
+                crank_angle[rows], pose[rows], take_positions(flank, rows), take_positions(holes, rows), start, rows
+            )
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
         joined: Response = join_positions(parts)
@@ -232,9 +234,7 @@ class _Bodies:
         self.model, self.flank, self.holes = model, flank, holes
         place = model.geometry.placement
         self.bores, self.rays = model.geometry.bores(crank_angle, pose), model.geometry.rollers(crank_angle)
-        rollers = self.rays.direction.shape[1]
-        self.displacement = self.bores.each(self.bores.displacement, rollers)
-        self.moved = self.bores.each(self.bores.gradient, rollers)
+        self.displacement, self.moved = self.bores.displacement, self.bores.gradient  # of one bore, for all its rollers
         turn = pose[:, 2, None]
         play = place.shaft_pin_centres - (place.race_centre(crank_angle) + disc_displacement(pose))[:, None]
         play = play - place.hole_centres * np.exp(1j * turn)
@@ -447,10 +447,3 @@ class _Batch:
             hole_load=hole_load,
             warm_start=warm_start,
         )
-
-
-Motion = TypeVar("Motion", FlankMotion, PairMotion)
-
-
-def _take(motion: Motion, rows: NDArray[np.intp]) -> Motion:
-    return replace(motion, **{item.name: getattr(motion, item.name)[rows] for item in fields(motion)})

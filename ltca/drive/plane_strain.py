@@ -69,7 +69,8 @@ def require_rigid_members(drive: Drive, model: str) -> None:
     """
     problems, stiffness = [], drive.pin_wheel.support_stiffness
     if drive.crank.support is not None:
-        problems.append(f"crank.support: must be left out for {model}, where cranks are rigid")
+        fields = ", ".join(f"crank.support.{name}" for name in ("diameter", "positions", "stiffness"))
+        problems.append(f"crank.support ({fields}): must be left out for {model}, where cranks are rigid")
     if stiffness is not None:
         problems.append(
             f"pin_wheel.support_stiffness = {stiffness:g} N/mm: must be left out for {model}, where the wheel's axis stands still"

@@ -87,10 +87,11 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
         if own.bore_errors is None:
             continue
         if cranks == 1:
-            yield (
-                f"disc.of.{number}.bore_errors: must be left out with one crank, whose bore is the centre of the disc "
-                "(give disc.runout)"
-            )
+            for name in ("radial", "tangential"):
+                yield (
+                    f"disc.of.{number}.bore_errors.{name}: must be left out with one crank, whose bore is the centre of the "
+                    "disc (give disc.runout)"
+                )
             continue
         for name in ("radial", "tangential"):
             values = getattr(own.bore_errors, name)

@@ -67,7 +67,8 @@ ROUND_OFF = 1e-6
 DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split("."))
 _NAME = {
     "name": "names a drive and its files, nothing else",
-    "disc.planes": "axial places have no effect before pins and shafts bend",
+    "disc.planes": "axial places have no effect where neither pins nor cranks bend",
+    "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
 _EVERYWHERE: Mapping[str, str] = _NAME
 _RIGID_PIN = {
@@ -147,6 +148,9 @@ def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...
         return (values[0] + 1, *values[1:]) if values else (2,)
     if path.endswith("profile_errors.parameter"):
         return (*values[:-1], values[-1] + 0.1) if values else ()
+    kind = field_kind(path)
+    if kind is not None and kind.unit == "N/mm":
+        return tuple(1.1 * value for value in values)
     count = element_count(drive, path)
     # Of each part another amount: a circle that shifts or grows as a whole could hide in a free motion.
     step = _FROM_ZERO["mm"]

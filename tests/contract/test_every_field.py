@@ -21,9 +21,10 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import reducer_of
+from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 from ltca.testing.field_changes import EXCEPTIONS, change_of, leaf_fields, moves
 
@@ -51,9 +52,10 @@ def tables(drive):
 def direct(drive):
     """Grids inside every iteration; few cells, for the sake of time: which fields count does not depend on them."""
     singles = single_discs(drive)
-    tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles])
+    supports = support_stiffness(drive)
+    tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
     near = solve_at_output(tables, drive, ANGLES[:1], drive.load.torque)
-    model = reducer_of([GridCompliance.of_drive(single, cells=4) for single in singles])
+    model = reducer_of([GridCompliance.of_drive(single, cells=4) for single in singles], supports)
     found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque, near.pose)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
@@ -140,6 +142,36 @@ def test_every_field_is_used_or_refused(model, path, models, answers):
         assert not moves(answers[key], after), f"{path} is listed as an exception of {model} but moves the answer"
     else:
         assert moves(answers[key], after), f"{path} is ignored by {model}"
+
+
+OF_SEVERAL_CRANKS = [
+    "installation.held",
+    "installation.first_stage_ratio",
+    "crank.number",
+    "crank.circle_radius",
+    "crank.angle",
+    "crank.eccentricity_error",
+    "crank.support.diameter",
+    "crank.support.positions",
+    "crank.support.stiffness",
+    "crank.of.0.eccentricity_error",
+    "crank.of.0.phase_error",
+    "disc.of.0.bore_errors.radial",
+    "disc.of.0.bore_errors.tangential",
+    "disc.planes",
+    "pin_wheel.support_stiffness",
+    "clearance.bearing",
+    "materials.crankshaft.youngs_modulus",
+]
+
+
+@pytest.mark.parametrize("path", OF_SEVERAL_CRANKS)
+def test_fields_of_several_cranks_are_used(path):
+    """The walk above starts from a central crank; what several have is looked at on an RV reducer."""
+    base = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+    base, change = change_of(base, path)
+    change |= {"crank.circle_radius": {path: 40.0}, "disc.planes": {path: (-9.0, 9.0)}}.get(path, {})
+    assert moves(tables(base), tables(with_fields(base, change)))
 
 
 def test_the_walk_sees_what_is_ignored(answers):
