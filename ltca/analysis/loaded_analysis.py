@@ -16,13 +16,15 @@ from ltca.analysis.half_width_guard import (
 )
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.compliance.response import ComplianceModel, ContactPressures, take_positions
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
+from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
+from ltca.equilibrium.output_torque import crank_moments
 from ltca.equilibrium.partial_balance import balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import (
     bearing_forces,
@@ -36,6 +38,10 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import preload_warning
 
 FloatArray = NDArray[np.float64]
+
+
+SHARED = 24
+"""Positions at which shares of the compliance are looked at: they change slowly over the turn."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +95,7 @@ class LoadedAnalysis:
         What each carries of the torque is in `disc_torques`.
         """
         singles = single_discs(self.drive)
-        if len(singles) == 1:
+        if self.model.discs == (self.model,):
             return (self,)
         pressures = disc_pressures(self.pressures, len(singles))
         return tuple(
@@ -111,6 +117,23 @@ class LoadedAnalysis:
     def disc_torques(self) -> FloatArray:
         """Part of the external moment on the wheel that each disc carries, ccw positive, shape (positions, discs), N·mm."""
         return disc_torques(self.full.response)
+
+    @property
+    def crank_torques(self) -> FloatArray:
+        """External moment that holds each crank, ccw positive, shape (positions, cranks), N·mm."""
+        return crank_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+
+    @property
+    def compliance_shares(self) -> dict[str, FloatArray]:
+        """Which part yields how much of the output's compliance (`ltca.equilibrium.compliance_shares`).
+
+        At up to `SHARED` of the positions, evenly chosen; not a number where one has no answer.
+        """
+        positions = self.full.crank_angle.size
+        rows = np.unique(np.linspace(0, positions, min(positions, SHARED), endpoint=False).astype(int))
+        if not np.all(self.balanced[rows]):
+            return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
+        return compliance_shares(self.model, take_positions(self.full, rows))
 
     @property
     def torque_share(self) -> FloatArray:

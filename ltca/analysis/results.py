@@ -36,6 +36,7 @@ DIMENSIONS = {
     "drive": ("position",),
     "disc": ("disc", "position"),
     "crank": ("disc", "crank", "position"),
+    "crankshaft": ("crank", "position"),
     "pin": ("disc", "position", "pin"),
     "roller": ("disc", "crank", "position", "roller"),
     "hole": ("disc", "position", "hole"),
@@ -70,6 +71,11 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "pin_contact_parameter": ("pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"),
     "bearing_radial": ("crank", "N", "bearing force on the disc along the eccentricity"),
     "bearing_tangential": ("crank", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
+    "crank_torque": ("crankshaft", "N mm", "external moment that holds the crank, its cages included, ccw positive"),
+    "crank_deflection_radial": ("crank", "mm", "crank at the disc, along its eccentricity; torsion and tilt left out"),
+    "crank_deflection_tangential": ("crank", "mm", "crank at the disc, 90° ahead of its eccentricity"),
+    "wheel_x": ("drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
+    "wheel_y": ("drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
     "disc_torque": ("disc", "N mm", "part of the external moment on the wheel that the disc carries, ccw positive"),
     "wheel_moment": ("drive", "N mm", "external moment on the wheel at the torque of the run, ccw positive"),
     "wheel_angle": ("drive", "rad", "deviation of the wheel from φ_C/u at the torque of the run, ccw positive"),
@@ -112,9 +118,30 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "transmission_error_light": analysis.transmission_error_light,
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
+        "crank_torque": analysis.crank_torques.T,
+        **_supports(analysis),
         "status": (~analysis.balanced).astype(np.int32),
         "status_light": (~analysis.balanced_light).astype(np.int32),
     }
+
+
+def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
+    """Displacements of what yields on its supports, where anything does."""
+    pose, coordinates = analysis.full.pose, analysis.model.coordinates
+    values: dict[str, Any] = {}
+    if coordinates.wheel:
+        values["wheel_x"], values["wheel_y"] = pose[:, coordinates.wheel_place].T
+    if coordinates.cranks:
+        parts = []
+        for number, disc in enumerate(analysis.model.discs):
+            own = pose[:, coordinates.columns(number)]
+            first, last = coordinates.crank(0), coordinates.crank(coordinates.cranks)
+            moved = own[:, first:last:2] + 1j * own[:, first + 1 : last : 2]
+            ahead = disc.geometry.placement.eccentric_directions(analysis.full.crank_angle)
+            parts.append((moved * ahead.conjugate()).T)
+        yielding = np.stack(parts)
+        values["crank_deflection_radial"], values["crank_deflection_tangential"] = yielding.real, yielding.imag
+    return values
 
 
 def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:

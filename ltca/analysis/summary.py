@@ -107,6 +107,11 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
             f"mean_torque_share_disc_{disc}": np.mean(share[:, disc]),
             f"max_torque_share_disc_{disc}": np.max(share[:, disc]),
         }
+    torques = analysis.crank_torques
+    for crank in range(torques.shape[1]):
+        values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
+        values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
+    values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     if analysis.wall_stresses:
         for wall in ("root", "bore", "hole"):
             largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))

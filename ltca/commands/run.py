@@ -171,7 +171,8 @@ def _solve_and_write(
             write_netcdf(fields, part, packed)
         files.append("pressure.nc")
     print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
-    print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}))
+    yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
+    print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
     if any(analysis.pressures.rigid_shaft_pins for analysis in analyses.values()):
         print(RIGID_SHAFT_PINS)
     print(_sampling(analyses, angles))
@@ -295,7 +296,7 @@ WALL_ROWS = (
 )
 
 
-def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str]) -> str:
+def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str], yields: bool) -> str:
     from ltca.analysis.summary import refined_value
 
     width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
@@ -304,7 +305,7 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str])
         f"{'torque, direction of the crank':<40}" + "".join(f"{load:>{width}}" for load in loads.values()),
     ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
-    shares = _share_rows(summaries)
+    shares = (*_share_rows(summaries), *_compliance_rows(summaries, yields))
     output = (
         OUTPUT_ROWS
         if any(row["backlash_output_arcmin"] != row["backlash_wheel_arcmin"] for row in summaries.values())
@@ -324,6 +325,22 @@ def _share_rows(summaries: dict[str, dict[str, float | None]]) -> Iterator[tuple
     for disc in range(discs if discs > 1 else 0):
         yield f"part of the torque on disc {disc}, mean", f"mean_torque_share_disc_{disc}", "", "{:.4f}"
         yield "  largest at the positions", f"max_torque_share_disc_{disc}", "", "{:.4f}"
+
+
+def _compliance_rows(
+    summaries: dict[str, dict[str, float | None]], yields: bool
+) -> Iterator[tuple[str, str, str, str]]:
+    """What yields how much, where more does than contacts of a central crank; torques of several cranks."""
+    from ltca.equilibrium.compliance_shares import PARTS
+
+    first = next(iter(summaries.values()))
+    cranks = sum(key.startswith("mean_torque_crank_") for key in first)
+    for crank in range(cranks if cranks > 1 else 0):
+        yield f"torque of crank {crank}, mean", f"mean_torque_crank_{crank}_Nmm", "N mm", "{:.0f}"
+    told = [part for part in PARTS if any(case[f"compliance_share_{part}"] for case in summaries.values())]
+    for number, part in enumerate(told if yields or cranks > 1 else ()):
+        title = "part of the compliance: " if number == 0 else "  "
+        yield title + part.replace("_", " "), f"compliance_share_{part}", "", "{:.4f}"
 
 
 def _many(angles: FloatArray) -> str:

@@ -12,6 +12,8 @@ neighbours       Which positions of many are balanced first, and the poses of th
 balance          Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89)
 output_torque    Equilibrium at a given torque of the output, whichever member is held
 partial_balance  Balance as many positions as have an answer: one that has none costs the others nothing
+compliance_shares  Which parts of the reducer yield how much of what its output yields: shares of the compliance at a
+                 balanced position
 paper_method     The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
                  43–46, 90–93)
 clearance_free   Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system

@@ -1,0 +1,72 @@
+r"""Which parts of the reducer yield how much of what its output yields: shares of the compliance at a balanced position.
+
+A little more torque moves everything by :math:`dq = K^{-1} e\, dT`. The work of that torque, :math:`dT\, d\psi`, is what the
+contacts take, :math:`\sum dF_i\, d\delta_i`, and the supports, :math:`dq^T K_S\, dq`; what is left is geometry: loads that turn
+with their contacts. Changes of loads come from two poses beside the balanced one, whatever the bodies' compliance is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import ComplianceModel, Start, bearing_pushes
+from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.reducer import Reducer, disc_responses
+from ltca.geometry.coordinates import WHEEL_ANGLE
+
+FloatArray = NDArray[np.float64]
+
+PARTS = ("pins", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
+STEP = 1e-4
+"""Change of the torque, as a part of it: loads follow it in line, and round-off stays below 1e-4 of their change."""
+
+
+def compliance_shares(model: ComplianceModel, found: Equilibrium) -> dict[str, FloatArray]:
+    """Return the shares of the wheel's compliance by part, crank held.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        What balanced.
+    found : Equilibrium
+        Balanced positions.
+
+    Returns
+    -------
+    dict of str to array, shape (positions,)
+        By `PARTS`; they add up to one. Not a number where nothing resists a free motion.
+    """
+    tangent, size = found.response.tangent, found.pose.shape[1]
+    one = np.zeros((found.pose.shape[0], size, 1))
+    one[:, WHEEL_ANGLE] = STEP * found.wheel_moment[:, None]
+    try:
+        moved: FloatArray = np.asarray(np.linalg.solve(tangent, one)[..., 0], dtype=float)
+    except np.linalg.LinAlgError:  # a disc that carries nothing floats
+        return dict.fromkeys(PARTS, np.full(found.pose.shape[0], np.nan))
+    start = Start.after(found.response)
+    ends = [model.respond(found.crank_angle, found.pose + side * moved, start) for side in (0.5, -0.5)]
+    work = {part: np.zeros(found.pose.shape[0]) for part in PARTS}
+    for number, here in enumerate(disc_responses(found.response)):
+        own = moved[:, model.coordinates.columns(number)]
+        up, down = (disc_responses(end)[number] for end in ends)
+        work["pins"] += _taken(here.flank.gradient, own, up.pin_load - down.pin_load)
+        work["shaft_pins"] += _taken(here.holes.gradient, own, up.hole_load - down.hole_load)
+        bores = model.discs[number].geometry.bores(found.crank_angle, found.pose[:, model.coordinates.columns(number)])
+        shift = np.einsum("bcj,bj->bc", bores.gradient, own)
+        push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
+        work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
+    if isinstance(model, Reducer) and model.supports is not None:
+        wheel = np.zeros(size, dtype=bool)
+        wheel[model.coordinates.wheel_place] = True
+        for part, columns in (("cranks", ~wheel), ("wheel_bearing", wheel)):
+            held = np.where(columns, moved, 0.0)
+            work[part] += np.matmul(held[:, None, :], np.matmul(model.supports, held[..., None]))[:, 0, 0]
+    total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE]
+    work["geometry"] = total - sum(work[part] for part in PARTS[:-1])
+    return {part: value / total for part, value in work.items()}
+
+
+def _taken(gradient: FloatArray, moved: FloatArray, change: FloatArray) -> FloatArray:
+    """Work of changed loads along the approaches of a motion."""
+    return np.asarray((np.einsum("bij,bj->bi", gradient, moved) * change).sum(axis=1))
