@@ -1,7 +1,7 @@
 """Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
 
 ``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`), ``--preloaded`` such whose parts
-overlap as drawn; none of them may be refused.
+overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`); none of them may be refused.
 
 Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
 `ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
@@ -25,6 +25,7 @@ from ltca.drive.parts import Drive
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
+from ltca.testing.crank_drives import crank_drive
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
 from ltca.testing.random_drives import random_reducer
 
@@ -50,12 +51,16 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=2000, help="drives to draw; default 2000")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--practical", action="store_true", help="drives as people draw them")
+    kind.add_argument(
+        "--cranks", action="store_true", help="reducers of all kinds: several cranks, supports, first stages"
+    )
     kind.add_argument("--preloaded", action="store_true", help="such drives whose parts overlap as drawn")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
-    answered = arguments.practical or arguments.preloaded
+    answered = arguments.practical or arguments.preloaded or arguments.cranks
     draw = practical_drive if arguments.practical else preloaded_drive if arguments.preloaded else random_reducer
+    draw = crank_drive if arguments.cranks else draw
     outcomes: Counter[str] = Counter()
     remarks: list[str] = []
     iterations: Counter[int] = Counter()

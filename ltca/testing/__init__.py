@@ -5,6 +5,8 @@ Modules in the order data passes:
 ==================  ============================================================
 random_drives       Random but valid drives, to try the analysis on what nobody thought of
 practical_drives    Drives as people draw them: round numbers, zeros and equalities, steel, aluminium or plastic
+crank_drives        Reducers of all kinds: one or several cranks, with and without pin shaft, first stage and supports, either
+                    member held
 actual_parts        Every part of a drive at its actual place, written out from the definition apart from `ltca.geometry`
 balance_check       Whether a pose balances, found without the code that balances it
 field_changes       One sensible change for every leaf field of a drive: what the contract is walked with

@@ -9,6 +9,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.geometry.interference import drawn_interference
 from ltca.testing.balance_check import find_imbalance
+from ltca.testing.crank_drives import crank_drive
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
 
 
@@ -38,6 +39,27 @@ def test_preloaded_drives_quick():
 def test_forty_preloaded_drives():
     """``benchmarks/random_drives.py --preloaded`` runs thousands."""
     check_seeds(3, 37, preloaded_drive)
+
+
+def test_reducers_of_all_kinds_quick():
+    check_seeds(0, 8, crank_drive)
+
+
+@pytest.mark.slow
+def test_two_hundred_reducers_of_all_kinds():
+    """``benchmarks/random_drives.py --cranks`` runs thousands."""
+    check_seeds(8, 192, crank_drive)
+
+
+def test_every_kind_of_reducer_is_drawn():
+    drives = [crank_drive(seed)[0] for seed in range(100)]
+    assert {drive.crank.number for drive in drives} == {1, 2, 3, 4, 5}
+    assert {drive.crank.support is None for drive in drives} == {True, False}
+    assert {drive.pin_wheel.support_stiffness is None for drive in drives} == {True, False}
+    assert {drive.installation.first_stage_ratio for drive in drives} == {None, 1.0, 2.0, 2.5}
+    assert any(drive.crank.number > 1 and drive.pin_shaft is not None for drive in drives)
+    assert any(drive.crank.number > 1 and drive.crank.of for drive in drives)
+    assert any(own.bore_errors for drive in drives for own in drive.disc.of)
 
 
 def test_preload_of_every_kind_is_drawn():

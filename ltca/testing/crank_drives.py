@@ -1,0 +1,116 @@
+"""Reducers of all kinds: one or several cranks, with and without pin shaft, first stage and supports, either member held.
+
+Like `practical_drives`, on which they are built, they crowd at the plain choices: no error at all, equal supports, rigid ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator
+
+from ltca.drive.deviations import BoreErrors, OneDisc, OneEccentric
+from ltca.drive.parts import Clearance, CrankSupport, Drive, Installation
+from ltca.geometry.flank import FlankProfile
+from ltca.reading.physical_checks import is_sound
+from ltca.testing.practical_drives import practical_drive
+
+
+def crank_drive(seed: int) -> tuple[Drive, float]:
+    """Return a reducer of any kind, and a crank angle in rad.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative; the same seed gives the same drive.
+
+    Returns
+    -------
+    Drive
+        Two thirds of them with two to five cranks on the carrier.
+    float
+        φ_C, rad.
+    """
+    random = np.random.default_rng((seed, 2))
+    while True:
+        drive, angle = practical_drive(int(random.integers(2**32)))
+        if random.uniform() < 0.67:
+            drive = _on_the_carrier(random, drive)
+        drive = _supported(random, drive)
+        if is_sound(drive):
+            return drive, angle
+
+
+def _on_the_carrier(random: Generator, drive: Drive) -> Drive:
+    """Several cranks with small bearings on a circle, a first stage or none; pins of the shaft between them or none."""
+    root, cranks = (
+        FlankProfile.of_drive(replace(drive, disc=_plain(drive))).root_radius,
+        int(random.choice([2, 2, 3, 3, 4, 5])),
+    )
+    bearing = drive.crank_bearing
+    circle = round(2.0 * root * random.uniform(0.5, 0.65)) / 2.0
+    room = 0.85 * min(circle * float(np.sin(np.pi / cranks)), root - circle)
+    size = room / bearing.outer_race_radius
+    radius = max(round(40.0 * size * bearing.roller_radius) / 40.0, 0.025)
+    outer = round(4.0 * size * bearing.outer_race_radius) / 4.0
+    bearing = replace(
+        bearing, outer_race_radius=outer, inner_race_radius=outer - 2.0 * radius, roller_radius=radius,
+        number_of_rollers=max(5, int(bearing.number_of_rollers * random.uniform(0.5, 1.0))),
+    )  # fmt: skip
+    discs = drive.disc.number_of_discs
+    shaft, clearance, angle = None, Clearance(bearing=drive.clearance.bearing), float(random.choice([0.0, 0.0, 0.3]))
+    if drive.pin_shaft is not None and random.uniform() < 0.4:
+        pin = round(8.0 * (0.4 * room - drive.crank.eccentricity)) / 8.0
+        if pin > 0.0:
+            angle = np.pi / cranks
+            shaft = replace(
+                drive.pin_shaft, number_of_pins=max(cranks, 3), pin_circle_radius=circle, pin_radius=pin,
+                hole_radius=pin + drive.crank.eccentricity,
+            )  # fmt: skip
+            clearance = drive.clearance
+    entries: tuple[OneEccentric, ...] = ()
+    own = drive.disc.of
+    error = float(random.choice([0.001, 0.003])) * min(1.0, drive.crank.eccentricity)
+    if random.uniform() < 0.3:
+        entries = (OneEccentric(disc=discs - 1, crank=cranks - 1, eccentricity_error=error, phase_error=0.0),)
+    if random.uniform() < 0.3:
+        bores = BoreErrors(radial=(error, *[0.0] * (cranks - 1)))
+        own = (
+            (replace(own[0], bore_errors=bores), *own[1:])
+            if own
+            else (OneDisc(bore_errors=bores), *[OneDisc()] * (discs - 1))
+        )
+    stage = float(random.choice([0.0, 1.0, 2.0, 2.5])) or None
+    return replace(
+        drive,
+        crank=replace(drive.crank, number=cranks, circle_radius=circle, angle=angle, of=entries),
+        crank_bearing=bearing,
+        disc=replace(drive.disc, of=own),
+        pin_shaft=shaft,
+        clearance=clearance,
+        installation=Installation(held=drive.installation.held, first_stage_ratio=stage),
+    )  # fmt: skip
+
+
+def _plain(drive: Drive) -> Any:
+    return replace(drive.disc, number_of_discs=1, phases=(), planes=(), of=())
+
+
+def _supported(random: Generator, drive: Drive) -> Drive:
+    """Crankshafts on bearings, the wheel on its own, or neither."""
+    crank, wheel = drive.crank, drive.pin_wheel
+    stiffness = float(random.choice([1e5, 3e5, 1e6]))
+    if random.uniform() < 0.6:
+        ends = max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
+        second = float(random.choice([1.0, 1.0, 0.5])) * stiffness
+        shaft = CrankSupport(
+            diameter=1.6 * drive.crank_bearing.inner_race_radius,
+            positions=(-ends, float(random.choice([1.0, 1.5])) * ends),
+            stiffness=(stiffness, second),
+        )
+        crank = replace(crank, support=shaft)
+    if random.uniform() < 0.3:
+        wheel = replace(wheel, support_stiffness=float(random.choice([3e5, 1e6])))
+    return replace(drive, crank=crank, pin_wheel=wheel)
