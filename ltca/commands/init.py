@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ltca.reading.arguments import path_argument
 
-SUMMARY = "write a commented drive file to start from: the paper's drive, or a robot joint's"
+SUMMARY = "write a commented drive file to start from: the paper's drive, a robot joint's or an RV reducer's"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -19,7 +19,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--like",
         choices=("paper", "robot-joint", "rv"),
         default="paper",
-        help="the paper's drive: one disc, pin shaft held (default); or a made-up robot joint's: two discs, housing held",
+        help="the paper's drive: one disc, pin shaft held (default); or made up: a robot joint's, two discs, housing held; an RV "
+        "reducer's, two discs on three cranks",
     )
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
 

@@ -86,8 +86,8 @@ def own_paths(drive: Drive, path: str) -> tuple[str, ...]:
 
     Examples
     --------
-    >>> from ltca.reading.drive_file import load_drive
-    >>> drive = load_drive("robot-joint").cases["nominal"]
+    >>> from ltca.reading.drive_file import parse_drive, shipped_drive
+    >>> drive = parse_drive(shipped_drive("robot-joint")).cases["nominal"]
     >>> own_paths(drive, "clearance.bearing"), own_paths(drive, "disc.thickness")
     (('disc.of.0.clearance.bearing', 'disc.of.1.clearance.bearing'), ())
     """
