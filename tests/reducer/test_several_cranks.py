@@ -351,3 +351,27 @@ def test_bad_input_is_one_clear_line(rv, words, message):
     with pytest.raises(DriveError, match=message) as caught:
         with_fields(rv, words)
     assert all("\n" not in problem for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize("name", ["cranks", "wheel", "central crank yields"])
+def test_shares_of_the_compliance(rv, name):
+    """∂c/∂ ln k of a support is −share · c: the compliance of the wheel's angle from the tangent, its supports a little stiffer."""
+    drive = kind(rv, name)
+    found = analyse(drive, ANGLES)
+    shares, step = found.compliance_shares, 1e-4
+    np.testing.assert_allclose(sum(shares.values()), 1.0, rtol=1e-12)
+    tangent, whole = found.full.response.tangent, support_stiffness(drive)
+    columns = np.zeros(tangent.shape[1], dtype=bool)
+    columns[found.model.coordinates.wheel_place] = True
+
+    def compliance(part, factor):
+        of = np.outer(columns, columns) if part == "wheel_bearing" else ~np.outer(columns, columns)
+        return np.linalg.inv(tangent + (factor - 1.0) * whole * of)[:, WHEEL_ANGLE, WHEEL_ANGLE]
+
+    for part in ("cranks", "wheel_bearing"):
+        slope = (compliance(part, 1.0 + step) - compliance(part, 1.0 - step)) / (2.0 * step)
+        # differences of second order over 1e-4: 1e-8, and loads that follow 1e-4 of the torque not quite in line
+        np.testing.assert_allclose(shares[part], -slope / compliance(part, 1.0), atol=1e-6)
+    # two discs half a turn apart hardly push the wheel aside; ten times the tolerance
+    assert max(shares["cranks"].max(), shares["wheel_bearing"].max()) > 1e-5
+    assert abs(shares["geometry"]).max() < 0.01
