@@ -2,6 +2,7 @@
 
     python benchmarks/equilibria.py [--coefficients FILE] [--positions 360] [--rounds 3]
 
+Then of other reducers on tables: discs, a held wheel, cranks, supports (times by that of the paper's drive).
 ``fe`` and ``hybrid`` start from the solution on tables as the engines do (their time includes it). Without a file of
 ``cyclo derive paper --case CS-1`` the bodies are those in closed form (`ltca.testing.closed_form_bodies`), on fewer stations.
 Each figure is the best of the rounds; compare ratios of one run.
@@ -18,18 +19,22 @@ import argparse
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from ltca.analysis.engines import HalfSpace
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel, Start
+from ltca.drive.parts import Drive, Installation
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.geometry.placement import position_angles
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
@@ -49,6 +54,35 @@ def one_evaluation(model: ComplianceModel, angles: np.ndarray, pose: np.ndarray)
     began = time.process_time()
     model.respond(angles, pose + 1e-6, start)
     return time.process_time() - began
+
+
+def other_reducers(paper: Drive) -> dict[str, Drive]:
+    """Drives whose cost should grow in line with discs and cranks."""
+    rv = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+    rigid = replace(rv, crank=replace(rv.crank, support=None))
+    held = Installation(held="pin-shaft", first_stage_ratio=2.0)
+    return {
+        "two discs": replace(paper, disc=replace(paper.disc, number_of_discs=2)),
+        "three discs": replace(paper, disc=replace(paper.disc, number_of_discs=3)),
+        "wheel held": replace(paper, installation=Installation(held="pin-wheel")),
+        "robot joint": parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"],
+        "rv, rigid, shaft held": replace(rigid, installation=held),
+        "rv, rigid": rigid,
+        "rv": rv,
+        "rv, one disc": replace(rv, disc=replace(rv.disc, number_of_discs=1, phases=(), planes=())),
+        "rv, six cranks": replace(rv, crank=replace(rv.crank, number=6)),
+    }
+
+
+def measure_others(paper: Drive, angles: np.ndarray, rounds: int, base: float) -> None:
+    """Print the second table."""
+    print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'time by one disc':>20}")
+    for name, drive in other_reducers(paper).items():
+        model = HalfSpace().prepare(drive).model
+        found, seconds = best(
+            rounds, lambda model=model, drive=drive: solve_at_output(model, drive, angles, drive.load.torque)
+        )
+        print(f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{seconds / base:>20.1f}")
 
 
 def main() -> None:
@@ -84,6 +118,7 @@ def main() -> None:
             f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{1e3 * each:>15.3f}"
             f"{seconds / base:>20.1f}"
         )
+    measure_others(drive, angles, arguments.rounds, base)
 
 
 if __name__ == "__main__":

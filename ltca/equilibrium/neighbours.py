@@ -13,7 +13,7 @@ FloatArray = NDArray[np.float64]
 
 RESOLVED = 4
 """Leading positions in a passage of a tooth, a hole or a roller, whichever are most: a pose between two is near then."""
-WORTH = 3
+WORTH = 2
 """Positions for one leading, below which each might as well lead."""
 MOST = 8
 
@@ -33,7 +33,7 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
     if place.is_batch or angle.size < WORTH * RESOLVED or np.ptp(moment) > 0.0:
         return everything
     order = np.argsort(angle, kind="stable")
-    passages = max(place.reduction_ratio, place.hole_radii.size, place.roller_radii.size)
+    passages = max(place.reduction_ratio, place.hole_radii.size, place.roller_radii.size // place.cranks)
     spacing = float(np.max(np.diff(angle[order])))
     stride = min(MOST, int(2.0 * np.pi / (passages * RESOLVED * spacing))) if spacing > 0.0 else 1
     if stride < WORTH:
