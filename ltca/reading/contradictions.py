@@ -9,7 +9,7 @@ from functools import partial
 from math import exp, log
 from typing import Any
 
-from ltca.drive.fields import read_field
+from ltca.drive.fields import missing_part, read_field
 from ltca.drive.parts import Drive
 from ltca.reading.physical_checks import is_sound
 
@@ -17,7 +17,7 @@ CAUSES = (
     "pin_wheel.pin_circle_radius", "crank.eccentricity", "pin_wheel.pin_radius", "disc.thickness",
     "disc.equidistant_offset", "disc.shifting_offset", "crank_bearing.inner_race_radius",
     "crank_bearing.outer_race_radius", "crank_bearing.roller_radius", "crank_bearing.roller_length",
-    "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius", "pin_shaft.hole_radius", "clearance.bearing",
+    "crank.circle_radius", "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius", "pin_shaft.hole_radius", "clearance.bearing",
     "clearance.pin_hole",
 )  # fmt: skip
 # Two fields of a part that are mistaken for each other, the smaller first.
@@ -117,9 +117,13 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
     if not problems:
         return [], lambda other: False
     named = {problem.partition(" ")[0].rstrip(":") for problem in problems}
-    if not all(path in COUNTS or (path in CAUSES and read_field(drive, path) > 0.0) for path in named):
+    if not all(
+        path in COUNTS or (path in CAUSES and _has(drive, path) and read_field(drive, path) > 0.0) for path in named
+    ):
         return problems, lambda other: False  # of deviations and negative offsets, which are what is wrong themselves
     for part, smaller, larger in SWAPPED:
+        if getattr(drive, part) is None:
+            continue
         if getattr(getattr(drive, part), smaller) > getattr(getattr(drive, part), larger) and _sound_swapped(
             drive, part
         ):
@@ -160,6 +164,8 @@ def _sound_swapped(drive: Drive, part: str) -> bool:
 
 def _causes(drive: Drive) -> Iterator[Cause]:
     for path in CAUSES:
+        if not _has(drive, path):
+            continue
         value = float(read_field(drive, path))
         if value <= 0.0:
             continue
@@ -172,11 +178,19 @@ def _causes(drive: Drive) -> Iterator[Cause]:
                 yield Cause(path=path, value=value, bound=_nearest(drive, path, value, size))
                 break
     for path in COUNTS:
+        if not _has(drive, path):
+            continue
         count = int(read_field(drive, path))
         for other in (other for step in range(1, 200) for other in (count - step, count + step)):
             if other >= 3 and _sound_with(drive, path, other):
                 yield Cause(path=path, value=count, bound=other)
                 break
+
+
+def _has(drive: Drive, path: str) -> bool:
+    """Tell whether a drive has a field: one without pin shaft, or with one crank, has not all of them."""
+    left_out = path == "crank.circle_radius" and drive.crank.circle_radius is None
+    return missing_part(drive, path) is None and not left_out
 
 
 def _fitting(drive: Drive, path: str) -> float:

@@ -375,3 +375,19 @@ def test_shares_of_the_compliance(rv, name):
     # two discs half a turn apart hardly push the wheel aside; ten times the tolerance
     assert max(shares["cranks"].max(), shares["wheel_bearing"].max()) > 1e-5
     assert abs(shares["geometry"]).max() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("inner_race_radius = 13.0", "inner_race_radius = 14.0", r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2\.127"),
+        ("\npin_radius = 3.0", "\npin_radius = 9.0", r"pin_wheel\.pin_radius = 9 mm: must be less than 6\.27673 mm"),
+        ("circle_radius = 42.0 ", "circle_radius = 62.0 ", r"crank\.circle_radius = 62 mm: bores cut through the root"),
+    ],
+)
+def test_causes_are_looked_for_without_a_pin_shaft(old, new, message):
+    """Fields of a part that the drive has not were read ("unforeseen AttributeError")."""
+    text = shipped_drive("rv")
+    assert old in text
+    with pytest.raises(DriveError, match=message):
+        parse_drive(text.replace(old, new), "rv")
