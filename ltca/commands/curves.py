@@ -104,8 +104,8 @@ class CaseCurves(NamedTuple):
         Orders of the transmission error.
     life : RatingLife
         Of the crank bearing with the shortest one.
-    disc : int
-        Its disc.
+    disc, crank : int
+        Its disc and crank.
     hours : float or None
         At the speed, where there is one.
     pressure : array, shape (positions, pins)
@@ -120,6 +120,7 @@ class CaseCurves(NamedTuple):
     spectrum: Spectrum
     life: RatingLife
     disc: int
+    crank: int
     hours: float | None
     pressure: FloatArray
     safety: PressureSafety
@@ -235,27 +236,33 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
         roller_length=part.roller_length,
         pitch_diameter=part.inner_race_radius + part.outer_race_radius,
     )
-    lives = [
-        rating_life(
+    cranks = drive.crank.number
+    # The load of a central crank turns with it. On the carrier it stands neither to crank nor to disc: the worse of both.
+    lives = {
+        (disc, crank, standing): rating_life(
             bearing,
-            rollers.inner_load,
-            rollers.outer_load,
+            np.split(rollers.inner_load, cranks, axis=1)[crank],
+            np.split(rollers.outer_load, cranks, axis=1)[crank],
+            standing=standing,
             relieved=not part.roller_profile.is_cylinder,
             dynamic_load_rating=limits.load_rating,
         )
-        for rollers in (disc.full.response.rollers for disc in analysis.discs)
-    ]
-    shortest = min(range(len(lives)), key=lambda disc: lives[disc].life)
+        for disc, rollers in enumerate(disc.full.response.rollers for disc in analysis.discs)
+        for crank in range(cranks)
+        for standing in (("inner",) if cranks == 1 else ("inner", "outer"))
+    }
+    shortest = min(lives, key=lambda key: lives[key].life)
     life = lives[shortest]
     # The disc does not turn against the pin shaft: a bearing turns as the crank does against that one.
-    turning = abs(drive.output_per_wheel_angle)
+    turning = abs(drive.output_per_wheel_angle) if cranks == 1 else 1.0
     return CaseCurves(
         curve=curve,
         turns=turns,
         crank_angle=angle,
         spectrum=spectrum,
         life=life,
-        disc=shortest,
+        disc=shortest[0],
+        crank=shortest[1],
         hours=None if limits.speed is None else life.life * 1e6 / (60.0 * limits.speed * turning),
         pressure=analysis.pressures.pins.mid,
         safety=pressure_safety(analysis.pressures.pins.mid, limits.pressure),
@@ -283,8 +290,12 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
         entry = spectrum.orders[number]
         print(f"  {entry.value:>9.4f}  {entry.name:<32}{spectrum.amplitude[number] * ARCSEC:>9.4f}″")
     print(f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″")
-    which = "" if discs == 1 else f" of disc {found.disc}, the shortest"
-    print(f"rating life of the crank bearing{which} (load stands still to the inner race)")
+    named = ([f"disc {found.disc}"] if discs > 1 else []) + ([f"crank {found.crank}"] if drive.crank.number > 1 else [])
+    which = f" of {', '.join(named)}, the shortest" if named else ""
+    stands = (
+        "load stands still to the inner race" if drive.crank.number == 1 else "load taken to stand to the worse race"
+    )
+    print(f"rating life of the crank bearing{which} ({stands})")
     print(f"  C {life.dynamic_load_rating:.0f} N, P {life.equivalent_load:.0f} N, L10r {life.life:.1f} million turns")
     if found.hours is not None:
         print(f"  {found.hours:.0f} h at {limits.speed:g} turns a minute")
@@ -342,6 +353,7 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
         "bearing_life": {
             "million_turns": life.life,
             "disc": found.disc,
+            "crank": found.crank,
             "hours": found.hours,
             "dynamic_load_rating_N": life.dynamic_load_rating,
             "equivalent_load_N": life.equivalent_load,

@@ -380,7 +380,11 @@ def test_shares_of_the_compliance(rv, name):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("inner_race_radius = 13.0", "inner_race_radius = 14.0", r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2\.127"),
+        (
+            "inner_race_radius = 13.0",
+            "inner_race_radius = 14.0",
+            r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2\.127",
+        ),
         ("\npin_radius = 3.0", "\npin_radius = 9.0", r"pin_wheel\.pin_radius = 9 mm: must be less than 6\.27673 mm"),
         ("circle_radius = 42.0 ", "circle_radius = 62.0 ", r"crank\.circle_radius = 62 mm: bores cut through the root"),
     ],
