@@ -82,12 +82,14 @@ def condense_drive(
     rollers = rollers.counted_from(len(pins.groups))
     elastic = elastic.counted_from(len(pins.groups) + len(rollers.groups))
     disc = shapes.disc
-    pairs.add("pin", meshes.disc, (disc.flank,), contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
+    flanks = (disc.flank,) * len(place.wheel_pin_radii)
+    bores = tuple(disc.bores[crank] for crank in place.roller_cranks)
+    races = (shapes.inner_race.curves[0],) * len(place.roller_radii)
+    pairs.add("pin", meshes.disc, flanks, contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
     pairs.add("hole", meshes.disc, disc.holes, contacts.hole_points, holes, place.shaft_pin_radii, elastic)
-    pairs.add("roller_outer", meshes.disc, (disc.bore,), contacts.bore_points, outer, place.roller_radii, rollers)
+    pairs.add("roller_outer", meshes.disc, bores, contacts.bore_points, outer, place.roller_radii, rollers)
     on_disc = len(pairs.found)
-    race = shapes.inner_race.curves[0]
-    pairs.add("roller_inner", meshes.inner_race, (race,), contacts.race_points, inner, place.roller_radii, rollers)
+    pairs.add("roller_inner", meshes.inner_race, races, contacts.race_points, inner, place.roller_radii, rollers)
     return DriveModel(
         drive=drive,
         crank_angle=contacts.crank_angle,
@@ -226,12 +228,13 @@ class _PairList:
         radii: FloatArray,
         opposite: _RoundBodies,
     ) -> None:
-        """Add the pairs of one kind: pressure on `body`, along one curve or along one for each pair."""
+        """Add the pairs of one kind: pressure on `body`, along the curve of each part."""
         width, load = expected.half_width, expected.load
         for index in np.flatnonzero(width > 0.0).tolist():
             reach = PRESSURE_REACH * float(width[index])
-            curve = curves[index] if len(curves) > 1 else curves[0]
-            zone = PressureZone.on_boundary(body, curve, complex(points[index]), reach, thickness=self.thickness)
+            zone = PressureZone.on_boundary(
+                body, curves[index], complex(points[index]), reach, thickness=self.thickness
+            )
             first = self.found[-1].unknowns.stop if self.found else 0
             group, turn = opposite.places.get(index, (-1, 0.0))
             self.found.append(

@@ -34,14 +34,14 @@ class DiscStress:
     Attributes
     ----------
     walls : tuple of WallStress
-        Flank, bore, then each hole, frame of the disc.
+        Flank, then each bore, then each hole, frame of the disc.
     clear : tuple of array of bool
         Which nodes of each wall are clear of its contacts.
     root_stress : array, shape (lobes,)
         Largest tensile stress along the flank about each root, from crest to crest; root k lies at θ = 2πk/z_C. MPa, not
         a number where nothing is clear.
     bore_stress : float
-        Along the bore, MPa.
+        Along the bores, the largest of all, MPa.
     hole_stress : array, shape (z_PS,)
         Along each hole wall, MPa.
     pin_shear, roller_shear, hole_shear : array
@@ -87,14 +87,15 @@ def recover_disc_stress(solution: FullSolution) -> DiscStress:
         if detail.share > FINE_SHARE:
             shear[pair.kind][pair.index], _ = largest_shear_below(body, stress, place, -outward, detail.half_width)
     lobes = round(shape.flank.profile.reduction_ratio) - 1
-    flank, bore, *holes = zip(walls, clear, strict=True)
+    flank, *openings = zip(walls, clear, strict=True)
+    bores = len(shape.bores)
     nearest = np.mod(np.rint(flank[0].parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
     return DiscStress(
         walls=walls,
         clear=tuple(clear),
         root_stress=np.array([_largest(flank[0], flank[1] & (nearest == root)) for root in range(lobes)]),
-        bore_stress=_largest(*bore),
-        hole_stress=np.array([_largest(*hole) for hole in holes]),
+        bore_stress=_largest_of_all([_largest(*bore) for bore in openings[:bores]]),
+        hole_stress=np.array([_largest(*hole) for hole in openings[bores:]]),
         pin_shear=shear["pin"],
         roller_shear=shear["roller_outer"],
         hole_shear=shear["hole"],
@@ -113,6 +114,10 @@ def _centre_of_pressure(pair: ContactPair, detail: PairResult) -> tuple[complex,
 
 def _largest(wall: WallStress, among: NDArray[np.bool_]) -> float:
     return float(np.max(wall.stress[among])) if among.any() else float("nan")
+
+
+def _largest_of_all(values: list[float]) -> float:
+    return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
 
 
 def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
