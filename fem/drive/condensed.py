@@ -84,7 +84,8 @@ def condense_drive(
     disc = shapes.disc
     pairs.add("pin", meshes.disc, (disc.flank,), contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
     pairs.add("hole", meshes.disc, disc.holes, contacts.hole_points, holes, place.shaft_pin_radii, elastic)
-    pairs.add("roller_outer", meshes.disc, (disc.bore,), contacts.bore_points, outer, place.roller_radii, rollers)
+    bores = tuple(bore for bore in disc.bores for _ in range(drive.crank_bearing.number_of_rollers))
+    pairs.add("roller_outer", meshes.disc, bores, contacts.bore_points, outer, place.roller_radii, rollers)
     on_disc = len(pairs.found)
     race = shapes.inner_race.curves[0]
     pairs.add("roller_inner", meshes.inner_race, (race,), contacts.race_points, inner, place.roller_radii, rollers)

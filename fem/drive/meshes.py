@@ -161,10 +161,10 @@ def disc_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Re
 
 
 def wall_refinements(shape: DiscShape) -> tuple[Refinement, ...]:
-    """Return the refinements of fine walls: along bore and holes, and in the lobe roots."""
+    """Return the refinements of fine walls: along bores and holes, and in the lobe roots."""
     spots = []
     edge = shape.narrowest_wall / WALL_ELEMENTS
-    for curve in (shape.bore, *shape.holes):
+    for curve in (*shape.bores, *shape.holes):
         count = int(np.ceil(np.pi * curve.radius / edge))
         places = curve.points(2.0 * np.pi * np.arange(count) / count).tolist()
         spots += [Refinement(point.real, point.imag, edge, edge) for point in places]
