@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fem.errors import MeshError
-from fem.shapes import CircleCurve, CircleShape, DiscShape, DriveShapes, RingShape
 from fem.mesh.triangulation import mesh_disc
+from fem.shapes import CircleCurve, CircleShape, DiscShape, DriveShapes, RingShape
 from ltca.drive.deviations import BoreErrors, OneDisc
 from ltca.drive.parts import Drive, PlacementErrors
 from ltca.drive.single_discs import single_discs
