@@ -58,6 +58,11 @@ class DiscStress:
     roller_shear: FloatArray
     hole_shear: FloatArray
 
+    @property
+    def bores(self) -> int:
+        """Number of bores: walls that are neither the flank nor holes."""
+        return len(self.walls) - 1 - len(self.hole_stress)
+
 
 def recover_disc_stress(solution: FullSolution) -> DiscStress:
     """Return the stress in the disc of a full solution."""
@@ -141,6 +146,7 @@ def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
 
 def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
     """Return the stress in each disc as variables of ``fem.nc``, dimensions as in ``results.nc``."""
+    bores = discs[0].bores
     walls = [(disc, number, wall) for disc, stress in enumerate(discs) for number, wall in enumerate(stress.walls)]
 
     def per_node(values: list[Any], unit: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
@@ -148,10 +154,13 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
 
     def per_part(dimensions: tuple[str, ...], name: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
         values = np.array([getattr(stress, name) for stress in discs], dtype=float)
-        parts = values.shape[1:]
-        single = (1,) * (len(dimensions) - 2 - len(parts))
-        return dimensions, values.reshape(1, len(discs), *single, *parts), {"units": "MPa", "long_name": text}
+        sizes = {"case": 1, "disc": len(discs), "crank": bores, "position": 1}
+        shape = [sizes.get(dimension, -1) for dimension in dimensions]
+        return dimensions, values.reshape(shape), {"units": "MPa", "long_name": text}
 
+    boundaries = "0 flank, 1 bore, 2 + k hole k"
+    if bores > 1:
+        boundaries = f"0 flank, 1 + c bore c, {1 + bores} + k hole k"
     largest, below = "largest tensile stress along {}, clear of contacts", "largest shear stress in the disc below {}"
     disc, crank = ("case", "disc", "position"), ("case", "disc", "crank", "position")
     return {
@@ -159,9 +168,7 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
         "wall_disc": per_node(
             [np.full(len(wall.parameter), number) for number, _, wall in walls], "1", "number of the disc"
         ),
-        "wall_boundary": per_node(
-            [np.full(len(wall.parameter), number) for _, number, wall in walls], "1", "0 flank, 1 bore, 2 + k hole k"
-        ),
+        "wall_boundary": per_node([np.full(len(wall.parameter), number) for _, number, wall in walls], "1", boundaries),
         "wall_parameter": per_node([wall.parameter for *_, wall in walls], "rad", "θ of Eq. 1, or polar angle"),
         "wall_stress": per_node([wall.stress for *_, wall in walls], "MPa", "stress along the wall, tension positive"),
         "wall_clear": per_node(
@@ -170,7 +177,7 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
             "1 beyond four half-widths of contacts",
         ),
         "root_stress": per_part((*disc, "lobe"), "root_stress", largest.format("the flank about each lobe root")),
-        "bore_stress": per_part(disc, "bore_stress", largest.format("the bore")),
+        "bore_stress": per_part(disc, "bore_stress", largest.format("the bore" if bores == 1 else "the bores")),
         "hole_stress": per_part((*disc, "hole"), "hole_stress", largest.format("the wall of each hole")),
         "pin_shear_max": per_part((*disc, "pin"), "pin_shear", below.format("wheel pins")),
         "roller_shear_max_outer": per_part((*crank, "roller"), "roller_shear", below.format("rollers")),

@@ -133,8 +133,12 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
     cranks = model.placement.cranks
     for crank, centre in enumerate(model.race_centres.tolist()):
         name = meshes.inner_race.name if cranks == 1 else f"{meshes.inner_race.name}_{crank}"
-        body = replace(meshes.inner_race, name=name)
-        add("inner_race", body, Pose(centre=centre), Pose(centre=centre), model.race_displacement(crank, pressure), crank)
+        body, at, elastic = (
+            replace(meshes.inner_race, name=name),
+            Pose(centre=centre),
+            model.race_displacement(crank, pressure),
+        )
+        add("inner_race", body, at, at, elastic, crank)
     return tuple(fields)
 
 

@@ -82,10 +82,11 @@ def measure_gaps(
     start = np.angle(place.wheel_pin_centres) + wheel - rotation
     theta = profile.nearest_parameter(pins, on_turned_flank(profile, start))
     rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
+    reach = _reach_to_bore(_of_rollers(place, crank_angle, displacement, rotation), place, rays)
     holes = place.shaft_pin_centres - (centre + place.hole_centres * turn)
     return RigidGaps(
         pins=profile.distance(pins, theta) - place.wheel_pin_radii,
-        rollers=_reach_to_bore(_of_rollers(place, crank_angle, displacement, rotation), place, rays) - place.roller_radii - place.inner_race_radius,
+        rollers=reach - place.roller_radii - place.inner_race_radius,
         holes=place.hole_radii - place.shaft_pin_radii - np.abs(holes),
         flank_parameters=theta,
         pin_normals=profile.normal(theta) * turn,

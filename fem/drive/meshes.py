@@ -161,7 +161,7 @@ def disc_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Re
 
 
 def wall_refinements(shape: DiscShape) -> tuple[Refinement, ...]:
-    """Return the refinements of fine walls: along bore and holes, and in the lobe roots."""
+    """Return the refinements of fine walls: along bores and holes, and in the lobe roots."""
     spots = []
     edge = shape.narrowest_wall / WALL_ELEMENTS
     for curve in (*shape.bores, *shape.holes):

@@ -156,7 +156,7 @@ class Placement:
     def roller_cranks(self) -> NDArray[np.intp]:
         """Number of the crank of each roller, shape (cranks · n_BR,)."""
         rollers = self.roller_radii.shape[-1]
-        return np.arange(rollers) // (rollers // self.cranks)
+        return np.asarray(np.arange(rollers) // (rollers // self.cranks))
 
     @property
     def mean_eccentricity(self) -> FloatArray:
