@@ -166,13 +166,16 @@ class DriveModel:
     disc : CondensedBody
         Unit loads are the pressure unknowns on it.
     race : CondensedBody
-        One body that stands for the inner races of all cranks; unit loads are the pressure unknowns on any of them.
+        One body that stands for the inner races of all cranks; unit loads are the pressures about its boundary vertices,
+        each once.
     groups : tuple of RoundGroup
         Pins and rollers.
     pairs : tuple of ContactPair
         All candidate contacts, those on the disc first.
     placement : Placement
         Nominal places of the parts.
+    race_loads : array of int
+        Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
     shaft_pins : tuple of BodyMesh
         Meshes of elastic shaft pins; empty for rigid ones.
     """
@@ -187,6 +190,7 @@ class DriveModel:
     groups: tuple[RoundGroup, ...]
     pairs: tuple[ContactPair, ...]
     placement: Placement
+    race_loads: NDArray[np.intp]
     shaft_pins: tuple[BodyMesh, ...] = ()
 
     @property
@@ -219,11 +223,15 @@ class DriveModel:
         first = self.disc.compliance.shape[0]
         return slice(inner[0].unknowns.start, inner[-1].unknowns.stop) if inner else slice(first, first)
 
+    def loads_on_race(self, crank: int) -> NDArray[np.intp]:
+        """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
+        own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
+        return self.race_loads[own.start - first : own.stop - first]
+
     def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
         """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""
-        own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
         carried = np.zeros(self.race.compliance.shape[0])
-        carried[own.start - first : own.stop - first] = pressure[own]
+        carried[self.loads_on_race(crank)] = pressure[self.race_unknowns(crank)]
         return self.race.displacement(carried)
 
     @property
@@ -309,9 +317,8 @@ class DriveModel:
         on_disc = self.disc.compliance.shape[0]
         compliance[:on_disc, :on_disc] = self.disc.compliance
         for crank in range(self.placement.cranks):
-            own = self.race_unknowns(crank)
-            on_race = slice(own.start - on_disc, own.stop - on_disc)
-            compliance[own, own] = self.race.compliance[on_race, on_race]
+            own, loads = self.race_unknowns(crank), self.loads_on_race(crank)
+            compliance[own, own] = self.race.compliance[np.ix_(loads, loads)]
         motions = np.zeros((count, 4 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre
