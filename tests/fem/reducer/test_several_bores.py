@@ -11,10 +11,10 @@ import xarray as xr
 
 from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
-from fem.commands import mesh as mesh_command
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.grading import measure_gaps
 from fem.drive.solution import solve_disc
+from fem.pictures.mesh_picture import choose_zooms, place_bodies
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
 from ltca.analysis.engines import PlaneStrain
@@ -136,8 +136,8 @@ def test_the_disc_is_in_equilibrium(solved):
         for index in np.flatnonzero(np.abs(forces) > 0.0).tolist():
             # normal forces on a circle act through its centre
             moment += (model.circle_centre(kind, index, pose).conjugate() * forces[index]).imag
-    # The resultant leaves the centre by what the pressure is skewed under the loaded, turning normals.
-    assert abs(moment) < 2e-5 * abs(solved.wheel_moment)
+    # The resultant leaves the centre by what the pressure is skewed, on coarse meshes by some tenths of a micrometre.
+    assert abs(moment) < 1e-4 * abs(solved.wheel_moment)
     np.testing.assert_allclose(contacts.roller_load_outer, contacts.roller_load_inner, rtol=1e-5)
     forces = contacts.roller_force.reshape(3, ROLLERS).sum(axis=1)
     np.testing.assert_allclose(contacts.bearing_force, forces, rtol=1e-12)
@@ -174,15 +174,16 @@ def test_numbering_of_the_cranks_is_a_matter_of_names(solved, small):
 def test_rigid_body_limit_comes_near_the_half_space_drive(solved, small):
     """Disc and race 1000 times as stiff, pins and rollers half: every E* unchanged, only local yielding left.
 
-    The limits are those of the same comparison for a central crank (`tests/fem/drive/test_solution.py`).
+    The limits are those of the same comparison for a central crank (`tests/fem/drive/test_solution.py`), and 2 % more for
+    the coarser meshes.
     """
     soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
     materials = replace(small.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
     contacts = solve_disc(replace(small, materials=materials), ANGLE, solved.wheel_moment, scale=6.0).contacts
     half_space = analyse(small, np.array([ANGLE]), None).full.response
     for name, limit, theirs in (
-        ("pin_load", 0.15, half_space.pin_load[0]),
-        ("roller_load_outer", 0.05, half_space.rollers.outer_load[0]),
+        ("pin_load", 0.17, half_space.pin_load[0]),
+        ("roller_load_outer", 0.07, half_space.rollers.outer_load[0]),
     ):
         away = np.max(np.abs(getattr(contacts, name) - theirs)) / theirs.max()
         flexible = np.max(np.abs(getattr(solved.discs[0].contacts, name) - theirs)) / theirs.max()
@@ -258,12 +259,14 @@ def test_files_are_by_crank(solved, small, tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.slow
-def test_mesh_draws_every_race(small, tmp_path, capsys):
-    source = tmp_path / "small.toml"
-    source.write_text(drive_text(small), encoding="utf-8")
-    parser = argparse.ArgumentParser()
-    mesh_command.configure(parser)
-    words = [str(source), "--size", "6", "--out", str(tmp_path / "out")]
-    assert mesh_command.execute(parser.parse_args(words)) == 0
-    names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert {"disc.msh", "inner_race.msh", "roller_26.msh", "mesh.png"} <= names
+def test_pictures_place_every_race_with_its_rollers(solved):
+    model = solved.discs[0].model
+    placed = place_bodies(model.meshes, model.placement, model.contacts)
+    races = np.array([body.centre for body in placed if body.kind == "inner_race"])
+    np.testing.assert_allclose(races, model.placement.crank_axes + 4.0 * np.exp(1j * ANGLE), rtol=1e-12)
+    rollers = np.array([body.centre for body in placed if body.kind == "roller"]).reshape(3, ROLLERS)
+    play = np.abs(rollers - races[:, None]) - (13.0 + 2.5)
+    # the middle of the play, which the displaced disc takes from one side and gives to the other
+    assert np.all(np.abs(play) < 0.02)
+    titles = [zoom.title for zoom in choose_zooms(model.contacts, model.placement)]
+    assert len(titles) == 3  # no shaft pins
