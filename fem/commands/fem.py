@@ -136,8 +136,7 @@ def _solve_and_write(
 
 
 def _print_contacts(solution: FullSolution) -> None:
-    contacts, rollers = solution.contacts, solution.model.drive.crank_bearing.number_of_rollers
-    cranks = solution.model.placement.cranks
+    contacts, cranks = solution.contacts, solution.model.placement.cranks
     rows = (
         ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
         (
@@ -158,10 +157,9 @@ def _print_contacts(solution: FullSolution) -> None:
     for name, load, peak, width in rows:
         for index in range(len(load)):
             if load[index] > 0.0:
-                part = str(index)
-                if cranks > 1 and name.startswith("roller"):
-                    part = f"{index // rollers}.{index % rollers}"
-                print(f"{name + ' ' + part:<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}")
+                print(
+                    f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}"
+                )
     for crank, (radial, tangential) in enumerate(solution.bearing_components.tolist()):
         which = "" if cranks == 1 else f" at crank {crank}"
         print(f"bearing force on the disc{which}: radial {radial:.1f} N, tangential {tangential:.1f} N")

@@ -243,7 +243,7 @@ def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, 
     return {
         "pressure_contact": (np.concatenate(kinds).astype(str), "1", "kind of the contact of each sample"),
         "pressure_disc": (np.concatenate(numbers), "1", "number of its disc"),
-        "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller or hole"),
+        "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller (crank after crank) or hole"),
         "pressure_place": (np.concatenate(places), "mm", "arc length from the centre of pressure"),
         "pressure": (np.concatenate(values), "MPa", "mean contact pressure under the shape function of each vertex"),
     }
