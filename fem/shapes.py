@@ -16,7 +16,6 @@ from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_one_bore
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
@@ -161,26 +160,30 @@ class DiscShape:
     ----------
     flank : FlankCurve
         Boundary "flank".
-    bore : CircleCurve
-        Boundary "bore".
+    bores : tuple of CircleCurve
+        Boundary "bore", of several cranks boundaries "bore_0", "bore_1", …
     holes : tuple of CircleCurve
-        Boundaries "hole_0", "hole_1", …
+        Boundaries "hole_0", "hole_1", …; none without a pin shaft.
     name : str
         Name of the body.
     """
 
     flank: FlankCurve
-    bore: CircleCurve
+    bores: tuple[CircleCurve, ...]
     holes: tuple[CircleCurve, ...]
     name: str = "disc"
 
     @classmethod
     def of_drive(cls, drive: Drive) -> DiscShape:
-        """Return the disc of a drive, hole errors included."""
+        """Return the disc of a drive, errors of holes and bores included."""
         placement = Placement.of_drive(drive)
+        names = ["bore"] if placement.cranks == 1 else [f"bore_{c}" for c in range(placement.cranks)]
         return cls(
             flank=FlankCurve(profile=FlankProfile.of_drive(drive)),
-            bore=CircleCurve(name="bore", radius=drive.bore_radius, encloses_body=False),
+            bores=tuple(
+                CircleCurve(name=name, radius=drive.bore_radius, centre=complex(centre), encloses_body=False)
+                for name, centre in zip(names, placement.bore_centres, strict=True)
+            ),
             holes=tuple(
                 CircleCurve(name=f"hole_{k}", radius=float(radius), centre=complex(centre), encloses_body=False)
                 for k, (centre, radius) in enumerate(zip(placement.hole_centres, placement.hole_radii, strict=True))
@@ -189,18 +192,17 @@ class DiscShape:
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """Outer curve first, then the holes."""
-        return (self.flank, self.bore, *self.holes)
+        """Outer curve first, then bores, then holes."""
+        return (self.flank, *self.bores, *self.holes)
 
     @property
     def narrowest_wall(self) -> float:
         """Smallest wall between two boundaries, mm (the root circle stands for the flank)."""
         root = self.flank.profile.root_radius
-        walls = [root - self.bore.radius]
-        for k, hole in enumerate(self.holes):
-            walls.append(root - abs(hole.centre) - hole.radius)
-            walls.append(abs(hole.centre) - hole.radius - self.bore.radius)
-            walls += [abs(hole.centre - other.centre) - hole.radius - other.radius for other in self.holes[:k]]
+        walls, circles = [], (*self.bores, *self.holes)
+        for k, circle in enumerate(circles):
+            walls.append(root - abs(circle.centre) - circle.radius)
+            walls += [abs(circle.centre - other.centre) - circle.radius - other.radius for other in circles[:k]]
         return min(walls)
 
     @property
@@ -213,7 +215,7 @@ class DiscShape:
         # Parallel curves: |r′| = |c′| (1 − offset κ_c).
         speed = np.abs(tangent) * (1.0 - self.flank.profile.offset * self.flank.profile.locus_curvature(theta))
         outer = 0.5 * float(np.mean((points * normals.conjugate()).real * speed)) * 2.0 * np.pi
-        return outer - np.pi * (self.bore.radius**2 + sum(hole.radius**2 for hole in self.holes))
+        return outer - np.pi * (sum(bore.radius**2 for bore in self.bores) + sum(hole.radius**2 for hole in self.holes))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -316,9 +318,9 @@ class DriveShapes:
     wheel_pins : tuple of CircleShape
         "pin_0", …, with a rigid core.
     rollers : tuple of CircleShape
-        "roller_0", …, full circles.
+        "roller_0", …, full circles, crank after crank.
     inner_race : RingShape
-        "inner_race".
+        "inner_race", the same on every crank.
     shaft_pins : tuple of CircleShape
         "shaft_pin_0", …, full circles, for the option of elastic shaft pins.
     """
@@ -349,7 +351,6 @@ class DriveShapes:
         MeshError
             When a given radius leaves no material.
         """
-        require_one_bore(drive, "finite elements of a disc")
         placement = Placement.of_drive(drive)
         if core_radius is None:
             core_radius = min(DEFAULT_CORE_RADIUS, LARGEST_CORE_SHARE * float(placement.wheel_pin_radii.min()))

@@ -7,7 +7,7 @@ assembly      Stiffness of all elements in one product of matrices, and its sum 
 elasticity    Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
 surface       Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
 condensation  Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
-free_body     Datum of a floating body: its displacement relative to the best-fit rigid motion of one boundary
+free_body     Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries
 stress        Stress recovery: from nodal displacements to nodal Cauchy stresses
 wall_stress   Stress along a meshed boundary, from recovered nodal stresses
 ============  ============================================================

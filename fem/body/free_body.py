@@ -1,6 +1,6 @@
-r"""Datum of a floating body: its displacement relative to the best-fit rigid motion of one boundary.
+r"""Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries.
 
-The motion q that fits the displacement u of the boundary best, in the mean square along its length, solves
+The motion q that fits the displacement u of the boundaries best, in the mean square along their length, solves
 :math:`G q = W^T u` with :math:`W_i = \int N_i r\,ds` for the rigid modes r and :math:`G = \int r^T r\,ds`. An
 approach relative to it is :math:`B^T u - R^T G^{-1} W^T u`, R being the resultants of the patches B. The matrix of
 approaches is symmetric when the resultant of a unit load is balanced by the forces dual to that datum,

@@ -9,6 +9,8 @@ smooth in the place and does not depend on the width. So a mesh far coarser than
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 
 import numpy as np
 import scipy.sparse as sp
@@ -60,7 +62,7 @@ class DerivedDisc:
     Attributes
     ----------
     approach : array, shape (stations, stations)
-        mm/N, relative to the best-fit rigid motion of the bore, symmetric positive semidefinite.
+        mm/N, relative to the best-fit rigid motion of all bores together, symmetric positive semidefinite.
     resultants : array, shape (3, stations)
         Force in x, in y (N) and moment (N·mm) of each unit load on the mesh.
     wide_stations : array of int, shape (w,)
@@ -74,7 +76,7 @@ class DerivedDisc:
     reciprocity : float
         Largest difference of "displacement at i by j" and "at j by i", of the largest approach.
     rigid_residual : float
-        What is left of rigid motions of the disc once that of the bore is removed, and of the difference
+        What is left of rigid motions of the disc once that of the bores is removed, and of the difference
         between two datums once rigid motions are projected out; the larger of both, relative.
     unknowns : int
         Of the mesh.
@@ -248,7 +250,7 @@ def derive_disc(
         if len(also):
             width = WIDE_RATIO * stations.half_width[also]
             wide_patches.append(patch_loads(body, curve, stations.parameter[also], width))
-    motions = boundary_motion_loads(body, "bore")
+    motions = reduce(add, (boundary_motion_loads(body, bore.name) for bore in shape.bores))
     # What measures the strain of a wall is a load that balances itself: its row of the compliance holds, by
     # reciprocity, that strain under every patch. One factorisation serves both.
     measures = wall_modulus(material, state) * sp.hstack(strains)

@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 DATUM = (
-    "disc: relative to the best-fit rigid motion of the bore (least squares along its length), the resultant of each "
-    "unit load balanced by forces over the bore dual to that motion; wheel pin: rigid core held; roller: relative to "
+    "disc: relative to the best-fit rigid motion of {} (least squares along its length), the resultant of each "
+    "unit load balanced by forces over {} dual to that motion; wheel pin: rigid core held; roller: relative to "
     "area-mean displacement and rotation, unit loads balanced by uniform body force; inner race: bore held"
 )
 COARSER = 2.0
@@ -118,6 +118,10 @@ def derive_coefficients(
     fine = bodies.derive(size, "")
     disc, _, roller, race = fine
     dataset = _label(places, places.refined(shapes.disc), *fine)
+    if len(shapes.disc.bores) > 1:
+        dataset["station_boundary"].attrs["long_name"] = (
+            f"0 flank, 1 + c bore c, {1 + len(shapes.disc.bores)} + k hole k"
+        )
     dataset.attrs.update(
         drive=drive.name,
         case=case,
@@ -128,7 +132,7 @@ def derive_coefficients(
         thickness=bodies.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,
         race_bore_radius=shapes.inner_race.inner_radius,
-        datum=DATUM,
+        datum=DATUM.format(*["the bore" if len(shapes.disc.bores) == 1 else "all bores together"] * 2),
         unknowns_disc=disc.unknowns,
         mesh_size=f"{size:g}: edge {EDGE_SHARE * size:g} of the patch half-width, growth {GROWTH * size:g}; pins, "
         f"rollers and race {ROUND_SIZE:g} times that",

@@ -52,8 +52,8 @@ def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple
     fit = _fit(dataset, nominal)
     if fit is None:
         raise CycloError(
-            f"{source}: has stations on {len(np.unique(dataset['station_boundary'].values))} boundaries; flank, bore and "
-            f"holes of {drive.name} are {2 + drive.number_of_holes}"
+            f"{source}: has stations on {len(np.unique(dataset['station_boundary'].values))} boundaries; flank, bores "
+            f"and holes of {drive.name} are {1 + drive.crank.number + drive.number_of_holes}"
         )
     return (
         Check(

@@ -33,12 +33,12 @@ SPACING_SHARE = 0.4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscStations:
-    """Stations of the disc: flank first, then bore, then the holes.
+    """Stations of the disc: flank first, then bores, then holes.
 
     Attributes
     ----------
     boundary : array of int, shape (stations,)
-        0 flank, 1 bore, 2 + k hole k.
+        0 flank, 1 … s the bores of s cranks, then the holes.
     parameter : array, shape (stations,)
         Parameter of the boundary curve, uniform over [0, 2π), rad.
     points : array of complex, shape (stations,)
@@ -64,7 +64,7 @@ class DiscStations:
         shape : DiscShape
             The disc.
         scale : float
-            Multiple of the default numbers: 32 for each lobe, 48 on the bore, 24 on each hole.
+            Multiple of the default numbers: 32 for each lobe, 48 on each bore, 24 on each hole.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class DiscStations:
             )
         width = patch_half_width(shape)
         lobes = round(shape.flank.profile.reduction_ratio) - 1
-        numbers = [round(FLANK_PER_LOBE * scale) * lobes, round(BORE * scale)]
+        numbers = [round(FLANK_PER_LOBE * scale) * lobes, *[round(BORE * scale)] * len(shape.bores)]
         numbers += [round(PER_HOLE * scale)] * len(shape.holes)
         parameters = []
         for curve, number in zip(shape.curves, numbers, strict=True):
@@ -99,7 +99,7 @@ class DiscStations:
         return len(self.boundary)
 
     def refined(self, shape: DiscShape) -> DiscStations:
-        """Return the places at which stresses are measured: these on the flank, twice as many on bore and holes.
+        """Return the places at which stresses are measured: these on the flank, twice as many on bores and holes.
 
         Between thin ligaments the stress along a hole changes over a tenth of its length. Patches and measured arcs on
         one wall keep apart but where they coincide.

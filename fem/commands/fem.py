@@ -136,7 +136,7 @@ def _solve_and_write(
 
 
 def _print_contacts(solution: FullSolution) -> None:
-    contacts = solution.contacts
+    contacts, cranks = solution.contacts, solution.model.placement.cranks
     rows = (
         ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
         (
@@ -160,8 +160,9 @@ def _print_contacts(solution: FullSolution) -> None:
                 print(
                     f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}"
                 )
-    radial, tangential = solution.bearing_components
-    print(f"bearing force on the disc: radial {radial:.1f} N, tangential {tangential:.1f} N")
+    for crank, (radial, tangential) in enumerate(solution.bearing_components.tolist()):
+        which = "" if cranks == 1 else f" at crank {crank}"
+        print(f"bearing force on the disc{which}: radial {radial:.1f} N, tangential {tangential:.1f} N")
 
 
 def _print_drive(solution: ReducerSolution) -> None:

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
 
-BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("pin", "roller", "shaft_pin")))
-"""Names of all bodies, those of pins and rollers as patterns."""
+BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("inner_race", "pin", "roller", "shaft_pin")))
+"""Names of all bodies, those of pins, rollers and inner races of several cranks as patterns."""
 
 
 def disc_prefix(disc: int, discs: int) -> str:

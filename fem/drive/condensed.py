@@ -82,12 +82,15 @@ def condense_drive(
     rollers = rollers.counted_from(len(pins.groups))
     elastic = elastic.counted_from(len(pins.groups) + len(rollers.groups))
     disc = shapes.disc
-    pairs.add("pin", meshes.disc, (disc.flank,), contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
+    flanks = (disc.flank,) * len(place.wheel_pin_radii)
+    bores = tuple(disc.bores[crank] for crank in place.roller_cranks)
+    races = (shapes.inner_race.curves[0],) * len(place.roller_radii)
+    pairs.add("pin", meshes.disc, flanks, contacts.flank_points, contacts.pins, place.wheel_pin_radii, pins)
     pairs.add("hole", meshes.disc, disc.holes, contacts.hole_points, holes, place.shaft_pin_radii, elastic)
-    pairs.add("roller_outer", meshes.disc, (disc.bore,), contacts.bore_points, outer, place.roller_radii, rollers)
+    pairs.add("roller_outer", meshes.disc, bores, contacts.bore_points, outer, place.roller_radii, rollers)
     on_disc = len(pairs.found)
-    race = shapes.inner_race.curves[0]
-    pairs.add("roller_inner", meshes.inner_race, (race,), contacts.race_points, inner, place.roller_radii, rollers)
+    pairs.add("roller_inner", meshes.inner_race, races, contacts.race_points, inner, place.roller_radii, rollers)
+    race_loads, first_of_each = _distinct_loads(pairs.found[on_disc:])
     return DriveModel(
         drive=drive,
         crank_angle=contacts.crank_angle,
@@ -95,10 +98,13 @@ def condense_drive(
         meshes=meshes,
         contacts=contacts,
         disc=_condense_carrier(meshes.disc, pairs.found[:on_disc], materials.disc, slab),
-        race=_condense_carrier(meshes.inner_race, pairs.found[on_disc:], materials.inner_race, slab, held="inner"),
+        race=_condense_carrier(
+            meshes.inner_race, pairs.found[on_disc:], materials.inner_race, slab, held="inner", among=first_of_each
+        ),
         groups=groups,
         pairs=tuple(pairs.found),
         placement=place,
+        race_loads=race_loads,
         shaft_pins=tuple(mesh.placed(shape.name) for mesh, shape in zip(shaft_pins, shapes.shaft_pins, strict=False)),
     )
 
@@ -197,11 +203,29 @@ def condense_round_body(made_of: RoundBody, body: BodyMesh) -> RoundGroup:
 
 
 def _condense_carrier(
-    body: BodyMesh, pairs: list[ContactPair], material: Material, slab: _Slab, held: str = ""
+    body: BodyMesh,
+    pairs: list[ContactPair],
+    material: Material,
+    slab: _Slab,
+    held: str = "",
+    among: NDArray[np.intp] | None = None,
 ) -> CondensedBody:
-    """Condense the disc or the race under the pressures of its pairs."""
+    """Condense the disc or the race under the pressures of its pairs, or `among` all of them those given."""
     loads = sp.hstack([pair.zone.load_shapes(body.unknowns) for pair in pairs], format="csc")
-    return _condense(body, loads, material, slab, held)
+    return _condense(body, loads if among is None else loads[:, among], material, slab, held)
+
+
+def _distinct_loads(pairs: list[ContactPair]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the unit load of each pressure unknown of the inner races, and of each unit load its first unknown.
+
+    Rollers of several cranks press on the same places of one body that stands for all races: what is loaded about a vertex
+    is one unit load, whoever presses there.
+    """
+    vertices = np.concatenate([pair.zone.nodes[1:, 0] for pair in pairs])
+    _, first, number = np.unique(vertices, return_index=True, return_inverse=True)
+    # Unit loads stand in the order of the unknowns, not of the nodes.
+    order = np.argsort(first)
+    return np.argsort(order)[number], first[order]
 
 
 def _condense(body: BodyMesh, loads: sp.csc_matrix, material: Material, slab: _Slab, held: str) -> CondensedBody:
@@ -226,12 +250,13 @@ class _PairList:
         radii: FloatArray,
         opposite: _RoundBodies,
     ) -> None:
-        """Add the pairs of one kind: pressure on `body`, along one curve or along one for each pair."""
+        """Add the pairs of one kind: pressure on `body`, along the curve of each part."""
         width, load = expected.half_width, expected.load
         for index in np.flatnonzero(width > 0.0).tolist():
             reach = PRESSURE_REACH * float(width[index])
-            curve = curves[index] if len(curves) > 1 else curves[0]
-            zone = PressureZone.on_boundary(body, curve, complex(points[index]), reach, thickness=self.thickness)
+            zone = PressureZone.on_boundary(
+                body, curves[index], complex(points[index]), reach, thickness=self.thickness
+            )
             first = self.found[-1].unknowns.stop if self.found else 0
             group, turn = opposite.places.get(index, (-1, 0.0))
             self.found.append(

@@ -59,8 +59,8 @@ class ContactResults:
         mm.
     pin_force, roller_force, shaft_pin_force : array of complex
         Forces on the disc at each contact, fixed axes, N.
-    bearing_force : complex
-        Sum of the roller forces on the disc, fixed axes, N.
+    bearing_force : array of complex, shape (cranks,)
+        Sum of the forces of each crank's rollers on the disc, fixed axes, N.
     equilibrium_residual : float
         Largest force left over on disc, wheel (moment divided by pin-circle radius) and rollers, N.
     details : tuple of PairResult
@@ -82,7 +82,7 @@ class ContactResults:
     pin_force: NDArray[np.complex128]
     roller_force: NDArray[np.complex128]
     shaft_pin_force: NDArray[np.complex128]
-    bearing_force: complex
+    bearing_force: NDArray[np.complex128]
     equilibrium_residual: float
     details: tuple[PairResult, ...]
 
@@ -146,7 +146,7 @@ def summarise_contacts(model: DriveModel, solution: PoseSolution) -> ContactResu
         pin_force=force["pin"],
         roller_force=force["roller_outer"],
         shaft_pin_force=force["hole"],
-        bearing_force=complex(force["roller_outer"].sum()),
+        bearing_force=force["roller_outer"].reshape(place.cranks, -1).sum(axis=1),
         equilibrium_residual=_residual(model, solution, forces),
         details=tuple(details),
     )

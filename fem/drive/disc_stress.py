@@ -34,14 +34,14 @@ class DiscStress:
     Attributes
     ----------
     walls : tuple of WallStress
-        Flank, bore, then each hole, frame of the disc.
+        Flank, then each bore, then each hole, frame of the disc.
     clear : tuple of array of bool
         Which nodes of each wall are clear of its contacts.
     root_stress : array, shape (lobes,)
         Largest tensile stress along the flank about each root, from crest to crest; root k lies at θ = 2πk/z_C. MPa, not
         a number where nothing is clear.
     bore_stress : float
-        Along the bore, MPa.
+        Along the bores, the largest of all, MPa.
     hole_stress : array, shape (z_PS,)
         Along each hole wall, MPa.
     pin_shear, roller_shear, hole_shear : array
@@ -57,6 +57,11 @@ class DiscStress:
     pin_shear: FloatArray
     roller_shear: FloatArray
     hole_shear: FloatArray
+
+    @property
+    def bores(self) -> int:
+        """Number of bores: walls that are neither the flank nor holes."""
+        return len(self.walls) - 1 - len(self.hole_stress)
 
 
 def recover_disc_stress(solution: FullSolution) -> DiscStress:
@@ -87,14 +92,15 @@ def recover_disc_stress(solution: FullSolution) -> DiscStress:
         if detail.share > FINE_SHARE:
             shear[pair.kind][pair.index], _ = largest_shear_below(body, stress, place, -outward, detail.half_width)
     lobes = round(shape.flank.profile.reduction_ratio) - 1
-    flank, bore, *holes = zip(walls, clear, strict=True)
+    flank, *openings = zip(walls, clear, strict=True)
+    bores = len(shape.bores)
     nearest = np.mod(np.rint(flank[0].parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
     return DiscStress(
         walls=walls,
         clear=tuple(clear),
         root_stress=np.array([_largest(flank[0], flank[1] & (nearest == root)) for root in range(lobes)]),
-        bore_stress=_largest(*bore),
-        hole_stress=np.array([_largest(*hole) for hole in holes]),
+        bore_stress=_largest_of_all([_largest(*bore) for bore in openings[:bores]]),
+        hole_stress=np.array([_largest(*hole) for hole in openings[bores:]]),
         pin_shear=shear["pin"],
         roller_shear=shear["roller_outer"],
         hole_shear=shear["hole"],
@@ -113,6 +119,10 @@ def _centre_of_pressure(pair: ContactPair, detail: PairResult) -> tuple[complex,
 
 def _largest(wall: WallStress, among: NDArray[np.bool_]) -> float:
     return float(np.max(wall.stress[among])) if among.any() else float("nan")
+
+
+def _largest_of_all(values: list[float]) -> float:
+    return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
 
 
 def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
@@ -136,6 +146,7 @@ def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
 
 def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
     """Return the stress in each disc as variables of ``fem.nc``, dimensions as in ``results.nc``."""
+    bores = discs[0].bores
     walls = [(disc, number, wall) for disc, stress in enumerate(discs) for number, wall in enumerate(stress.walls)]
 
     def per_node(values: list[Any], unit: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
@@ -143,10 +154,13 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
 
     def per_part(dimensions: tuple[str, ...], name: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
         values = np.array([getattr(stress, name) for stress in discs], dtype=float)
-        parts = values.shape[1:]
-        single = (1,) * (len(dimensions) - 2 - len(parts))
-        return dimensions, values.reshape(1, len(discs), *single, *parts), {"units": "MPa", "long_name": text}
+        sizes = {"case": 1, "disc": len(discs), "crank": bores, "position": 1}
+        shape = [sizes.get(dimension, -1) for dimension in dimensions]
+        return dimensions, values.reshape(shape), {"units": "MPa", "long_name": text}
 
+    boundaries = "0 flank, 1 bore, 2 + k hole k"
+    if bores > 1:
+        boundaries = f"0 flank, 1 + c bore c, {1 + bores} + k hole k"
     largest, below = "largest tensile stress along {}, clear of contacts", "largest shear stress in the disc below {}"
     disc, crank = ("case", "disc", "position"), ("case", "disc", "crank", "position")
     return {
@@ -154,9 +168,7 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
         "wall_disc": per_node(
             [np.full(len(wall.parameter), number) for number, _, wall in walls], "1", "number of the disc"
         ),
-        "wall_boundary": per_node(
-            [np.full(len(wall.parameter), number) for _, number, wall in walls], "1", "0 flank, 1 bore, 2 + k hole k"
-        ),
+        "wall_boundary": per_node([np.full(len(wall.parameter), number) for _, number, wall in walls], "1", boundaries),
         "wall_parameter": per_node([wall.parameter for *_, wall in walls], "rad", "θ of Eq. 1, or polar angle"),
         "wall_stress": per_node([wall.stress for *_, wall in walls], "MPa", "stress along the wall, tension positive"),
         "wall_clear": per_node(
@@ -165,7 +177,7 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
             "1 beyond four half-widths of contacts",
         ),
         "root_stress": per_part((*disc, "lobe"), "root_stress", largest.format("the flank about each lobe root")),
-        "bore_stress": per_part(disc, "bore_stress", largest.format("the bore")),
+        "bore_stress": per_part(disc, "bore_stress", largest.format("the bore" if bores == 1 else "the bores")),
         "hole_stress": per_part((*disc, "hole"), "hole_stress", largest.format("the wall of each hole")),
         "pin_shear_max": per_part((*disc, "pin"), "pin_shear", below.format("wheel pins")),
         "roller_shear_max_outer": per_part((*crank, "roller"), "roller_shear", below.format("rollers")),

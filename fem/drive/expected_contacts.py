@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fem.contact.hertz import hertz_half_width
 from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.plane_strain import require_rigid_members
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
@@ -103,10 +104,10 @@ class ExpectedContacts:
         The same contacts on the flank, disc frame, mm.
     rollers_outer, rollers_inner : ContactGroup
         Roller against bore and race; direction from the roller centre.
-    bore_points : array of complex, shape (n_BR,)
-        Outer contacts on the bore, disc frame, mm.
-    race_points : array of complex, shape (n_BR,)
-        Inner contacts on the race, about its centre, mm.
+    bore_points : array of complex, shape (cranks · n_BR,)
+        Outer contacts on the bores, disc frame, mm.
+    race_points : array of complex, shape (cranks · n_BR,)
+        Inner contacts on the races, each about its own centre, mm.
     holes : ContactGroup
         Shaft pin against hole; direction from the hole centre.
     hole_points : array of complex, shape (z_PS,)
@@ -171,9 +172,11 @@ class _RigidDrive:
         )
         d = self.roller_rays()
         play = place.bore_radius - place.inner_race_radius - 2.0 * place.roller_radii
-        bearing = -(pose[X] * d.real + pose[Y] * d.imag) - play
-        zero = np.zeros(len(d))
-        bearing_gradient = np.column_stack([-d.real, -d.imag, zero, zero])
+        shift = complex(pose[X], pose[Y])
+        bores = bore_displacements(place, self.crank_angle, shift, pose[DISC_ROTATION])[place.roller_cranks]
+        bearing = -(bores.real * d.real + bores.imag * d.imag) - play
+        arm = (1j * place.bore_centres * turn)[place.roller_cranks]
+        bearing_gradient = np.column_stack([-d.real, -d.imag, -(d.conjugate() * arm).real, np.zeros(len(d))])
         ray = self.hole_rays(pose)
         m = ray / np.abs(ray)
         hole = np.abs(ray) + place.shaft_pin_radii - place.hole_radii
@@ -184,6 +187,26 @@ class _RigidDrive:
             np.concatenate([flank, bearing, hole]),
             np.vstack([flank_gradient, bearing_gradient, hole_gradient]),
         )
+
+
+def bore_displacements(
+    placement: Placement, crank_angle: float, displacement: complex, rotation: float
+) -> ComplexArray:
+    """Return where the centre of each bore stands from that of the inner race in it, fixed axes, mm, shape (cranks,).
+
+    Parameters
+    ----------
+    placement : Placement
+        Places of the parts.
+    crank_angle : float
+        φ_C, rad.
+    displacement : complex
+        Of the disc from its nominal place, fixed axes, mm.
+    rotation : float
+        Of the disc, rad.
+    """
+    races = placement.race_centres(np.asarray(crank_angle))
+    return np.asarray(races.mean() - races + displacement + placement.bore_centres * np.exp(1j * rotation))
 
 
 def on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray:
@@ -293,10 +316,11 @@ def expect_contacts(
         When nothing can carry the load.
     DriveError
         When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
-        several discs.
+        several discs; where cranks or the wheel's axis yield.
     """
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
     _refuse_wheel_axis(drive)
+    require_rigid_members(drive, "full finite elements")
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length
@@ -348,7 +372,7 @@ def expect_contacts(
         flank_points=profile.flank(theta),
         rollers_outer=group(1, outer_effective, outer_modulus, roller_length, rays),
         rollers_inner=group(1, inner_effective, inner_modulus, roller_length, -rays),
-        bore_points=placement.bore_radius * rays * turn_back,
+        bore_points=placement.bore_centres[placement.roller_cranks] + placement.bore_radius * rays * turn_back,
         race_points=placement.inner_race_radius * rays,
         holes=group(2, hole_effective, hole_modulus, thickness, hole_direction),
         hole_points=placement.hole_centres + hole_radius * hole_direction * turn_back,

@@ -71,7 +71,7 @@ class BodyField:
 
 
 def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneState = "strain") -> tuple[BodyField, ...]:
-    """Return the fields of disc, wheel pins, rollers and inner race.
+    """Return the fields of disc, wheel pins, rollers and inner races.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
     Returns
     -------
     tuple of BodyField
-        In the order of `fem.drive.meshes.DriveMeshes.bodies`.
+        In the order of `fem.drive.meshes.DriveMeshes.bodies`, then the inner race of each crank.
     """
     pressure = solution.contact.pressure
     on_disc = model.disc.compliance.shape[0]
@@ -93,7 +93,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
     ideal = model.start_pose((0.0, 0.0, 0.0, 0.0))
     fields = []
 
-    def add(kind: str, body: BodyMesh, at: Pose, nominal: Pose, elastic: FloatArray) -> None:
+    def add(kind: str, body: BodyMesh, at: Pose, nominal: Pose, elastic: FloatArray, crank: int = 0) -> None:
         local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
         material = {
             "disc": materials.disc,
@@ -105,7 +105,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
         stress = turn_stress(recover_stress(body, elastic, material, state=state), at.rotation)
         carried = np.zeros(body.node_count)
         if kind in ("disc", "inner_race"):
-            carried = _pressure_on(model, pressure, body.node_count, kind == "inner_race")
+            carried = _pressure_on(model, pressure, body.node_count, crank if kind == "inner_race" else None)
         fields.append(
             BodyField(
                 kind=kind,
@@ -130,8 +130,15 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
             elastic = round_displacements.get((kind, index), np.zeros(body.unknowns))
             at = Pose(centre=model.circle_centre(pair_kind, index, pose))
             add(kind, body, at, Pose(centre=model.circle_centre(pair_kind, index, ideal)), elastic)
-    race = Pose(centre=model.race_centre)
-    add("inner_race", meshes.inner_race, race, race, model.race.displacement(pressure[on_disc:]))
+    cranks = model.placement.cranks
+    for crank, centre in enumerate(model.race_centres.tolist()):
+        name = meshes.inner_race.name if cranks == 1 else f"{meshes.inner_race.name}_{crank}"
+        body, at, elastic = (
+            replace(meshes.inner_race, name=name),
+            Pose(centre=centre),
+            model.race_displacement(crank, pressure),
+        )
+        add("inner_race", body, at, at, elastic, crank)
     return tuple(fields)
 
 
@@ -156,10 +163,11 @@ def _round_displacements(model: DriveModel, solution: PoseSolution) -> dict[tupl
     return found
 
 
-def _pressure_on(model: DriveModel, pressure: FloatArray, nodes: int, race: bool) -> FloatArray:
+def _pressure_on(model: DriveModel, pressure: FloatArray, nodes: int, crank: int | None) -> FloatArray:
+    """Return the pressure on the nodes of the inner race of a crank, of the disc for None."""
     field = np.zeros(nodes)
     for pair in model.pairs:
-        if (pair.kind == "roller_inner") == race:
+        if (model.crank_of(pair.index) if pair.kind == "roller_inner" else None) == crank:
             full = vertex_means(pair.zone.arc, pair.zone.at_vertices(pressure[pair.unknowns]))
             field[pair.zone.nodes[:, 0]] = full[:-1]
             field[pair.zone.nodes[:, 1]] = 0.5 * (full[:-1] + full[1:])
@@ -196,9 +204,9 @@ def fit_rigid_motion(places: ComplexArray, displacement: ComplexArray, weight: F
 
 
 def bore_motion(model: DriveModel, solution: PoseSolution) -> tuple[complex, float]:
-    """Return displacement (fixed axes, mm) and rotation (rad) of the disc fitted to its bore circle."""
+    """Return displacement (fixed axes, mm) and rotation (rad) of the disc fitted to its bore circle, or to all of them."""
     body = model.meshes.disc
-    chain = body.boundary_nodes("bore")
+    chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
     nodes = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
     u = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
     elastic = u[0::2] + 1j * u[1::2]

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.drive.contact_results import ContactResults
 from fem.drive.model import DriveModel, DrivePose, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,27 +57,30 @@ class FullSolution:
         return self.state.pose
 
     @property
-    def bearing_components(self) -> tuple[float, float]:
-        """Bearing force on the disc along its own eccentricity and 90° ahead of it, N."""
+    def bearing_components(self) -> FloatArray:
+        """Bearing force of each crank on the disc along its own eccentric and 90° ahead of it, N, shape (cranks, 2)."""
         model = self.model
-        direction = model.placement.eccentric_direction(np.asarray(model.crank_angle))
-        along = self.contacts.bearing_force * complex(direction).conjugate()
-        return along.real, along.imag
+        directions = model.placement.eccentric_directions(np.asarray(model.crank_angle))
+        along = self.contacts.bearing_force * directions.conjugate()
+        return np.column_stack([along.real, along.imag])
 
     @property
-    def crank_moment(self) -> float:
-        """External moment that holds the crank against this disc, ccw positive, N·mm.
+    def crank_moments(self) -> FloatArray:
+        """External moment that holds each crank against this disc, ccw positive, N·mm, shape (cranks,).
 
-        That of the rollers' forces on the disc about the crank axis, as if they acted at the centre of the race, and by the
+        That of its rollers' forces on the disc about the crank's axis, as if they acted at the centre of the race, and by the
         part `cage_speed` of the crank's angle what they take of the cage: their moment about that centre.
         """
         model, place = self.model, self.model.placement
         forces = pair_forces(model, list(self.state.integrals), self.state.contact.pressure)
-        on_disc = -sum(force for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "roller_outer")
-        push = complex(on_disc[0], on_disc[1])
-        lever = model.race_centre - complex(place.crank_axes[0])
-        about_race = float(on_disc[2]) - (model.race_centre.conjugate() * push).imag
-        return (lever.conjugate() * push).imag + float(place.cage_speed) * about_race
+        on_disc = np.zeros((place.cranks, 3))
+        for pair, force in zip(model.pairs, forces, strict=True):
+            if pair.kind == "roller_outer":
+                on_disc[model.crank_of(pair.index)] -= force
+        push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
+        about_race = on_disc[:, 2] - (races.conjugate() * push).imag
+        lever = races - place.crank_axes
+        return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)
 
     @property
     def unknowns(self) -> int:

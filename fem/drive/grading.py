@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.drive.contact_results import summarise_contacts
-from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, on_turned_flank
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements, on_turned_flank
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
@@ -66,7 +66,7 @@ def measure_gaps(
     crank_angle : float
         φ_C, rad.
     displacement : complex
-        Of the disc centre from the inner-race centre, fixed axes, mm.
+        Of the disc from its nominal place, fixed axes, mm.
     rotation, wheel_angle : float
         Of the disc, and of the wheel beyond φ_C/u, rad.
 
@@ -82,10 +82,11 @@ def measure_gaps(
     start = np.angle(place.wheel_pin_centres) + wheel - rotation
     theta = profile.nearest_parameter(pins, on_turned_flank(profile, start))
     rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
+    reach = _reach_to_bore(_of_rollers(place, crank_angle, displacement, rotation), place, rays)
     holes = place.shaft_pin_centres - (centre + place.hole_centres * turn)
     return RigidGaps(
         pins=profile.distance(pins, theta) - place.wheel_pin_radii,
-        rollers=_reach_to_bore(displacement, place, rays) - place.roller_radii - place.inner_race_radius,
+        rollers=reach - place.roller_radii - place.inner_race_radius,
         holes=place.hole_radii - place.shaft_pin_radii - np.abs(holes),
         flank_parameters=theta,
         pin_normals=profile.normal(theta) * turn,
@@ -172,7 +173,8 @@ def grade_contacts(
         flank_points=profile.flank(gaps.flank_parameters),
         rollers_outer=group(rollers, roller_gaps, outer_effective, outer_modulus, rays),
         rollers_inner=group(rollers, roller_gaps, inner_effective, inner_modulus, -rays),
-        bore_points=_bore_points(displacement, place, rays) * turn_back,
+        bore_points=place.bore_centres[place.roller_cranks]
+        + _bore_points(_of_rollers(place, crank_angle, displacement, rotation), place, rays) * turn_back,
         race_points=race * rays,
         holes=group(holes, hole_gaps, hole_effective, hole_modulus, gaps.hole_directions),
         hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
@@ -187,14 +189,19 @@ def _gaps_left(gaps: RigidGaps, known: tuple[FloatArray, FloatArray, FloatArray]
     return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 
-def _bore_points(displacement: complex, place: Placement, rays: ComplexArray) -> ComplexArray:
-    """Return where rollers that touch the bore touch it, about the bore centre, fixed axes, mm."""
+def _of_rollers(place: Placement, crank_angle: float, displacement: complex, rotation: float) -> ComplexArray:
+    """Return the displacement of each roller's bore from the inner race in it, mm."""
+    return bore_displacements(place, crank_angle, displacement, rotation)[place.roller_cranks]
+
+
+def _bore_points(displacement: ComplexArray, place: Placement, rays: ComplexArray) -> ComplexArray:
+    """Return where rollers that touch their bore touch it, about the bore centre, fixed axes, mm."""
     from_bore_centre = _reach_to_bore(displacement, place, rays) * rays - displacement
     return np.asarray(place.bore_radius * from_bore_centre / np.abs(from_bore_centre))
 
 
-def _reach_to_bore(displacement: complex, place: Placement, rays: ComplexArray) -> FloatArray:
-    """Return how far out along its cage ray the centre of each roller stands when it touches the bore, mm."""
+def _reach_to_bore(displacement: ComplexArray, place: Placement, rays: ComplexArray) -> FloatArray:
+    """Return how far out along its cage ray the centre of each roller stands when it touches its bore, mm."""
     inward = (displacement * rays.conjugate()).real
     across = (displacement * rays.conjugate()).imag
     return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))
@@ -228,7 +235,7 @@ def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
     turn = np.exp(1j * pose.disc_rotation)
     rays = model.roller_rays
     flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
-    bore = place.bore_radius * rays / turn
+    bore = place.bore_centres[place.roller_cranks] + place.bore_radius * rays / turn
     holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
     candidates = {(pair.kind, pair.index) for pair in model.pairs}
     for kind, gap, points, normals in (

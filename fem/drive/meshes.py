@@ -111,12 +111,12 @@ class RoundMesh:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveMeshes:
-    """Meshes of all bodies of a drive, each in its own frame, axes of pins, rollers and race as the fixed ones.
+    """Meshes of all bodies of a drive, each in its own frame, axes of pins, rollers and races as the fixed ones.
 
     Attributes
     ----------
     disc, inner_race : BodyMesh
-        One each.
+        One each: the race serves every crank, fine where any of them presses on it.
     wheel_pins, rollers : tuple of BodyMesh
         In the order of their numbers.
     unturned_pins, unturned_rollers : tuple of RoundMesh
@@ -161,10 +161,10 @@ def disc_refinements(contacts: ExpectedContacts, scale: float = 1.0) -> tuple[Re
 
 
 def wall_refinements(shape: DiscShape) -> tuple[Refinement, ...]:
-    """Return the refinements of fine walls: along bore and holes, and in the lobe roots."""
+    """Return the refinements of fine walls: along bores and holes, and in the lobe roots."""
     spots = []
     edge = shape.narrowest_wall / WALL_ELEMENTS
-    for curve in (shape.bore, *shape.holes):
+    for curve in (*shape.bores, *shape.holes):
         count = int(np.ceil(np.pi * curve.radius / edge))
         places = curve.points(2.0 * np.pi * np.arange(count) / count).tolist()
         spots += [Refinement(point.real, point.imag, edge, edge) for point in places]

@@ -17,7 +17,7 @@ from fem.body.elasticity import PlaneState
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.unilateral import ContactProblem
-from fem.drive.expected_contacts import ExpectedContacts
+from fem.drive.expected_contacts import ExpectedContacts, bore_displacements
 from fem.drive.meshes import DriveMeshes, RoundGrading
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import DriveShapes
@@ -36,12 +36,11 @@ class DrivePose:
     Attributes
     ----------
     disc_x, disc_y, disc_rotation : float
-        Displacement of the disc centre from the inner-race centre, fixed axes, mm, and rotation, rad: area
-        means.
+        Displacement of the disc from its nominal place, fixed axes, mm, and rotation, rad: area means.
     wheel_angle : float
         Deviation of the wheel from φ_C/u, rad.
-    roller_distances : array, shape (n_BR,)
-        Distance of each roller from the race centre along its cage ray, mm.
+    roller_distances : array, shape (cranks · n_BR,)
+        Distance of each roller from the centre of its race along its cage ray, mm.
     shaft_pin_displacements : array of complex, shape (z_PS,)
         Displacement of each shaft pin on its spring, mm.
     """
@@ -164,14 +163,19 @@ class DriveModel:
         Their meshes.
     contacts : ExpectedContacts
         For which they were graded.
-    disc, race : CondensedBody
-        Unit loads are the pressure unknowns on them.
+    disc : CondensedBody
+        Unit loads are the pressure unknowns on it.
+    race : CondensedBody
+        One body that stands for the inner races of all cranks; unit loads are the pressures about its boundary vertices,
+        each once.
     groups : tuple of RoundGroup
         Pins and rollers.
     pairs : tuple of ContactPair
         All candidate contacts, those on the disc first.
     placement : Placement
         Nominal places of the parts.
+    race_loads : array of int
+        Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
     shaft_pins : tuple of BodyMesh
         Meshes of elastic shaft pins; empty for rigid ones.
     """
@@ -186,6 +190,7 @@ class DriveModel:
     groups: tuple[RoundGroup, ...]
     pairs: tuple[ContactPair, ...]
     placement: Placement
+    race_loads: NDArray[np.intp]
     shaft_pins: tuple[BodyMesh, ...] = ()
 
     @property
@@ -200,8 +205,34 @@ class DriveModel:
 
     @property
     def race_centre(self) -> complex:
-        """Centre of inner race and cage, mm."""
+        """Nominal place of the disc: centre of its inner race, mean of those of several, mm."""
         return complex(self.placement.race_centre(np.asarray(self.crank_angle)))
+
+    @property
+    def race_centres(self) -> ComplexArray:
+        """Centres of the inner races and cages, mm, shape (cranks,)."""
+        return self.placement.race_centres(np.asarray(self.crank_angle))
+
+    def crank_of(self, roller: int) -> int:
+        """Return the number of the crank that a roller runs on."""
+        return int(self.placement.roller_cranks[roller])
+
+    def race_unknowns(self, crank: int) -> slice:
+        """Return the pressure unknowns on the inner race of a crank among all: rollers follow each other by cranks."""
+        inner = [pair for pair in self.pairs if pair.kind == "roller_inner" and self.crank_of(pair.index) == crank]
+        first = self.disc.compliance.shape[0]
+        return slice(inner[0].unknowns.start, inner[-1].unknowns.stop) if inner else slice(first, first)
+
+    def loads_on_race(self, crank: int) -> NDArray[np.intp]:
+        """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
+        own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
+        return self.race_loads[own.start - first : own.stop - first]
+
+    def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
+        """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""
+        carried = np.zeros(self.race.compliance.shape[0])
+        carried[self.loads_on_race(crank)] = pressure[self.race_unknowns(crank)]
+        return self.race.displacement(carried)
 
     @property
     def roller_rays(self) -> ComplexArray:
@@ -220,11 +251,18 @@ class DriveModel:
             return complex(place.wheel_pin_centres[index] * np.exp(1j * turn))
         if kind == "hole":
             return complex(place.shaft_pin_centres[index] + pose.shaft_pin_displacements[index])
-        return self.race_centre + complex(pose.roller_distances[index] * self.roller_rays[index])
+        race = complex(self.race_centres[self.crank_of(index)])
+        return race + complex(pose.roller_distances[index] * self.roller_rays[index])
+
+    def carrier_pose(self, pair: ContactPair, pose: DrivePose) -> Pose:
+        """Return the frame of the body that carries the pressure of a pair."""
+        if pair.kind == "roller_inner":
+            return Pose(centre=complex(self.race_centres[self.crank_of(pair.index)]))
+        return self.disc_pose(pose)
 
     def integrate(self, pair: ContactPair, pose: DrivePose) -> PairIntegrals:
         """Integrate one pair at a pose."""
-        carrier = Pose(centre=self.race_centre) if pair.kind == "roller_inner" else self.disc_pose(pose)
+        carrier = self.carrier_pose(pair, pose)
         circle = Pose(centre=self.circle_centre(pair.kind, pair.index, pose), rotation=pair.turn)
         opposite = None
         if pair.group >= 0:
@@ -246,7 +284,8 @@ class DriveModel:
             contacts.disc_rotation,
             contacts.wheel_angle,
         )
-        toward = (complex(x, y) * self.roller_rays.conjugate()).real
+        bores = bore_displacements(place, self.crank_angle, complex(x, y), rotation)[place.roller_cranks]
+        toward = (bores * self.roller_rays.conjugate()).real
         outer = place.bore_radius - place.roller_radii + toward
         inner = place.inner_race_radius + place.roller_radii
         return DrivePose(
@@ -277,7 +316,9 @@ class DriveModel:
         compliance = np.zeros((count, count))
         on_disc = self.disc.compliance.shape[0]
         compliance[:on_disc, :on_disc] = self.disc.compliance
-        compliance[on_disc:, on_disc:] = self.race.compliance
+        for crank in range(self.placement.cranks):
+            own, loads = self.race_unknowns(crank), self.loads_on_race(crank)
+            compliance[own, own] = self.race.compliance[np.ix_(loads, loads)]
         motions = np.zeros((count, 4 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre

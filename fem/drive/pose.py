@@ -161,7 +161,7 @@ def _move(
     for pair, force in zip(model.pairs, forces, strict=True):
         if pair.kind == "hole":
             pins[pair.index] = complex(force[0], force[1]) / model.drive.hole_stiffness
-    increment = max(largest, float(np.max(np.abs(pins - pose.shaft_pin_displacements))))
+    increment = max(largest, float(np.max(np.abs(pins - pose.shaft_pin_displacements), initial=0.0)))
     moved = DrivePose(
         disc_x=pose.disc_x + float(motion[0]),
         disc_y=pose.disc_y + float(motion[1]),

@@ -408,7 +408,7 @@ def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
     gaps = measure_gaps(
         drive, guess.crank_angle, complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
     )
-    return float(-min(gaps.pins.min(), gaps.rollers.min(), gaps.holes.min()))
+    return float(-np.concatenate([gaps.pins, gaps.rollers, gaps.holes]).min())
 
 
 def _silent(_: str) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements
 from fem.drive.meshes import DriveMeshes
 from fem.mesh.placed_body import PlacedBody
 from fem.pictures.flat_view import (
@@ -68,9 +68,12 @@ def place_bodies(meshes: DriveMeshes, placement: Placement, contacts: ExpectedCo
     wheel_turn = angle / placement.reduction_ratio + contacts.wheel_angle
     pin_places = placement.wheel_pin_centres * np.exp(1j * wheel_turn)
     rays = np.exp(1j * placement.roller_angles(np.asarray(angle)))
+    races, own = placement.race_centres(np.asarray(angle)), placement.roller_cranks
+    shift = complex(contacts.disc_x, contacts.disc_y)
+    bores = bore_displacements(placement, angle, shift, contacts.disc_rotation)
     # Rollers are drawn in the middle between the races.
-    bore = np.abs(placement.bore_radius * rays + complex(contacts.disc_x, contacts.disc_y))
-    roller_places = race_centre + rays * 0.5 * (placement.inner_race_radius + bore)
+    outer = np.abs(placement.bore_radius * rays + bores[own])
+    roller_places = races[own] + rays * 0.5 * (placement.inner_race_radius + outer)
     placed = [PlacedBody(body=meshes.disc, centre=disc_centre, rotation=contacts.disc_rotation, kind="disc")]
     placed += [
         PlacedBody(body=body, centre=complex(place), rotation=0.0, kind="pin")
@@ -80,23 +83,27 @@ def place_bodies(meshes: DriveMeshes, placement: Placement, contacts: ExpectedCo
         PlacedBody(body=body, centre=complex(place), rotation=0.0, kind="roller")
         for body, place in zip(meshes.rollers, roller_places, strict=True)
     ]
-    placed.append(PlacedBody(body=meshes.inner_race, centre=race_centre, rotation=0.0, kind="inner_race"))
+    placed += [
+        PlacedBody(body=meshes.inner_race, centre=race, rotation=0.0, kind="inner_race") for race in races.tolist()
+    ]
     return placed
 
 
 def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]:
     """Return a window on the most loaded contact of each kind."""
-    race_centre = complex(placement.race_centre(np.asarray(contacts.crank_angle)))
-    disc_centre = race_centre + complex(contacts.disc_x, contacts.disc_y)
-    turn = np.exp(1j * contacts.disc_rotation)
+    angle = np.asarray(contacts.crank_angle)
+    disc_centre = complex(placement.race_centre(angle)) + complex(contacts.disc_x, contacts.disc_y)
+    races, turn = placement.race_centres(angle)[placement.roller_cranks], np.exp(1j * contacts.disc_rotation)
     kinds: Sequence[tuple[str, ContactGroup, ComplexArray]] = (
         ("pin {} on the flank", contacts.pins, disc_centre + contacts.flank_points * turn),
         ("roller {} on the bore", contacts.rollers_outer, disc_centre + contacts.bore_points * turn),
-        ("roller {} on the race", contacts.rollers_inner, race_centre + contacts.race_points),
+        ("roller {} on the race", contacts.rollers_inner, races + contacts.race_points),
         ("rigid shaft pin {} in its hole", contacts.holes, disc_centre + contacts.hole_points * turn),
     )
     zooms = []
     for title, group, points in kinds:
+        if not len(points):
+            continue
         index = int(np.argmax(group.load))
         width = float(group.half_width[index])
         reach = ZOOM_HALF_WIDTHS * width

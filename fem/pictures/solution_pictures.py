@@ -8,11 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.fields import BodyField
 from fem.drive.full_solution import FullSolution
-from fem.drive.model import ContactPair, DriveModel
 from fem.pictures.scene import Lines, Panel, Triangles, render
 
 FloatArray = NDArray[np.float64]
@@ -141,10 +139,6 @@ def _shaft_pins(solution: FullSolution) -> Lines:
     return Lines(points=centres[:, None] + place.shaft_pin_radii[:, None] * circle, colour="#777777", width=1.5)
 
 
-def _carrier_pose(model: DriveModel, solution: FullSolution, pair: ContactPair) -> Pose:
-    return Pose(centre=model.race_centre) if pair.kind == "roller_inner" else model.disc_pose(solution.pose)
-
-
 def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
     """Return windows on the three most loaded contacts: mesh, stress and pressure diagram."""
     model, details = solution.model, solution.contacts.details
@@ -164,7 +158,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
     panels = []
     for number in chosen:
         pair, detail = model.pairs[number], details[number]
-        pose = _carrier_pose(model, solution, pair)
+        pose = model.carrier_pose(pair, solution.pose)
         arc = pair.zone.arc
         vertices = np.append(pair.zone.places[:, 0], pair.zone.places[-1, 2])
         pressure = vertex_means(arc, pair.zone.at_vertices(solution.state.contact.pressure[pair.unknowns]))

@@ -2,7 +2,7 @@
 
 Each disc with its pins, rollers and race is a finite-element problem of its own (`fem.drive.solution`); they share the
 wheel's angle and its moment (`fem.reducer.shares`). Where the wheel is held, its moment is what balances the output's torque
-and the crank's moment, which follows from the bearing forces found.
+and the moment of the input, which follows from the bearing forces found.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class ReducerSolution:
     spread : tuple of float
         Largest difference of the discs' wheel angles in each round of moments, rad; empty where nothing is shared.
     left_over : tuple of float
-        Moment by which wheel, crank and output do not balance in each round, N·mm.
+        Moment by which wheel, input and output do not balance in each round, N·mm.
     seconds : dict of str to float
         Wall time of each stage, all discs and rounds; ``total`` is their sum.
     """
@@ -165,11 +165,12 @@ class _Task:
         return found
 
     def left_over(self, discs: list[FullSolution]) -> float:
-        """Moment by which wheel, crank and output do not balance; of a held shaft none."""
+        """Moment by which wheel, input and output do not balance; of a held shaft none."""
         wheel = sum(disc.state.wheel_moment for disc in discs)
         if not self.drive.wheel_is_held:
             return wheel - self.drive.wheel_moment(self.torque)
-        return wheel + sum(disc.crank_moment for disc in discs) + self.drive.driving_sign * self.torque
+        cranks = float(sum(disc.crank_moments.sum() for disc in discs))
+        return wheel + self.drive.input_per_crank_moment * cranks + self.drive.driving_sign * self.torque
 
     def saying(self, disc: int) -> Callable[[str], None]:
         if len(self.singles) == 1:

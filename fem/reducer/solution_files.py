@@ -69,17 +69,20 @@ MULTI_BLOCK = "fem.vtm"
 def summarise(solution: ReducerSolution) -> dict[str, Any]:
     """Return the content of ``summary.json``: lists by disc, then by part; of full length, zeros included.
 
-    What a disc has one of is a number with one disc, else a list by disc.
+    What a disc has one of is a number with one disc, else a list by disc; of several cranks bearing forces are lists by
+    crank. Rollers follow each other crank after crank.
     """
     discs = solution.discs
     content: dict[str, Any] = {}
     for name, (attribute, _, unit, _) in ARRAYS.items():
         values = [[float(value) for value in getattr(disc.contacts, attribute)] for disc in discs]
         content[f"{SUMMARY_NAMES.get(name, name)}_{unit}"] = values
-    bearings = [disc.bearing_components for disc in discs]
 
     def each(values: list[Any]) -> Any:
         return values[0] if len(values) == 1 else values
+
+    def by_crank(column: int) -> Any:
+        return each([each(disc.bearing_components[:, column].tolist()) for disc in discs])
 
     content |= {
         "crank_angle_rad": solution.crank_angle,
@@ -92,8 +95,8 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
         "disc_displacement_area": each(
             [_motion(disc.pose.disc_displacement, disc.pose.disc_rotation) for disc in discs]
         ),
-        "bearing_radial_N": each([radial for radial, _ in bearings]),
-        "bearing_tangential_N": each([tangential for _, tangential in bearings]),
+        "bearing_radial_N": by_crank(0),
+        "bearing_tangential_N": by_crank(1),
         "equilibrium_residual_N": solution.equilibrium_residual,
         "pose_iterations": each([disc.pose_iterations for disc in discs]),
         "dof": solution.unknowns,
@@ -116,15 +119,14 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     import xarray as xr
 
     discs, first = solution.discs, solution.discs[0]
+    sizes = {"case": 1, "disc": len(discs), "crank": solution.drive.crank.number, "position": 1}
     data: dict[str, Any] = {}
 
     def add(name: str, values: Any, belongs: str, unit: str, text: str) -> None:
-        """Put values of the drive, or by disc and then by part, in the dimensions of what they belong to."""
+        """Put values of the drive, or by disc and then by crank and part, in the dimensions of what they belong to."""
         dimensions = ("case", *DIMENSIONS[belongs])
-        array = np.asarray(values, dtype=float)
-        leading, parts = (array.shape[:1], array.shape[1:]) if "disc" in dimensions else ((), array.shape)
-        single = (1,) * (len(dimensions) - 1 - len(leading) - len(parts))
-        data[name] = (dimensions, array.reshape(1, *leading, *single, *parts), {"units": unit, "long_name": text})
+        array = np.asarray(values, dtype=float).reshape([sizes.get(dimension, -1) for dimension in dimensions])
+        data[name] = (dimensions, array, {"units": unit, "long_name": text})
 
     for name, (attribute, belongs, unit, text) in ARRAYS.items():
         if name == "pin_shaft_pressure_mid" and not first.model.shaft_pins:
@@ -134,15 +136,15 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     motions = [bore_motion(disc.model, disc.state) for disc in discs]
     bore, bore_rotation = np.array([shift for shift, _ in motions]), [rotation for _, rotation in motions]
     poses = [disc.pose for disc in discs]
-    area = "disc from inner-race centre, mean over the area"
+    area = "disc from its nominal place, mean over the area"
     for name, value, belongs, unit, text in (
         ("wheel_angle", solution.wheel_angle, "drive", "rad", "deviation of the wheel from φ_C/u, ccw positive"),
         ("transmission_error", solution.transmission_error, "drive", "rad", "deviation of the output, ccw positive"),
         ("wheel_moment", solution.wheel_moment, "drive", "N mm", "external moment on the wheel, ccw positive"),
         ("disc_torque", solution.disc_torques, "disc", "N mm", "part of that moment that the disc carries"),
-        ("disc_x", bore.real, "disc", "mm", "disc centre from inner-race centre, fixed axes, fitted to the bore"),
-        ("disc_y", bore.imag, "disc", "mm", "disc centre from inner-race centre, fixed axes, fitted to the bore"),
-        ("disc_rotation", bore_rotation, "disc", "rad", "rotation of the disc, fitted to the bore, ccw positive"),
+        ("disc_x", bore.real, "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),
+        ("disc_y", bore.imag, "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),
+        ("disc_rotation", bore_rotation, "disc", "rad", "rotation of the disc, fitted to its bores, ccw positive"),
         ("disc_area_x", [pose.disc_x for pose in poses], "disc", "mm", area),
         ("disc_area_y", [pose.disc_y for pose in poses], "disc", "mm", area),
         (
@@ -152,13 +154,13 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
             "rad",
             "rotation of the disc, mean over the area",
         ),
-        ("bearing_radial", bearings[:, 0], "crank", "N", "bearing force on the disc along its eccentricity"),
+        ("bearing_radial", bearings[..., 0], "crank", "N", "bearing force on the disc along the eccentricity"),
         (
             "bearing_tangential",
-            bearings[:, 1],
+            bearings[..., 1],
             "crank",
             "N",
-            "bearing force on the disc, 90° ahead of its eccentricity",
+            "bearing force on the disc, 90° ahead of the eccentricity",
         ),
         ("equilibrium_residual", solution.equilibrium_residual, "drive", "N", "largest unbalanced force"),
     ):
@@ -187,19 +189,19 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
 def _coordinates(solution: ReducerSolution, case: str) -> dict[str, Any]:
     """Return numbers and places of the parts, crank angle and torque: what ``results.nc`` has, for one position."""
     drive, places = solution.drive, [disc.model.placement for disc in solution.discs]
-    place, count = places[0], len(places)
+    place, count, cranks = places[0], len(places), places[0].cranks
 
     def at(dimensions: tuple[str, ...], values: Any, unit: str, text: str) -> tuple[Any, ...]:
         missing = len(dimensions) - np.ndim(values)
         return dimensions, np.reshape(values, (1,) * missing + np.shape(values)), {"units": unit, "long_name": text}
 
-    found: dict[str, Any] = {"case": [case], "disc": np.arange(count), "crank": [0], "position": [0]}
-    for name, radii in (
-        ("pin", place.wheel_pin_radii),
-        ("roller", place.roller_radii),
-        ("hole", place.hole_radii),
+    found: dict[str, Any] = {"case": [case], "disc": np.arange(count), "crank": np.arange(cranks), "position": [0]}
+    for name, parts in (
+        ("pin", len(place.wheel_pin_radii)),
+        ("roller", len(place.roller_radii) // cranks),
+        ("hole", len(place.hole_radii)),
     ):
-        found[name] = np.arange(len(radii))
+        found[name] = np.arange(parts)
     for name, dimensions, centres, frame in (
         ("pin", ("case", "pin"), place.wheel_pin_centres, "wheel pin, in the frame of the wheel"),
         (
@@ -213,7 +215,7 @@ def _coordinates(solution: ReducerSolution, case: str) -> dict[str, Any]:
         found[f"{name}_x"] = at(dimensions, centres.real, "mm", frame)
         found[f"{name}_y"] = at(dimensions, centres.imag, "mm", frame)
     cage = "angle of the roller in the cage, which stands at cage_speed · φ_C"
-    cages = np.array([own.roller_cage_angles for own in places])[:, None]
+    cages = np.array([own.roller_cage_angles.reshape(cranks, -1) for own in places])
     phase, plane = "phase of the disc's eccentric against the crank angle", "axial place of the disc's middle"
     return found | {
         "crank_angle": at(("position",), solution.crank_angle, "rad", "crank angle φ_C, held"),
@@ -241,7 +243,7 @@ def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, 
     return {
         "pressure_contact": (np.concatenate(kinds).astype(str), "1", "kind of the contact of each sample"),
         "pressure_disc": (np.concatenate(numbers), "1", "number of its disc"),
-        "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller or hole"),
+        "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller (crank after crank) or hole"),
         "pressure_place": (np.concatenate(places), "mm", "arc length from the centre of pressure"),
         "pressure": (np.concatenate(values), "MPa", "mean contact pressure under the shape function of each vertex"),
     }

@@ -22,7 +22,7 @@ from fem.body.elasticity import unknowns_of_boundary
 from fem.body.surface import OppositeZone
 from fem.contact.coupling import Pose
 from fem.drive.full_solution import FullSolution
-from fem.drive.model import ContactPair
+from fem.drive.model import ContactPair, DriveModel
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.mesh.mesh_file import element_nodes
 from ltca.drive.parts import Material
@@ -64,8 +64,11 @@ def slave_faces(solution: FullSolution) -> dict[str, list[tuple[int, int]]]:
     found = {}
     for pair in solution.model.pairs:
         race = pair.kind == "roller_inner"
-        # Disc first, race second: see `write_deck`.
-        offset = meshes.disc.mesh.t.shape[1] if race else 0
+        # Disc first, then the races of the cranks: see `_add_bodies`.
+        offset = 0
+        if race:
+            before = solution.model.crank_of(pair.index) * meshes.inner_race.mesh.t.shape[1]
+            offset = meshes.disc.mesh.t.shape[1] + before
         lines = _faces(meshes.inner_race if race else meshes.disc, pair.zone.nodes[:, 1], offset)
         found[pair_name(pair)] = [
             (int(element), int(side[1:]) + 2) for element, side in (line.split(",") for line in lines)
@@ -197,12 +200,22 @@ def _body_name(pair: ContactPair) -> str:
     return f"{pair.kind[:6]}_{pair.index}".upper()
 
 
+def _race_name(model: DriveModel, crank: int) -> str:
+    return "RACE" if model.placement.cranks == 1 else f"RACE_{crank}"
+
+
+def _carrier_name(model: DriveModel, pair: ContactPair) -> str:
+    return _race_name(model, model.crank_of(pair.index)) if pair.kind == "roller_inner" else "DISC"
+
+
 def _add_bodies(deck: _Deck, solution: FullSolution, pairs: list[ContactPair]) -> None:
-    """Disc, race, then pins and rollers; `slave_faces` counts on this order."""
+    """Disc, races, then pins and rollers; `slave_faces` counts on this order."""
     model, pose = solution.model, solution.pose
     materials, thickness = model.drive.materials, model.drive.disc.thickness
     deck.add_body("DISC", model.meshes.disc, model.disc_pose(pose), materials.disc, thickness)
-    deck.add_body("RACE", model.meshes.inner_race, Pose(centre=model.race_centre), materials.inner_race, thickness)
+    for crank, centre in enumerate(model.race_centres.tolist()):
+        name = _race_name(model, crank)
+        deck.add_body(name, model.meshes.inner_race, Pose(centre=centre), materials.inner_race, thickness)
     for pair in pairs:
         if pair.kind in ("pin", "roller_outer"):
             # The mesh in the frame of its group, whose zones are known, turned to this body.
@@ -216,7 +229,7 @@ def _add_contact(deck: _Deck, solution: FullSolution, pair: ContactPair, penalty
     """Write both surfaces of a pair and what acts between them."""
     model, pose = solution.model, solution.pose
     drive, name = model.drive, pair_name(pair)
-    carrier, _, elements = deck.placed["RACE" if pair.kind == "roller_inner" else "DISC"]
+    carrier, _, elements = deck.placed[_carrier_name(model, pair)]
     edge = float(np.abs(pair.zone.places[:, 2] - pair.zone.places[:, 0]).min())
     faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
     if pair.kind == "hole":
@@ -241,9 +254,11 @@ def _add_contact(deck: _Deck, solution: FullSolution, pair: ContactPair, penalty
 
 def _add_step(deck: _Deck, pairs: list[ContactPair], wheel: int, wheel_moment: float) -> None:
     """Write constraints, springs, contacts, then the load and what is printed."""
-    race, offset, _ = deck.placed["RACE"]
-    fixed = np.unique(unknowns_of_boundary(race, "inner") // 2) + offset + 1
-    deck.lines += ["*NSET, NSET=FIXED", *map(str, fixed.tolist())]
+    deck.lines.append("*NSET, NSET=FIXED")
+    for name, (body, offset, _) in deck.placed.items():
+        if name.startswith("RACE"):
+            fixed = np.unique(unknowns_of_boundary(body, "inner") // 2) + offset + 1
+            deck.lines += map(str, fixed.tolist())
     deck.lines += [*deck.equations, *deck.springs, *deck.interactions]
     deck.lines += ["*BOUNDARY", "FIXED,1,2"]
     deck.lines += ["*STEP, INC=200", "*STATIC", "1.,1.", "*CLOAD", f"{wheel},1,{wheel_moment:.14g}"]

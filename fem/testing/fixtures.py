@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,15 +21,19 @@ from fem.mesh.gmsh_session import load_gmsh
 from fem.mesh.mesh_file import write_msh
 from fem.mesh.quality import measure_quality
 from fem.mesh.triangulation import mesh_circle, mesh_disc, mesh_ring
-from fem.shapes import CircleShape, DriveShapes
+from fem.shapes import CircleShape, DiscShape, DriveShapes
+from ltca.drive.single_discs import single_discs
 from ltca.output.files import whole_file
-from ltca.reading.drive_file import load_drive
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 CASE = "CS-1"
 CRANK_ANGLE = 0.5
 SCALE = 4.0  # times b/8: two elements for each half-width
 GROWTH = 0.6
 PIN, ROLLER = 3, 2
+# The second disc of the reducer with three cranks, its flank turned by half a tooth; few teeth keep the mesh small.
+REDUCER_PINS = 16
 # Two equal steel cylinders, R = 10 mm: 2 kN for each mm of length gives a half-width of 0.335 mm.
 CYLINDER_RADIUS = 10.0
 CYLINDER_ZONE = 0.5
@@ -50,7 +54,7 @@ def make_fixtures() -> list[Fixture]:
     Returns
     -------
     list of Fixture
-        Disc, pin 3, roller 2 and race of the paper's drive (CS-1, 0.5 rad), and two cylinders.
+        Disc, pin 3, roller 2 and race of the paper's drive (CS-1, 0.5 rad), two cylinders, and a disc with three bores.
     """
     drive = load_drive("paper").cases[CASE]
     shapes, contacts = DriveShapes.of_drive(drive), expect_contacts(drive, CRANK_ANGLE)
@@ -87,7 +91,17 @@ def make_fixtures() -> list[Fixture]:
                 f"{'top' if angle > 0.0 else 'bottom'}, growth {GROWTH}",
             )
         )
-    return fixtures
+    return [*fixtures, _disc_of_several_cranks()]
+
+
+def _disc_of_several_cranks() -> Fixture:
+    changes = {"pin_wheel.number_of_pins": REDUCER_PINS, "disc.number_of_teeth": REDUCER_PINS - 1}
+    drive = with_fields(parse_drive(shipped_drive("rv"), "rv").cases["nominal"], changes)
+    shape = replace(DiscShape.of_drive(single_discs(drive)[1]), name="reducer_disc")
+    return Fixture(
+        body=mesh_disc(shape, coarse_size=8.0, growth=GROWTH),
+        parameters=f"rv with {REDUCER_PINS} pins, disc 1, no contacts, growth {GROWTH}, coarse edge 8 mm",
+    )
 
 
 def describe_fixtures(fixtures: list[Fixture], hashes: dict[str, str]) -> str:

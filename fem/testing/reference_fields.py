@@ -95,7 +95,7 @@ def cylinder_fields(folder: Path) -> dict[str, Any]:
 
 def collect(folder: Path) -> dict[str, Any]:
     """Return the fields of all fixtures in a folder."""
-    fixed = {"disc": None, "pin_3": "core", "roller_2": None, "inner_race": "inner"}
+    fixed = {"disc": None, "pin_3": "core", "roller_2": None, "inner_race": "inner", "reducer_disc": None}
     fields: dict[str, Any] = {name: body_fields(folder / f"{name}.msh", held) for name, held in fixed.items()}
     fields["two_cylinders"] = cylinder_fields(folder)
     return fields

@@ -23,7 +23,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_rigid_members
+from ltca.drive.plane_strain import require_one_bore, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
@@ -190,6 +190,7 @@ class HalfSpace:
             model = reducer_of([GridCompliance.of_drive(single) for single in singles], supports)
         if self.method == "paper":
             require_rigid_members(drive, "method paper")
+            require_one_bore(drive, "method paper")
             if len(singles) > 1:
                 raise DriveError(
                     [f"disc.number_of_discs = {len(singles)}: must be 1 for method paper, which knows one disc"]

@@ -22,7 +22,7 @@ from typing import Any
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_one_bore, require_plane_strain
+from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
@@ -124,7 +124,6 @@ def find_coefficients(
     CycloError
         When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
-    require_one_bore(drive, "influence coefficients of bodies (fe, hybrid)")
     if near_field == "plane-strain":
         require_plane_strain(drive, "compliance fe")
     if files is not None:
@@ -168,7 +167,6 @@ def find_case_coefficients(
         As `find_coefficients`; before anything is derived.
     """
     for drive in cases.values():
-        require_one_bore(drive, "influence coefficients of bodies (fe, hybrid)")
         if near_field == "plane-strain":
             require_plane_strain(drive, "compliance fe")
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,8 +55,10 @@ class InfluenceCoefficients:
         "strain" or "stress": state of the body part.
     thickness : float
         Of all bodies, mm.
-    flank, bore : Boundary
-        Stations of flank and bore.
+    flank : Boundary
+        Stations of the flank.
+    bores : tuple of Boundary
+        Stations of the bore of each crank.
     holes : tuple of Boundary
         Stations of each hole.
     disc : array, shape (stations, stations)
@@ -80,7 +82,7 @@ class InfluenceCoefficients:
     plane: str
     thickness: float
     flank: Boundary
-    bore: Boundary
+    bores: tuple[Boundary, ...]
     holes: tuple[Boundary, ...]
     disc: FloatArray
     pin: float
@@ -99,13 +101,20 @@ class InfluenceCoefficients:
         Parameters
         ----------
         drive : Drive
-            With as many teeth and holes.
+            With as many teeth, bores and holes.
 
         Raises
         ------
         DriveError
-            When the numbers of holes differ.
+            When the numbers of bores or holes differ.
         """
+        if drive.crank.number != len(self.bores):
+            raise DriveError(
+                [
+                    f"crank.number = {drive.crank.number}: must be {len(self.bores)}, that of the drive whose influence "
+                    "coefficients are shared"
+                ]
+            )
         if drive.number_of_holes != len(self.holes):
             raise DriveError(
                 [
@@ -117,21 +126,21 @@ class InfluenceCoefficients:
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
 
     def placed_in(self, drive: Drive) -> InfluenceCoefficients:
-        """Return the coefficients of the part as it stands in a disc whose flank is turned against its holes.
+        """Return the coefficients of the part as it stands in a disc whose flank is turned against bores and holes.
 
         Parameters
         ----------
         drive : Drive
             Of one disc; which part it is and how that stands in it is told by `ltca.drive.parts.part_turn`.
         """
-        _, hole_pitches, tooth_pitches = drive.part_turn
-        if hole_pitches == 0 and tooth_pitches == 0:
+        _, steps, tooth_pitches = drive.part_turn
+        if steps == 0 and tooth_pitches == 0:
             return self
-        turn = 2.0 * np.pi * hole_pitches / len(self.holes)
-        tooth_turn = -2.0 * np.pi * tooth_pitches / drive.disc.number_of_teeth
-        flank, bore, *holes = turned_boundaries((self.flank, self.bore, *self.holes), turn, tooth_turn, hole_pitches)
-        stress = self.stress.placed(turn, tooth_turn, hole_pitches)
-        return replace(self, flank=flank, bore=bore, holes=tuple(holes), stress=stress)
+        cranks, tooth_turn = len(self.bores), -2.0 * np.pi * tooth_pitches / drive.disc.number_of_teeth
+        how: dict[str, Any] = {"bores": cranks, "steps": steps, "pattern": drive.pattern, "flank_turn": tooth_turn}
+        flank, *walls = turned_boundaries((self.flank, *self.bores, *self.holes), **how)
+        bores, holes = tuple(walls[:cranks]), tuple(walls[cranks:])
+        return replace(self, flank=flank, bores=bores, holes=holes, stress=self.stress.placed(**how))
 
     def with_roller_length(self, length: float) -> InfluenceCoefficients:
         """Return the coefficients with rollers of a length of their own, mm: in plane strain they yield like one over it."""
@@ -152,21 +161,23 @@ class InfluenceCoefficients:
         Parameters
         ----------
         flank, bore, holes : array, shape (positions, pairs)
-            Places: θ on the flank, polar angles in the disc frame on bore and holes, rad.
+            Places: θ on the flank, polar angles in the disc frame about their centres on bores (rollers crank after crank)
+            and holes, rad.
         flank_places : array of complex, shape (positions, z_P)
             The flank contacts in the disc frame, mm.
         radius : float
-            Of the bore, mm.
+            Of the bores, mm.
         loaded : sequence of three arrays of int, shape (positions, chosen), optional
             Pins, rollers and holes whose loads are asked for; all of them by default.
 
         Returns
         -------
         array, shape (positions, contacts, loaded contacts)
-            Approach of every contact by unit loads, in the order flank, bore, holes, mm/N.
+            Approach of every contact by unit loads, in the order flank, bores, holes, mm/N.
         """
         positions, pins, rollers = flank.shape[0], flank.shape[1], bore.shape[1]
-        boundaries = [self.flank] * pins + [self.bore] * rollers + list(self.holes)
+        in_bores = [bore for bore in self.bores for _ in range(rollers // len(self.bores))]
+        boundaries = [self.flank] * pins + in_bores + list(self.holes)
         stations, weights = weights_of(boundaries, np.concatenate((flank, bore, holes), axis=1))
         if loaded is None:
             loaded = [np.tile(np.arange(count), (positions, 1)) for count in (pins, rollers, holes.shape[1])]
@@ -175,8 +186,8 @@ class InfluenceCoefficients:
         matrix = self._interpolated(stations, weights, columns)
         split = on_flank.shape[1]
         self._add_logarithm(matrix[:, :pins, :split], flank_places, on_flank)
-        around = radius * np.exp(1j * bore)
-        self._add_logarithm(matrix[:, pins : pins + rollers, split : split + in_bore.shape[1]], around, in_bore)
+        around, block = radius * np.exp(1j * bore), matrix[:, pins : pins + rollers, split : split + in_bore.shape[1]]
+        self._add_logarithm(block, around, in_bore, len(self.bores))
         return matrix
 
     def _interpolated(self, stations: NDArray[np.intp], weights: FloatArray, columns: NDArray[np.intp]) -> FloatArray:
@@ -193,29 +204,40 @@ class InfluenceCoefficients:
         near = half.ravel().take(places).reshape(positions, chosen, contacts, points)
         return np.asarray(np.einsum("bkna,bna->bnk", near, weights))
 
-    def _add_logarithm(self, block: FloatArray, places: NDArray[np.complex128], columns: NDArray[np.intp]) -> None:
-        """Take off κ ln(distance) between all places and those of the columns, a place and itself left out."""
+    def _add_logarithm(
+        self, block: FloatArray, places: NDArray[np.complex128], columns: NDArray[np.intp], walls: int = 1
+    ) -> None:
+        """Take off κ ln(distance) between all places and those of the columns on one wall, a place and itself left out."""
         apart = places[:, :, None] - np.take_along_axis(places, columns, axis=1)[:, None, :]
         square = apart.real**2 + apart.imag**2
-        same = np.arange(places.shape[1])[None, :, None] == columns[:, None, :]
+        rows, each = np.arange(places.shape[1]), places.shape[1] // walls
+        same = rows[None, :, None] == columns[:, None, :]
+        if walls > 1:
+            same |= (rows // each)[None, :, None] != (columns // each)[:, None, :]
         block -= 0.5 * self.disc_logarithm * np.log(np.where(same, 1.0, square))
 
     def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:
-        """Return the coefficients between the inner contacts of all rollers, shape (n_BR, n_BR), mm/N.
+        """Return the coefficients between the inner contacts of all rollers, on the race of each crank for itself, mm/N.
 
         Parameters
         ----------
-        angles : array, shape (n_BR,)
-            Polar angles of the contacts in the cage, rad.
+        angles : array, shape (cranks · n_BR,)
+            Polar angles of the contacts in the cage, crank after crank and the same in each, rad.
         radius : float
             r_i, mm.
+
+        Returns
+        -------
+        array, shape (cranks · n_BR, cranks · n_BR)
         """
+        cranks = len(self.bores)
+        angles = angles[: angles.size // cranks]
         between = angles[:, None] - angles[None, :]
         stations, weights = Boundary(first=0, count=self.race.size).weights(between)
         matrix = np.einsum("ijk,ijk->ij", self.race[stations], weights)
         distance = 2.0 * radius * np.abs(np.sin(0.5 * between))
         same = np.eye(angles.size, dtype=bool)
-        return np.asarray(matrix - self.race_logarithm * np.log(np.where(same, 1.0, distance)))
+        return np.kron(np.eye(cranks), matrix - self.race_logarithm * np.log(np.where(same, 1.0, distance)))
 
 
 def _mean_logarithm(distance: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
@@ -255,14 +277,14 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     data = read_coefficients(path)
     shared = _require_same_bodies(path, data, drive)
     boundaries = len(np.unique(data["station_boundary"].values))
-    if boundaries != 2 + drive.number_of_holes:
+    walls = 1 + drive.crank.number + drive.number_of_holes
+    if boundaries != walls:
         raise DamagedFileError(
-            f"{path}: has stations on {boundaries} boundaries; flank, bore and holes of {drive.name} are "
-            f"{2 + drive.number_of_holes}"
+            f"{path}: has stations on {boundaries} boundaries; flank, bores and holes of {drive.name} are {walls}"
         )
     _require_places(path, data, nominal_shape(drive, keep_clearance=not shared))
     found = _coefficients_of_dataset(data, drive, shared=shared)
-    stress = read_stress_coefficients(data, (found.flank, found.bore, *found.holes))
+    stress = read_stress_coefficients(data, (found.flank, *found.bores, *found.holes))
     return replace(found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")))
 
 
@@ -293,8 +315,8 @@ def _require_places(path: Path, data: xr.Dataset, drive: Drive) -> None:
     """Refuse stations that do not lie on the walls of the disc: coefficients between them are of their places."""
     flank = FlankProfile.of_drive(drive)
     holes = Placement.of_drive(drive)
-    centres = [0j, *holes.hole_centres.tolist()]
-    radii = [float(holes.bore_radius), *holes.hole_radii.tolist()]
+    centres = [*holes.bore_centres.tolist(), *holes.hole_centres.tolist()]
+    radii = [float(holes.bore_radius)] * holes.cranks + holes.hole_radii.tolist()
     boundary, parameter = data["station_boundary"].values, data["station_parameter"].values
     place = data["station_x"].values + 1j * data["station_y"].values
     for number in range(1 + len(centres)):
@@ -321,7 +343,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
     same = boundary[:, None] == boundary[None, :]
     disc = data["disc_approach"].values + np.where(same, disc_logarithm * logarithm, 0.0)
 
-    flank, bore, *holes = boundaries_of(boundary)
+    flank, *walls = boundaries_of(boundary)
     pin_logarithm = logarithm_factor(parts.wheel_pin, thickness, plane)
     roller_logarithm = logarithm_factor(parts.roller, thickness, plane)
     race_logarithm = logarithm_factor(parts.inner_race, thickness, plane)
@@ -339,8 +361,8 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
         plane=plane,
         thickness=thickness,
         flank=flank,
-        bore=bore,
-        holes=tuple(holes),
+        bores=tuple(walls[: drive.crank.number]),
+        holes=tuple(walls[drive.crank.number :]),
         disc=0.5 * (disc + disc.T),
         pin=float(data["pin_approach"].values + pin_logarithm * own),
         roller=roller,
@@ -358,16 +380,17 @@ def _self_logarithm(half_width: FloatArray) -> FloatArray:
 
 def without_coupling(drive: Drive) -> InfluenceCoefficients:
     """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
-    holes = drive.number_of_holes
+    cranks, holes = drive.crank.number, drive.number_of_holes
+    flank, *walls = [Boundary(first=k * LAGRANGE_POINTS, count=LAGRANGE_POINTS) for k in range(1 + cranks + holes)]
     return InfluenceCoefficients(
         fingerprint=drive.shape_fingerprint(),
         shared=False,
         plane="none",
         thickness=drive.disc.thickness,
-        flank=Boundary(first=0, count=LAGRANGE_POINTS),
-        bore=Boundary(first=LAGRANGE_POINTS, count=LAGRANGE_POINTS),
-        holes=tuple(Boundary(first=(2 + k) * LAGRANGE_POINTS, count=LAGRANGE_POINTS) for k in range(holes)),
-        disc=np.zeros(((2 + holes) * LAGRANGE_POINTS,) * 2),
+        flank=flank,
+        bores=tuple(walls[:cranks]),
+        holes=tuple(walls[cranks:]),
+        disc=np.zeros(((1 + cranks + holes) * LAGRANGE_POINTS,) * 2),
         pin=0.0,
         roller=np.zeros((2, 2)),
         race=np.zeros(LAGRANGE_POINTS),

@@ -75,9 +75,9 @@ class CoupledCompliance:
         Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
     hole_spring : float
         What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
-    race : array, shape (n_BR, n_BR)
-        Coefficients between the inner contacts of all rollers, which the cage turns together, mm/N.
-    outer_radius, inner_radius : array, shape (n_BR,)
+    race : array, shape (rollers, rollers)
+        Coefficients between the inner contacts of the rollers, which feel those on their own race alone, mm/N.
+    outer_radius, inner_radius : array, shape (rollers,)
         Effective radii of the rollers' contacts, mm.
     hole_radius : array, shape (z_PS,)
         Effective radii of shaft pins and holes, mm.
@@ -188,8 +188,7 @@ class CoupledCompliance:
         rows: NDArray[np.intp],
     ) -> Response:
         bodies = _Bodies(self, crank_angle, pose, flank, holes)
-        # Half of a rigid overlap is a fair share of the near field.
-        guess = np.where(bodies.geometric > 0.0, 0.5 * bodies.geometric, bodies.geometric)
+        guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
                 if warm is not None:
@@ -234,7 +233,8 @@ class _Bodies:
         self.model, self.flank, self.holes = model, flank, holes
         place = model.geometry.placement
         self.bores, self.rays = model.geometry.bores(crank_angle, pose), model.geometry.rollers(crank_angle)
-        self.displacement, self.moved = self.bores.displacement, self.bores.gradient  # of one bore, for all its rollers
+        bores, each = self.bores, self.rays.bore_play.size
+        self.displacement, self.moved = bores.each(bores.displacement, each), bores.each(bores.gradient, each)
         turn = pose[:, 2, None]
         play = place.shaft_pin_centres - (place.race_centre(crank_angle) + disc_displacement(pose))[:, None]
         play = play - place.hole_centres * np.exp(1j * turn)

@@ -29,7 +29,7 @@ class StressCoefficients:
     Attributes
     ----------
     walls : tuple of Boundary
-        Stress stations of flank, bore and each hole; empty where a file has no stresses.
+        Stress stations of flank, bores and holes; empty where a file has no stresses.
     loaded : tuple of Boundary
         Stations of the loads, in the same order.
     stress : array, shape (stress stations, stations)
@@ -40,10 +40,12 @@ class StressCoefficients:
     loaded: tuple[Boundary, ...]
     stress: FloatArray
 
-    def placed(self, turn: float, tooth_turn: float, hole_pitches: int) -> StressCoefficients:
+    def placed(self, *, bores: int, steps: int, pattern: int, flank_turn: float) -> StressCoefficients:
         """Return the coefficients of the part as it stands in a disc, see `InfluenceCoefficients.placed_in`."""
         walls, loaded = (
-            turned_boundaries(boundaries, turn, tooth_turn, hole_pitches) if boundaries else ()
+            turned_boundaries(boundaries, bores=bores, steps=steps, pattern=pattern, flank_turn=flank_turn)
+            if boundaries
+            else ()
             for boundaries in (self.walls, self.loaded)
         )
         return replace(self, walls=walls, loaded=loaded)
@@ -65,7 +67,7 @@ class WallContacts:
     Attributes
     ----------
     parameter : array, shape (positions, contacts)
-        Places: θ on the flank, polar angles in the disc frame on bore and holes, rad.
+        Places: θ on the flank, polar angles in the disc frame about their centres on bores and holes, rad.
     load : array, shape (positions, contacts)
         Into the disc, N.
     """
@@ -82,7 +84,7 @@ def read_stress_coefficients(data: xr.Dataset, loaded: tuple[Boundary, ...]) -> 
     data : Dataset
         Content of the file, of the right schema (`ltca.reading.coefficient_schema`).
     loaded : tuple of Boundary
-        Its stations: flank, bore, holes.
+        Its stations: flank, bores, holes.
     """
     if "disc_stress" not in data:
         return NO_STRESSES
@@ -101,7 +103,7 @@ def evaluate_wall_stress(coefficients: StressCoefficients, contacts: tuple[WallC
     coefficients : StressCoefficients
         Of the disc.
     contacts : tuple of WallContacts
-        Of flank, bore and each hole. Loads in equilibrium get one answer whatever balanced the unit loads when the
+        Of flank, each bore and each hole. Loads in equilibrium get one answer whatever balanced the unit loads when the
         coefficients were derived.
     """
     positions = contacts[0].load.shape[0]

@@ -37,7 +37,7 @@ class WallProfile:
     Attributes
     ----------
     parameter : array, shape (places,)
-        θ on the flank, polar angle in the disc frame on bore and holes, rad.
+        θ on the flank, polar angle in the disc frame about its centre on a bore or hole, rad.
     stress : array, shape (positions, places)
         Tension positive, MPa; under a contact without the contact's own pressure.
     clear : array of bool, shape (positions, places)
@@ -76,14 +76,15 @@ class WallStresses:
     root, root_parameter : array, shape (positions, lobes)
         Along the flank about each lobe root, from crest to crest, and where, θ, rad. Root k lies at θ = 2πk/z_C.
     bore, bore_parameter : array, shape (positions,)
-        Along the bore, and where, polar angle in the disc frame, rad.
+        Along the bore, the largest of several bores, and where, polar angle about the centre of that bore in the disc
+        frame, rad.
     hole, hole_parameter : array, shape (positions, z_PS)
         Along each hole wall, and where, polar angle about its centre in the disc frame, rad.
     pin_contact : array, shape (positions, z_P)
         In the flank under each wheel pin, along the wall, the contact's own pressure left out; where the pin would
         touch, if it is open.
-    roller_contact : array, shape (positions, n_BR)
-        In the bore under each roller.
+    roller_contact : array, shape (positions, rollers)
+        In its bore under each roller, crank after crank.
     hole_contact : array, shape (positions, z_PS)
         In each hole wall under its shaft pin.
     """
@@ -143,7 +144,7 @@ def wall_profiles(
     *,
     refinement: int = REFINEMENT,
 ) -> tuple[WallProfile, ...]:
-    """Return the stress along flank, bore and each hole wall; none where the coefficients have no stresses.
+    """Return the stress along flank, each bore and each hole wall; none where the coefficients have no stresses.
 
     Parameters
     ----------
@@ -160,10 +161,11 @@ def wall_profiles(
 def _place_contacts(
     model: CoupledCompliance, response: Response, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> tuple[_PlacedContacts, ...]:
-    """Return the contacts of flank, bore and each hole in the frame of the disc."""
+    """Return the contacts of flank, each bore and each hole in the frame of the disc."""
     place, turn = model.geometry.placement, disc_rotation[:, None]
     flank, rollers = response.flank, response.rollers
     bore = np.angle(rollers.outer_direction) - turn
+    bore_points = np.repeat(place.bore_centres, bore.shape[1] // place.cranks) + place.bore_radius * np.exp(1j * bore)
     # The approach of a shaft pin grows against its gradient by the displacement of the disc.
     toward = -(response.holes.gradient[..., 0] + 1j * response.holes.gradient[..., 1])
     holes = np.angle(toward) - turn
@@ -174,10 +176,13 @@ def _place_contacts(
             points=model.geometry.profile.flank(flank.parameter),
             half_width=pressures.pins.half_width,
         ),
-        _PlacedContacts(
-            contacts=WallContacts(parameter=bore, load=rollers.outer_load),
-            points=place.bore_radius * np.exp(1j * bore),
-            half_width=pressures.outer.half_width,
+        *(
+            _PlacedContacts(
+                contacts=WallContacts(parameter=bore[:, own], load=rollers.outer_load[:, own]),
+                points=bore_points[:, own],
+                half_width=pressures.outer.half_width[:, own],
+            )
+            for own in np.split(np.arange(bore.shape[1]), place.cranks)
         ),
         *(
             _PlacedContacts(
@@ -206,16 +211,16 @@ def _profiles(
 ) -> tuple[tuple[WallProfile, ...], FloatArray]:
     """Return the profiles of all walls, and the stress at the stations."""
     place, coefficients = model.geometry.placement, model.coefficients.stress
+    centres = np.concatenate((place.bore_centres, place.hole_centres))
+    radii = np.concatenate((np.full(place.cranks, place.bore_radius), place.hole_radii))
     stress = evaluate_wall_stress(coefficients, tuple(own.contacts for own in placed))
     profiles = []
     for number, (wall, own) in enumerate(zip(coefficients.walls, placed, strict=True)):
         parameter = wall.parameters(refinement)
         if number == 0:
             points = model.geometry.profile.flank(parameter)
-        elif number == 1:
-            points = place.bore_radius * np.exp(1j * parameter)
         else:
-            points = place.hole_centres[number - 2] + place.hole_radii[number - 2] * np.exp(1j * parameter)
+            points = centres[number - 1] + radii[number - 1] * np.exp(1j * parameter)
         clear = np.ones((stress.shape[0], parameter.size), dtype=bool)
         for contact in range(own.points.shape[1]):
             reach = np.where(own.contacts.load[:, contact] > 0.0, CLEAR_HALF_WIDTHS * own.half_width[:, contact], -1.0)
@@ -227,11 +232,12 @@ def _profiles(
 def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes: int) -> dict[str, FloatArray]:
     """Return the fields of `WallStresses` of some positions."""
     profiles, stress = _profiles(model, placed, REFINEMENT)
-    flank, bore, *holes = profiles
+    flank, *round_walls = profiles
     nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
     roots = [flank.largest(nearest == root) for root in range(lobes)]
-    hole = [wall.largest() for wall in holes]
-    bore_stress, bore_parameter = bore.largest()
+    values, places = (np.stack(found, axis=1) for found in zip(*(wall.largest() for wall in round_walls), strict=True))
+    cranks = model.geometry.placement.cranks
+    worst = np.argmax(np.nan_to_num(values[:, :cranks], nan=-np.inf), axis=1)[:, None]
     under = []
     for wall, own in zip(model.coefficients.stress.walls, placed, strict=True):
         stations, weights = wall.weights(own.contacts.parameter)
@@ -240,13 +246,13 @@ def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes
     return {
         "root": np.stack([value for value, _ in roots], axis=1),
         "root_parameter": np.stack([parameter for _, parameter in roots], axis=1),
-        "bore": bore_stress,
-        "bore_parameter": bore_parameter,
-        "hole": np.stack([value for value, _ in hole], axis=1),
-        "hole_parameter": np.stack([parameter for _, parameter in hole], axis=1),
+        "bore": np.take_along_axis(values, worst, axis=1)[:, 0],
+        "bore_parameter": np.take_along_axis(places, worst, axis=1)[:, 0],
+        "hole": values[:, cranks:],
+        "hole_parameter": places[:, cranks:],
         "pin_contact": under[0],
-        "roller_contact": under[1],
-        "hole_contact": np.concatenate(under[2:], axis=1),
+        "roller_contact": np.concatenate(under[1 : 1 + cranks], axis=1),
+        "hole_contact": np.concatenate([np.zeros((len(stress), 0)), *under[1 + cranks :]], axis=1),
     }
 
 

@@ -53,7 +53,7 @@ def require_one_bore(drive: Drive, model: str) -> None:
 
 
 def require_rigid_members(drive: Drive, model: str) -> None:
-    """Refuse a drive of several cranks, or of members that yield on their supports.
+    """Refuse a drive of members that yield on their supports.
 
     Parameters
     ----------
@@ -77,7 +77,6 @@ def require_rigid_members(drive: Drive, model: str) -> None:
         )
     if problems:
         raise DriveError(problems)
-    require_one_bore(drive, model)
 
 
 def _find_problems(drive: Drive, model: str) -> Iterator[str]:

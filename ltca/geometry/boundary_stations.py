@@ -121,27 +121,31 @@ def boundaries_of(numbers: NDArray[np.integer]) -> tuple[Boundary, ...]:
 
 
 def turned_boundaries(
-    boundaries: tuple[Boundary, ...], turn: float, flank_turn: float, hole_pitches: int
+    boundaries: tuple[Boundary, ...], *, bores: int, steps: int, pattern: int, flank_turn: float
 ) -> tuple[Boundary, ...]:
-    """Return flank, bore and holes of a part that stands turned in its disc, as the disc counts them.
+    """Return flank, bores and holes of a part that stands turned in its disc, as the disc counts them.
 
     Parameters
     ----------
     boundaries : tuple of Boundary
-        Of flank, bore and each hole of the part.
-    turn : float
-        How far the part is turned, rad.
+        Of flank, bores and holes of the part.
+    bores : int
+        How many of them are bores.
+    steps, pattern : int
+        The part is turned by that many steps of ``2π/pattern``, of which bores and holes are whole numbers apart.
     flank_turn : float
         Parameter of the disc's flank where that of the part's begins, rad.
-    hole_pitches : int
-        The same turn in hole pitches.
     """
-    flank, bore, *holes = boundaries
-    turned = [replace(hole, offset=hole.offset + turn) for hole in holes]
-    first = -hole_pitches % len(holes)
+    flank, *round_walls = boundaries
+    turn = 2.0 * np.pi * steps / pattern
+
+    def turned(walls: list[Boundary]) -> list[Boundary]:
+        moved = [replace(wall, offset=wall.offset + turn) for wall in walls]
+        first = -(steps * len(walls) // pattern) % max(1, len(walls))
+        return moved[first:] + moved[:first]
+
     return (
         replace(flank, offset=flank.offset + flank_turn),
-        replace(bore, offset=bore.offset + turn),
-        *turned[first:],
-        *turned[:first],
+        *turned(round_walls[:bores]),
+        *turned(round_walls[bores:]),
     )

@@ -153,6 +153,12 @@ class Placement:
         return int(self.eccentricity.shape[-1])
 
     @property
+    def roller_cranks(self) -> NDArray[np.intp]:
+        """Number of the crank of each roller, shape (cranks · n_BR,)."""
+        rollers = self.roller_radii.shape[-1]
+        return np.asarray(np.arange(rollers) // (rollers // self.cranks))
+
+    @property
     def mean_eccentricity(self) -> FloatArray:
         """Mean e of the cranks, mm, shape (1,), of a batch (positions, 1)."""
         return np.asarray(self.eccentricity.mean(axis=-1, keepdims=True))

@@ -211,7 +211,7 @@ def _check_definiteness(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _check_rigid_bodies(dataset: xr.Dataset) -> Iterator[Check]:
-    reason = "a rigid motion moves no station relative to the bore; balanced loads know no datum: round-off"
+    reason = "a rigid motion moves no station relative to the bores; balanced loads know no datum: round-off"
     yield from _stated(dataset, RIGID_MOTIONS, 1e-10, reason)
     if _holds(dataset, "disc_resultant"):
         places, mesh = station_resultants(dataset), dataset["disc_resultant"].values

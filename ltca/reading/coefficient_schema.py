@@ -205,7 +205,7 @@ def _misplaced(dataset: xr.Dataset) -> Iterator[str]:
     boundary = dataset["station_boundary"].values
     numbers = np.unique(boundary)
     if np.any(np.diff(boundary) < 0) or not np.array_equal(numbers, np.arange(len(numbers))) or len(numbers) < 3:
-        yield "station_boundary must be 0 (flank), 1 (bore), 2, 3, … (holes), in this order"
+        yield "station_boundary must be 0 (flank), 1 (bore; 1 … s of s cranks), then holes, in this order"
         return
     places = [("race_angle", dataset["race_angle"].values)]
     for kind in ("station", "stress_station"):

@@ -132,7 +132,7 @@ def _half_plane(
 
 
 def _stations(drive: Drive) -> tuple[list[ComplexArray], ComplexArray]:
-    """Return the stations of flank, bore and holes, uniform in their parameters, in the frame of the disc, mm; normals."""
+    """Return the stations of flank, bores and holes, uniform in their parameters, in the frame of the disc, mm; normals."""
     drive = nominal_shape(drive)
     place = Placement.of_drive(drive)
 
@@ -144,5 +144,6 @@ def _stations(drive: Drive) -> tuple[list[ComplexArray], ComplexArray]:
     holes = [
         centre + radius * circle(PER_HOLE) for centre, radius in zip(place.hole_centres, place.hole_radii, strict=True)
     ]
-    normals = [profile.normal(parameter), -circle(BORE), *[-circle(PER_HOLE)] * len(holes)]
-    return [profile.flank(parameter), place.bore_radius * circle(BORE), *holes], np.concatenate(normals)
+    bores = [centre + place.bore_radius * circle(BORE) for centre in place.bore_centres]
+    normals = [profile.normal(parameter), *[-circle(BORE)] * len(bores), *[-circle(PER_HOLE)] * len(holes)]
+    return [profile.flank(parameter), *bores, *holes], np.concatenate(normals)

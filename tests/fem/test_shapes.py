@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from fem.errors import MeshError
+from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleCurve, CircleShape, DiscShape, DriveShapes, RingShape
+from ltca.drive.deviations import BoreErrors, OneDisc
 from ltca.drive.parts import Drive, PlacementErrors
-from ltca.reading.drive_file import load_drive
+from ltca.drive.single_discs import single_discs
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +24,12 @@ def drive() -> Drive:
 @pytest.fixture(scope="module")
 def shapes(drive: Drive) -> DriveShapes:
     return DriveShapes.of_drive(drive)
+
+
+@pytest.fixture(scope="module")
+def reducer() -> Drive:
+    """The first disc of the reducer with three cranks."""
+    return single_discs(parse_drive(shipped_drive("rv"), "rv").cases["nominal"])[0]
 
 
 def test_flank_is_the_envelope_of_the_generating_pins(drive: Drive, shapes: DriveShapes) -> None:
@@ -59,7 +68,7 @@ def test_normals_point_out_of_the_body(shapes: DriveShapes) -> None:
         inside = np.abs(points) < disc.flank.profile.root_radius
         near = points[~inside]
         inside[~inside] = disc.flank.profile.distance(near, disc.flank.parameter_of(near)) < 0.0
-        inside &= np.abs(points) > disc.bore.radius
+        inside &= np.abs(points) > disc.bores[0].radius
         for hole in disc.holes:
             inside &= np.abs(points - hole.centre) > hole.radius
         return inside
@@ -68,15 +77,15 @@ def test_normals_point_out_of_the_body(shapes: DriveShapes) -> None:
         points, normals = curve.points(theta), curve.normals(theta)
         assert not material(points + step * normals).any()
         assert material(points - step * normals).all()
-    points, normals = disc.bore.points(theta), disc.bore.normals(theta)
-    assert np.all(np.abs(points + step * normals) < disc.bore.radius)
+    points, normals = disc.bores[0].points(theta), disc.bores[0].normals(theta)
+    assert np.all(np.abs(points + step * normals) < disc.bores[0].radius)
 
 
 def test_disc_area_matches_a_fine_polygon(shapes: DriveShapes) -> None:
     theta = np.linspace(0.0, 2.0 * np.pi, 400_001)
     points = shapes.disc.flank.points(theta)
     polygon = 0.5 * np.sum((points[:-1].conjugate() * points[1:]).imag)
-    circles = np.pi * (shapes.disc.bore.radius**2 + sum(hole.radius**2 for hole in shapes.disc.holes))
+    circles = np.pi * (shapes.disc.bores[0].radius ** 2 + sum(hole.radius**2 for hole in shapes.disc.holes))
     # A polygon of 4e5 sides of 1.4e-3 mm lacks about perimeter · h²/(12 ρ) = 3e-5 mm².
     assert shapes.disc.area == pytest.approx(polygon - circles, abs=1e-4)
 
@@ -92,7 +101,7 @@ def test_clearances_and_errors_enter_the_shapes(drive: Drive) -> None:
     clearance = replace(drive.clearance, bearing=0.03, pin_hole=0.01)
     changed = replace(drive, clearance=clearance, disc=replace(drive.disc, hole_errors=errors))
     disc = DiscShape.of_drive(changed)
-    assert disc.bore.radius == pytest.approx(29.5 + 0.015, abs=1e-12)  # the clearance is diametral
+    assert disc.bores[0].radius == pytest.approx(29.5 + 0.015, abs=1e-12)  # the clearance is diametral
     assert disc.holes[0].centre == pytest.approx(56.02 + 0.03j, abs=1e-12)
     assert disc.holes[0].radius == pytest.approx(14.075 + 0.01 + 0.02, abs=1e-12)
     assert disc.holes[3].radius == pytest.approx(14.075 + 0.01, abs=1e-12)
@@ -113,6 +122,41 @@ def test_default_core_and_race_bore_shrink_with_the_part(drive: Drive) -> None:
 def test_narrowest_wall_of_the_disc(shapes: DriveShapes) -> None:
     # Between root circle and hole: (88.09 − 4 − 6.65) − (56 + 14.075).
     assert shapes.disc.narrowest_wall == pytest.approx(77.44 - 70.075, abs=1e-9)
+
+
+def test_a_disc_of_one_crank_has_one_bore_by_its_old_name(shapes: DriveShapes) -> None:
+    assert [curve.name for curve in shapes.disc.curves] == ["flank", "bore", *(f"hole_{k}" for k in range(8))]
+    assert shapes.disc.bores[0].centre == 0j
+
+
+def test_a_disc_of_several_cranks_has_a_bore_for_each(reducer: Drive) -> None:
+    errors = BoreErrors(radial=(0.003, 0.0, 0.0), tangential=(0.0, 0.002, 0.0))
+    shape = DiscShape.of_drive(replace(reducer, disc=replace(reducer.disc, of=(OneDisc(bore_errors=errors),))))
+    assert [curve.name for curve in shape.curves] == ["flank", "bore_0", "bore_1", "bore_2"]
+    turn = np.exp(2j * np.pi / 3.0)
+    centres = np.array([42.003, (42.0 + 0.002j) * turn, 42.0 * turn**2])
+    np.testing.assert_allclose([bore.centre for bore in shape.bores], centres, atol=1e-12)
+    assert [bore.radius for bore in shape.bores] == pytest.approx([18.004] * 3, abs=1e-12)
+
+
+def test_walls_and_area_of_a_disc_with_several_bores(reducer: Drive) -> None:
+    shape = DiscShape.of_drive(reducer)
+    # Between root circle, 80.005 − 1.25 − 3.02, and bore; bores stand √3·42 apart, 36.7 mm of wall.
+    assert shape.narrowest_wall == pytest.approx(75.735 - 42.0 - 18.004, abs=1e-9)
+    theta = np.linspace(0.0, 2.0 * np.pi, 400_001)
+    points = shape.flank.points(theta)
+    polygon = 0.5 * np.sum((points[:-1].conjugate() * points[1:]).imag)
+    # As for the paper's disc: perimeter · h²/(12 ρ), with lobes three times as tight.
+    assert shape.area == pytest.approx(polygon - 3.0 * np.pi * 18.004**2, abs=3e-4)
+
+
+def test_a_disc_with_several_bores_is_meshed(reducer: Drive) -> None:
+    shape = DiscShape.of_drive(reducer)
+    body = mesh_disc(shape, coarse_size=8.0)
+    assert set(body.mesh.boundaries) == {curve.name for curve in shape.curves}
+    for bore in shape.bores:
+        x, y = body.mesh.doflocs[:, np.unique(body.boundary_nodes(bore.name))]
+        np.testing.assert_allclose(np.abs(x + 1j * y - bore.centre), bore.radius, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def test_coefficients_of_the_part_are_found_where_it_stands(phase):
     ]
     value = field(np.concatenate(walls))
     found = replace(
-        without_coupling(part), flank=boundaries[0], bore=boundaries[1], holes=tuple(boundaries[2:]),
+        without_coupling(part), flank=boundaries[0], bores=(boundaries[1],), holes=tuple(boundaries[2:]),
         disc=np.outer(value, value),
     ).placed_in(drive)  # fmt: skip
 

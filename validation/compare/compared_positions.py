@@ -120,6 +120,6 @@ def _station_distances(analysis: LoadedAnalysis, coefficients: InfluenceCoeffici
 
     return {
         "pin": distance(response.flank.parameter, coefficients.flank),
-        "roller_outer": distance(bore, coefficients.bore),
+        "roller_outer": distance(bore, coefficients.bores[0]),
         "hole": distance(across, coefficients.holes[0]),
     }

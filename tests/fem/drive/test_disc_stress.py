@@ -67,7 +67,7 @@ def test_fine_walls_follow_every_wall(paper_cases):
     spots = wall_refinements(shape)
     places = np.array([spot.point for spot in spots])
     assert max(spot.size for spot in spots) == pytest.approx(shape.narrowest_wall / 6.0)
-    for curve in (shape.bore, *shape.holes):
+    for curve in (*shape.bores, *shape.holes):
         along = curve.points(np.linspace(0.0, 2.0 * np.pi, 97))
         assert np.max(np.min(np.abs(along[:, None] - places), axis=1)) < 1.01 * shape.narrowest_wall / 6.0
     roots = shape.flank.points(2.0 * np.pi * np.arange(13) / 13)

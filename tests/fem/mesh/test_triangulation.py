@@ -84,7 +84,7 @@ def test_flank_nodes_lie_on_the_exact_flank(drive: Drive, shapes: DriveShapes, d
 
 
 def test_bore_and_hole_nodes_lie_on_their_circles(shapes: DriveShapes, disc: BodyMesh) -> None:
-    for circle in (shapes.disc.bore, *shapes.disc.holes):
+    for circle in (*shapes.disc.bores, *shapes.disc.holes):
         np.testing.assert_allclose(
             np.abs(boundary_points(disc, circle.name) - circle.centre), circle.radius, atol=1e-12
         )
@@ -94,7 +94,7 @@ def test_disc_area_and_bore_length(shapes: DriveShapes, disc: BodyMesh) -> None:
     # Quadratic edges of 15° lie (1 − cos 7.5°)²/15 = 5e-6 of the radius inside their circle in the mean: at most
     # 8·2π·14.1²·5e-6 = 0.05 mm² for the holes and as much again for the tightest parts of the flank, of 13442 mm².
     assert area_of(disc) == pytest.approx(shapes.disc.area, rel=7e-6)
-    for circle in (shapes.disc.bore, *shapes.disc.holes):
+    for circle in (*shapes.disc.bores, *shapes.disc.holes):
         # The length of such an edge is right to (α/2)⁴/180 or so: 2e-6 for 15°.
         assert length_of(disc, circle.name) == pytest.approx(2.0 * np.pi * circle.radius, rel=5e-6)
 

@@ -16,7 +16,7 @@ from fem.mesh.quality import require_quality
 from fem.testing.fixtures import make_fixtures
 
 FOLDER = Path(__file__).parents[3] / "meshes"
-NAMES = ("disc", "pin_3", "roller_2", "inner_race", "cylinder_lower", "cylinder_upper")
+NAMES = ("disc", "pin_3", "roller_2", "inner_race", "cylinder_lower", "cylinder_upper", "reducer_disc")
 
 
 @pytest.fixture(scope="module")
