@@ -355,7 +355,7 @@ def test_bad_input_is_one_clear_line(rv, words, message):
 
 @pytest.mark.parametrize("name", ["cranks", "wheel", "central crank yields"])
 def test_shares_of_the_compliance(rv, name):
-    """∂c/∂ ln k of a support is −share · c: the compliance of the wheel's angle from the tangent, its supports a little stiffer."""
+    """∂c/∂ ln k of a support is −share · c: the compliance of the wheel's angle from the tangent, its supports stiffened."""
     drive = kind(rv, name)
     found = analyse(drive, ANGLES)
     shares, step = found.compliance_shares, 1e-4
