@@ -212,7 +212,8 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
     return single.crank.eccentricity_error if value is None else value
 
 
-_MAY_BE_LEFT_OUT = ("crank.circle_radius", "pin_wheel.support_stiffness", "installation.first_stage_ratio")
+MAY_BE_LEFT_OUT = ("crank.circle_radius", "pin_wheel.support_stiffness", "installation.first_stage_ratio")
+"""Single fields that a drive may have not; a study may give them all the same."""
 
 
 def is_element(name: str) -> bool:
@@ -250,7 +251,7 @@ def read_field(drive: Drive, path: str) -> Any:
     value: Any = drive
     for name in path.split("."):
         value = getattr(value, name)
-    if value is None and path in _MAY_BE_LEFT_OUT:
+    if value is None and path in MAY_BE_LEFT_OUT:
         raise DriveError([f"{path}: is left out in this drive"])
     if count is not None and not value:
         return (0.0,) * count
