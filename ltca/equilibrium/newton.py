@@ -36,6 +36,11 @@ STEP_BOUND = 1e-3
 (µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
 It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
 LINE_TRIALS = 12
+CREEPING = 0.01
+"""Residual below which a position that takes many iterations creeps rather than wanders, as a part of the load."""
+VALLEY_STEPS, WALL_STEPS = 60, 6
+FIRST_ALONG = 1e-5
+"""First step along a valley, as a part of the smallest pin radius; each may be four times the last."""
 SLOPE_LEFT = 0.3
 """A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
 
@@ -149,6 +154,44 @@ class Search:
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
         return np.union1d(active, asked[self.slipped[asked]])
+
+    def follow_valley(self, row: int) -> bool:
+        """Balance a position that creeps along one soft mode; tell whether it does.
+
+        A disc pressed by pins all around rolls in the wheel almost freely: the valley of Π is curved by the eccentricity,
+        and straight steps along it climb its walls. Here every step along the softest mode is followed by steps of all
+        other modes down to the bottom, and the slope along the bottom is brought to zero by secants.
+        """
+        rows = np.array([row])
+        if self.slipped[row] or not self.residual[row] < CREEPING * self.load[row]:
+            return False
+        lever, pose = self.levers(rows), self.pose[rows].copy()
+        before, along, last, response = 0.0, 0.0, np.zeros(pose.shape[1]), self.evaluate(rows, pose, None)
+        for _ in range(VALLEY_STEPS):
+            for _ in range(WALL_STEPS):
+                gradient, tangent = self.scaled(rows, response)
+                values, modes = np.linalg.eigh(tangent[0])
+                soft = modes[:, np.argmin(np.abs(values))]
+                soft = soft if soft @ last >= 0.0 else -soft
+                self.residual[row] = np.max(np.abs(gradient))
+                if self.residual[row] <= self.accepted(rows, tangent)[0]:
+                    self.pose[rows] = pose
+                    self.keep(rows, response, np.ones(1, dtype=bool))
+                    return True
+                wall = gradient[0] - (soft @ gradient[0]) * soft
+                if np.max(np.abs(wall)) < 0.1 * abs(soft @ gradient[0]):
+                    break
+                pose = pose - (modes @ ((modes.T @ wall) / np.where(values == 0.0, 1.0, values)))[None] / lever
+                response = self.evaluate(rows, pose, Start.after(response))
+            self.iterations[row] += 1
+            slope = float(soft @ gradient[0])
+            change = (slope - before) / along if along else float(np.min(np.abs(values)))
+            step = -slope / change if change > 0.0 else -np.sign(slope) * 2.0 * abs(along)
+            most = 4.0 * abs(along) if along else FIRST_ALONG * self.smallest_pin
+            along, before, last = float(np.clip(step, -most, most)), slope, soft
+            pose = pose + along * soft[None] / lever
+            response = self.evaluate(rows, pose, Start.after(response))
+        return False
 
     def keep(self, rows: NDArray[np.intp], response: Response, balanced: NDArray[np.bool_]) -> None:
         """Remember the contacts of those of some positions that balance."""
