@@ -12,6 +12,7 @@ import xarray as xr
 from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.expected_contacts import expect_contacts
+from fem.drive.fields import recover_fields
 from fem.drive.grading import measure_gaps
 from fem.drive.solution import solve_disc
 from fem.pictures.mesh_picture import choose_zooms, place_bodies
@@ -273,3 +274,20 @@ def test_pictures_place_every_race_with_its_rollers(solved):
     assert np.all(np.abs(play) < 0.02)
     titles = [zoom.title for zoom in choose_zooms(model.contacts, model.placement)]
     assert len(titles) == 3  # no shaft pins
+
+
+@pytest.mark.slow
+def test_every_race_bends_under_its_own_rollers(solved):
+    """Against the force of its bearing on the disc, and is pressed on that side."""
+    (disc,) = solved.discs
+    races = [field for field in recover_fields(disc.model, disc.state) if field.kind == "inner_race"]
+    assert [field.body.name for field in races] == ["inner_race_0", "inner_race_1", "inner_race_2"]
+    forces = disc.contacts.bearing_force
+    for race, force in zip(races, forces.tolist(), strict=True):
+        local = race.places - race.pose.centre
+        bent, pressed = np.sum(race.elastic), np.sum(local * race.pressure)
+        # nodes are dense under rollers, each roller's as dense as its load asks: sums over them lean to one side
+        assert (bent.conjugate() * force).real < -0.9 * abs(bent * force)
+        assert (pressed.conjugate() * force).real > 0.9 * abs(pressed * force)
+    directions = forces / np.abs(forces)
+    assert np.abs(directions - np.roll(directions, 1)).min() > 0.5  # no race could stand for another
