@@ -19,7 +19,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import disc_responses
-from ltca.errors import DriveError
+from ltca.errors import CycloError, DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -302,6 +302,15 @@ def test_stress_of_the_bores_is_the_largest_of_all(small, derived):
             assert np.any(~bore.clear)
         assert walls.hole.shape == walls.hole_contact.shape == (3, 0)
         assert walls.roller_contact.shape == (3, 30)
+
+
+def test_a_file_of_several_cranks_is_refused_by_a_drive_of_one(small, tmp_path):
+    """Numbers that the drive does not have were no difference: the clearances, which agree, were blamed."""
+    several = single_discs(kind(small, "holes"))[0]
+    alone = replace(several.crank, number=1, circle_radius=None, angle=0.0)
+    closed_form_coefficients(several, half_width=0.05, depth=300.0).to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
+    with pytest.raises(CycloError, match=r"differs from rv in crank.number 3 \(here none\), crank.circle_radius 18"):
+        load_coefficients(tmp_path / "c.nc", replace(several, crank=alone))
 
 
 def test_coefficients_of_other_numbers_of_bores_are_refused(small):
