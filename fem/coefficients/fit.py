@@ -12,7 +12,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError
 from ltca.reading.coefficient_laws import Check
-from ltca.reading.coefficient_schema import shape_of
+from ltca.reading.coefficient_schema import shape_differences, shape_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,8 +81,8 @@ def _served_by(dataset: xr.Dataset, drive: Drive, source: str) -> Drive:
         if theirs == nominal.body_shape():
             return nominal
     own = drive.body_shape()
-    names = [name for name in own if theirs.get(name) != own[name]]
-    differences = ", ".join(f"{name} {theirs.get(name, float('nan')):g} ({own[name]:g} there)" for name in names)
+    different = shape_differences(theirs, own)
+    differences = ", ".join(f"{name} {here} ({there} there)" for name, (here, there) in different.items())
     raise CycloError(f"{source}: belongs to other bodies than those of {drive.name}: {differences}")
 
 

@@ -317,8 +317,8 @@ class DriveModel:
         on_disc = self.disc.compliance.shape[0]
         compliance[:on_disc, :on_disc] = self.disc.compliance
         for crank in range(self.placement.cranks):
-            own, loads = self.race_unknowns(crank), self.loads_on_race(crank)
-            compliance[own, own] = self.race.compliance[np.ix_(loads, loads)]
+            own, unit_loads = self.race_unknowns(crank), self.loads_on_race(crank)
+            compliance[own, own] = self.race.compliance[np.ix_(unit_loads, unit_loads)]
         motions = np.zeros((count, 4 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre

@@ -30,7 +30,7 @@ from ltca.geometry.boundary_stations import (
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
-from ltca.reading.coefficient_schema import shape_of
+from ltca.reading.coefficient_schema import shape_differences, shape_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -296,15 +296,15 @@ def _require_same_bodies(path: Path, data: xr.Dataset, drive: Drive) -> bool:
     nominal = replace(drive, clearance=Clearance()).body_shape()
     if theirs == nominal and bool(attributes["clearances_left_out"]):
         return True
-    names = [name for name in own if theirs.get(name) != own[name]]
-    if set(names) <= {"bore_radius", "hole_radius"}:
+    different = shape_differences(theirs, own)
+    if set(different) <= {"bore_radius", "hole_radius"}:
         bearing, hole = (f"{float(attributes[name]):g} mm" for name in ("bearing_clearance", "pin_hole_clearance"))
         raise CycloError(
             f"{path}: belongs to the clearances bearing {bearing} and pin hole {hole}, not to clearance.bearing = "
             f"{drive.clearance.bearing:g} mm and clearance.pin_hole = {drive.clearance.pin_hole:g} mm of this case: derive "
             "its own (cyclo derive --case), or a file that leaves them out on purpose (cyclo derive --without-clearance)"
         )
-    differences = ", ".join(f"{name} {theirs.get(name, float('nan')):g} (here {own[name]:g})" for name in names)
+    differences = ", ".join(f"{name} {there} (here {here})" for name, (there, here) in different.items())
     raise CycloError(
         f"{path}: belongs to another drive ({attributes.get('drive', '?')}); it differs from {drive.name} in "
         f"{differences}: derive its own (cyclo derive)"

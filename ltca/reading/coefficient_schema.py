@@ -188,6 +188,27 @@ def shape_of(dataset: xr.Dataset) -> dict[str, float]:
         return {}
 
 
+def shape_differences(theirs: dict[str, float], own: dict[str, float]) -> dict[str, tuple[str, str]]:
+    """Return the numbers in which two shapes differ, theirs and our own as texts, "none" where a shape has no such number.
+
+    Parameters
+    ----------
+    theirs, own : dict of str to float
+        Shapes (`ltca.drive.parts.Drive.body_shape`).
+
+    Examples
+    --------
+    >>> shape_differences({"crank.number": 3.0, "bore_radius": 7.0}, {"bore_radius": 7.0})
+    {'crank.number': ('3', 'none')}
+    """
+
+    def told(shape: dict[str, float], name: str) -> str:
+        return f"{shape[name]:g}" if name in shape else "none"
+
+    names = [name for name in own | theirs if own.get(name) != theirs.get(name)]
+    return {name: (told(theirs, name), told(own, name)) for name in names}
+
+
 def _contradictions(dataset: xr.Dataset) -> Iterator[str]:
     shape = shape_of(dataset)
     if not shape:

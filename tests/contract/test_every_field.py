@@ -165,13 +165,17 @@ OF_SEVERAL_CRANKS = [
 ]
 
 
+@pytest.mark.parametrize(
+    "model", ["tables", pytest.param("hybrid", marks=pytest.mark.slow), pytest.param("fe", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("path", OF_SEVERAL_CRANKS)
-def test_fields_of_several_cranks_are_used(path):
+def test_fields_of_several_cranks_are_used(path, model, models):
     """The walk above starts from a central crank; what several have is looked at on an RV reducer."""
+    _, answer = models[model]
     base = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
     base, change = change_of(base, path)
     change |= {"crank.circle_radius": {path: 40.0}, "disc.planes": {path: (-9.0, 9.0)}}.get(path, {})
-    assert moves(tables(base), tables(with_fields(base, change)))
+    assert moves(answer(base), answer(with_fields(base, change)))
 
 
 def test_the_walk_sees_what_is_ignored(answers):

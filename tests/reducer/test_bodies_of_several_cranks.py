@@ -12,13 +12,14 @@ from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import load_coefficients, without_coupling
 from ltca.compliance.response import bearing_pushes
+from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
 from ltca.compliance.wall_stress import wall_profiles
 from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import disc_responses
-from ltca.errors import DriveError
+from ltca.errors import CycloError, DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -176,9 +177,10 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
         for centre, radius, own in zip(centres, radii, boundaries[1:], strict=True)
     ]
     value = field(np.concatenate(walls))
+    both, stations = np.outer(value, value), tuple(boundaries)
     found = replace(
-        without_coupling(part), flank=boundaries[0], bores=tuple(boundaries[1:4]), holes=tuple(boundaries[4:]),
-        disc=np.outer(value, value),
+        without_coupling(part), flank=stations[0], bores=stations[1:4], holes=stations[4:], disc=both,
+        stress=StressCoefficients(walls=stations, loaded=stations, stress=both),
     ).placed_in(drive)  # fmt: skip
     rng, disc = np.random.default_rng(3), Placement.of_drive(drive)
     theta, bore, hole = (rng.uniform(0.0, 6.28, (1, count)) for count in (14, 30, holes))
@@ -192,9 +194,23 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
         axis=1,
     )
     matrix = found.disc_matrix(theta, bore, hole, turned, float(disc.bore_radius))[0]
-    metal = field(points[0] * np.exp(-2j * np.pi * drive.part_turn[1] / drive.pattern))
+
+    def at_metal(places):
+        return field(places * np.exp(-2j * np.pi * drive.part_turn[1] / drive.pattern))
+
+    metal = at_metal(points[0])
     # interpolation between stations: to round-off on circles, 1e-6 on the lobes
     np.testing.assert_allclose(matrix, np.outer(metal, metal), rtol=1e-5)
+    # stresses likewise, by a newton on every contact
+    walls = [theta, *np.split(bore, 3, axis=1), *np.split(hole, max(1, holes), axis=1)][: len(stations)]
+    stress = evaluate_wall_stress(
+        found.stress, tuple(WallContacts(parameter=own, load=np.ones_like(own)) for own in walls)
+    )
+    for centre, radius, wall in zip(
+        np.concatenate((disc.bore_centres, disc.hole_centres)), radii, found.stress.walls[1:], strict=True
+    ):
+        expected = at_metal(centre + radius * np.exp(1j * wall.parameters())) * metal.sum()
+        np.testing.assert_allclose(stress[0, wall.first : wall.first + wall.count], expected, rtol=1e-5)
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -286,6 +302,15 @@ def test_stress_of_the_bores_is_the_largest_of_all(small, derived):
             assert np.any(~bore.clear)
         assert walls.hole.shape == walls.hole_contact.shape == (3, 0)
         assert walls.roller_contact.shape == (3, 30)
+
+
+def test_a_file_of_several_cranks_is_refused_by_a_drive_of_one(small, tmp_path):
+    """Numbers that the drive does not have were no difference: the clearances, which agree, were blamed."""
+    several = single_discs(kind(small, "holes"))[0]
+    alone = replace(several.crank, number=1, circle_radius=None, angle=0.0)
+    closed_form_coefficients(several, half_width=0.05, depth=300.0).to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
+    with pytest.raises(CycloError, match=r"differs from rv in crank.number 3 \(here none\), crank.circle_radius 18"):
+        load_coefficients(tmp_path / "c.nc", replace(several, crank=alone))
 
 
 def test_coefficients_of_other_numbers_of_bores_are_refused(small):

@@ -121,5 +121,5 @@ def _station_distances(analysis: LoadedAnalysis, coefficients: InfluenceCoeffici
     return {
         "pin": distance(response.flank.parameter, coefficients.flank),
         "roller_outer": distance(bore, coefficients.bores[0]),
-        "hole": distance(across, coefficients.holes[0]),
+        "hole": distance(across, coefficients.holes[0]) if coefficients.holes else across,  # of none, nothing
     }

@@ -12,6 +12,7 @@ import xarray as xr
 from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.expected_contacts import expect_contacts
+from fem.drive.fields import recover_fields
 from fem.drive.grading import measure_gaps
 from fem.drive.solution import solve_disc
 from fem.pictures.mesh_picture import choose_zooms, place_bodies
@@ -123,7 +124,7 @@ def test_members_that_yield_are_refused_by_name(rv):
 
 
 @pytest.mark.slow
-def test_the_disc_is_in_equilibrium(solved):
+def test_the_disc_is_in_equilibrium(solved, small):
     """From the places and normals of the contacts alone: forces and moment on the disc, and what the cranks take."""
     (disc,) = solved.discs
     contacts, model, pose = disc.contacts, disc.model, disc.pose
@@ -141,11 +142,15 @@ def test_the_disc_is_in_equilibrium(solved):
     np.testing.assert_allclose(contacts.roller_load_outer, contacts.roller_load_inner, rtol=1e-5)
     forces = contacts.roller_force.reshape(3, ROLLERS).sum(axis=1)
     np.testing.assert_allclose(contacts.bearing_force, forces, rtol=1e-12)
-    # Eccentrics lie at φ_C: a tangential force has the lever e about its crank's own axis; the cage adds what the play does.
     along = forces * np.exp(-1j * ANGLE)
     np.testing.assert_allclose(disc.bearing_components, np.column_stack([along.real, along.imag]), rtol=1e-9)
-    np.testing.assert_allclose(disc.crank_moments, 4.0 * along.imag, rtol=0.0, atol=0.01 * 4.0 * largest)
-    assert np.ptp(disc.crank_moments) > 0.5 * 4.0 * largest
+    # Eccentrics lie at φ_C: a tangential force has the lever e about its crank's own axis. The cage, which turns by
+    # r_i/(r_i + r_o) of the crank's angle, takes the force's moment at the displaced centre of the bore.
+    place = np.array([[pose.disc_x, pose.disc_y, pose.disc_rotation, pose.wheel_angle]])
+    bores = ContactGeometry.of_drive(small).bores(np.array([ANGLE]), place).displacement[0]
+    cages = 13.0 / 31.0 * (bores.conjugate() * forces).imag
+    np.testing.assert_allclose(disc.crank_moments, 4.0 * along.imag + cages, rtol=0.0, atol=1e-7 * 4.0 * largest)
+    assert np.abs(cages).max() > 1e-5 * 4.0 * largest
 
 
 @pytest.mark.slow
@@ -269,3 +274,20 @@ def test_pictures_place_every_race_with_its_rollers(solved):
     assert np.all(np.abs(play) < 0.02)
     titles = [zoom.title for zoom in choose_zooms(model.contacts, model.placement)]
     assert len(titles) == 3  # no shaft pins
+
+
+@pytest.mark.slow
+def test_every_race_bends_under_its_own_rollers(solved):
+    """Against the force of its bearing on the disc, and is pressed on that side."""
+    (disc,) = solved.discs
+    races = [field for field in recover_fields(disc.model, disc.state) if field.kind == "inner_race"]
+    assert [field.body.name for field in races] == ["inner_race_0", "inner_race_1", "inner_race_2"]
+    forces = disc.contacts.bearing_force
+    for race, force in zip(races, forces.tolist(), strict=True):
+        local = race.places - race.pose.centre
+        bent, pressed = np.sum(race.elastic), np.sum(local * race.pressure)
+        # nodes are dense under rollers, each roller's as dense as its load asks: sums over them lean to one side
+        assert (bent.conjugate() * force).real < -0.9 * abs(bent * force)
+        assert (pressed.conjugate() * force).real > 0.9 * abs(pressed * force)
+    directions = forces / np.abs(forces)
+    assert np.abs(directions - np.roll(directions, 1)).min() > 0.5  # no race could stand for another

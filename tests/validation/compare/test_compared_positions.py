@@ -26,7 +26,7 @@ def test_distances_are_parts_of_a_spacing_in_the_frame_of_the_disc():
         holes=SimpleNamespace(gradient=gradient),
     )
     analysis = SimpleNamespace(full=SimpleNamespace(response=response, pose=np.array([[0.0, 0.0, turn, 0.0]])))
-    coefficients = SimpleNamespace(flank=boundary(40), bore=boundary(10), holes=(boundary(20), boundary(20)))
+    coefficients = SimpleNamespace(flank=boundary(40), bores=(boundary(10),), holes=(boundary(20), boundary(20)))
     found = _station_distances(analysis, coefficients)
     np.testing.assert_allclose(found["pin"], [[0.0, 0.4, 0.2]], atol=1e-12)
     np.testing.assert_allclose(found["roller_outer"], [[0.0, 0.5]], atol=1e-12)
