@@ -278,7 +278,8 @@ def solve_disc(
     ConvergenceError
         When nothing can carry the load or an iteration does not settle.
     DriveError
-        When the drive is not the same all along its thickness: shorter rollers, crown or relief; for several discs.
+        When the drive is not the same all along its thickness: shorter rollers, crown or relief; for several discs; where
+        cranks or the wheel's axis yield.
     MemoryLimitError
         When the meshes would not fit into memory.
     """

@@ -230,7 +230,7 @@ def solve_reducer(
     ConvergenceError
         When nothing can carry the load, an iteration does not settle, or a disc carries nothing.
     DriveError
-        When the drive is not the same all along its thickness.
+        When the drive is not the same all along its thickness; where cranks or the wheel's axis yield.
     MemoryLimitError
         When the meshes would not fit into memory.
     """
