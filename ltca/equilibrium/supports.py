@@ -18,13 +18,6 @@ from ltca.laws.beam import shaft_flexibility
 FloatArray = NDArray[np.float64]
 
 
-def coordinates_of_drive(drive: Drive) -> Coordinates:
-    """Return what the poses of a drive of any number of discs are made of."""
-    yielding = 0 if drive.crank.support is None else drive.crank.number
-    wheel = drive.pin_wheel.support_stiffness is not None
-    return Coordinates(discs=drive.disc.number_of_discs, cranks=yielding, wheel=wheel)
-
-
 def crank_stiffness(drive: Drive) -> FloatArray | None:
     """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs).
 
@@ -53,7 +46,7 @@ def support_stiffness(drive: Drive) -> FloatArray | None:
     array, shape (coordinates, coordinates) or None
         N/mm.
     """
-    coordinates = coordinates_of_drive(drive)
+    coordinates = Coordinates.of_drive(drive)
     shaft, wheel = crank_stiffness(drive), drive.pin_wheel.support_stiffness
     if shaft is None and wheel is None:
         return None

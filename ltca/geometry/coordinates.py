@@ -8,10 +8,12 @@ several discs the poses follow each other, with one wheel.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -53,6 +55,13 @@ class Coordinates:
     cranks: int = 0
     wheel: bool = False
 
+    @classmethod
+    def of_drive(cls, drive: Drive) -> Coordinates:
+        """Return what the poses of a drive of any number of discs are made of."""
+        cranks = 0 if drive.crank.support is None else drive.crank.number
+        wheel = drive.pin_wheel.support_stiffness is not None
+        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel)
+
     @property
     def own(self) -> int:
         """Coordinates of each disc: x, y, rotation, and x and y of every crank there."""
@@ -67,11 +76,6 @@ class Coordinates:
     def size(self) -> int:
         """All coordinates."""
         return self.discs * self.own + self.shared
-
-    @property
-    def of_one(self) -> Coordinates:
-        """Coordinates of one of the discs with the wheel."""
-        return replace(self, discs=1)
 
     def columns(self, disc: int) -> Columns:
         """Return the places of the coordinates of a disc, its own and the wheel's.

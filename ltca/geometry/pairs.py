@@ -31,11 +31,6 @@ def _cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
     return first.real * second.imag - first.imag * second.real
 
 
-def _coordinates(drive: Drive) -> Coordinates:
-    yielding = 0 if drive.crank.support is None else drive.crank.number
-    return Coordinates(cranks=yielding, wheel=drive.pin_wheel.support_stiffness is not None)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairMotion:
     """Approach of pairs of one kind, with first and second derivatives by the pose.
@@ -195,14 +190,14 @@ class ContactGeometry:
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
         place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
-        return cls(placement=place, profile=profile, coordinates=_coordinates(drive))
+        return cls(placement=place, profile=profile, coordinates=Coordinates.of_drive(drive))
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], positions: int) -> ContactGeometry:
         """Return the contact geometry of a batch: every drive at the same number of positions, drive by drive."""
         places = [Placement.of_drive(drive) for drive in drives]
         place, profile = Placement.stack(places, positions), FlankProfile.stack(drives, positions)
-        return cls(placement=place, profile=profile, coordinates=_coordinates(drives[0]))
+        return cls(placement=place, profile=profile, coordinates=Coordinates.of_drive(drives[0]))
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ContactGeometry:
         """Return the geometry of some positions: itself for one drive, these rows of a batch."""

@@ -132,6 +132,9 @@ def test_every_field_is_used_or_refused(model, path, models, answers):
         after = answer(with_fields(base, change))
     except DriveError as error:
         refused = str(error)
+    if refused and path.startswith("materials.crankshaft."):  # what it is made of goes with the support of the crank
+        assert "crank.support" in refused
+        return
     if refused:
         assert path in refused, f"{path} is refused without its name: {refused}"
         return

@@ -127,6 +127,7 @@ def test_stagnation_is_an_error_with_its_history(models):
 
     class Stubborn:
         geometry = models["CS-1"].geometry
+        coordinates = geometry.coordinates
         looks = 0
 
         @property
