@@ -127,8 +127,9 @@ def _print_headline(study: Study) -> None:
         )
     print(f"{'full FE against half-space':<28}{'pin':>9}{'roller':>9}{'pin shaft':>11}")
     for case, changes in head["change_half_space_to_full_fe"].items():
-        pin, roller, shaft = (100.0 * changes[name] for name in ("pin_load", "roller_load", "pin_shaft_load"))
-        print(f"{case:<28}{pin:>+8.1f}%{roller:>+8.1f}%{shaft:>+10.1f}%")
+        pin, roller = (100.0 * changes[name] for name in ("pin_load", "roller_load"))
+        shaft = f"{100.0 * changes['pin_shaft_load']:>+10.1f}%" if "pin_shaft_load" in changes else f"{'–':>11}"
+        print(f"{case:<28}{pin:>+8.1f}%{roller:>+8.1f}%{shaft}")
     _print_costs(study)
 
 

@@ -92,7 +92,8 @@ class _AnsweredDisc:
         return cls(
             drive=analyses["fe"].drive,
             answers={model: answers_of(analysis) for model, analysis in analyses.items()},
-            distances=_station_distances(analyses["fe"], coefficients),
+            # A part that stands turned in this disc has its stations turned.
+            distances=_station_distances(analyses["fe"], coefficients.placed_in(analyses["fe"].drive)),
             stresses={model: found for model, analysis in analyses.items() if (found := stresses_of(analysis))},
         )
 
@@ -114,12 +115,15 @@ def _station_distances(analysis: LoadedAnalysis, coefficients: InfluenceCoeffici
     across = np.arctan2(response.holes.gradient[..., 1], response.holes.gradient[..., 0]) - rotation
     bore = np.angle(response.rollers.outer_direction) - rotation
 
-    def distance(parameter: FloatArray, boundary: Boundary) -> FloatArray:
-        place = parameter * boundary.count / (2.0 * np.pi)
+    def distance(parameter: FloatArray, *boundaries: Boundary) -> FloatArray:
+        """Of places in equal numbers on one boundary after the other."""
+        each = parameter.shape[1] // max(1, len(boundaries))
+        count, offset = (np.repeat([getattr(own, name) for own in boundaries], each) for name in ("count", "offset"))
+        place = (parameter - offset) * count / (2.0 * np.pi)
         return np.asarray(np.abs(place - np.round(place)))
 
     return {
         "pin": distance(response.flank.parameter, coefficients.flank),
-        "roller_outer": distance(bore, coefficients.bores[0]),
-        "hole": distance(across, coefficients.holes[0]) if coefficients.holes else across,  # of none, nothing
+        "roller_outer": distance(bore, *coefficients.bores),
+        "hole": distance(across, *coefficients.holes),
     }

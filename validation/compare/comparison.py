@@ -4,6 +4,7 @@
   nothing cannot make a large figure, and the sum over a kind stays a force.
 - **Pressures** and **half-widths** are compared, relative to the reference, where a contact carries over 5 % of the
   largest load of its kind: below that its half-width is a few elements and says nothing about the drive.
+- **Bearing forces** are compared crank by crank, relative to the largest of any crank in the reference.
 - The **RMS** of load differences runs over the contacts of a kind that are loaded in either answer.
 - Two answers have the **same loaded contacts** when every contact with over 1 % of the largest load of its kind in one
   is loaded in the other.
@@ -60,20 +61,20 @@ class PositionAnswer:
     Attributes
     ----------
     kinds : dict of str to KindAnswer
-        Contacts by kind (`KINDS`).
-    bearing_radial, bearing_tangential : float
-        Bearing force on the disc along the eccentricity and 90° ahead, N.
+        Contacts by kind (`KINDS`); rollers of several cranks follow each other crank after crank.
+    bearing_radial, bearing_tangential : array, shape (cranks,)
+        Force of each crank bearing on the disc along the eccentricity and 90° ahead, N.
     wheel_angle : float
         rad.
     disc_radial, disc_tangential : float
-        Displacement of the disc, fitted to its bore, from the inner-race centre, mm.
+        Displacement of the disc, fitted to its bores, from the inner-race centre, of several their mean, mm.
     disc_rotation : float
-        rad, fitted to the bore.
+        rad, fitted to the bores.
     """
 
     kinds: dict[Kind, KindAnswer]
-    bearing_radial: float
-    bearing_tangential: float
+    bearing_radial: FloatArray
+    bearing_tangential: FloatArray
     wheel_angle: float
     disc_radial: float
     disc_tangential: float
@@ -82,6 +83,10 @@ class PositionAnswer:
     def loaded(self, kind: Kind) -> int:
         """Return the number of loaded contacts of a kind."""
         return int(np.count_nonzero(loaded_contacts(self.kinds[kind].load, COUNTED_SHARE)))
+
+    def contact_name(self, kind: Kind, number: int) -> str:
+        """Return the name of one of its contacts, as `contact_name`."""
+        return contact_name(kind, number, _rollers_of_each(self.kinds["roller_outer"].load, self.bearing_radial))
 
 
 def loaded_contacts(load: FloatArray, share: float) -> NDArray[np.bool_]:
@@ -138,8 +143,8 @@ class PositionDifference:
     ----------
     kinds : dict of str to KindDifference
         By kind.
-    bearing_radial, bearing_tangential : float
-        Relative to the magnitude of the reference's bearing force.
+    bearing_radial, bearing_tangential : array, shape (cranks,)
+        Relative to the magnitude of the reference's bearing force, of several cranks the largest.
     wheel_angle, disc_rotation : float
         Arc seconds.
     disc_displacement : float
@@ -147,8 +152,8 @@ class PositionDifference:
     """
 
     kinds: dict[Kind, KindDifference]
-    bearing_radial: float
-    bearing_tangential: float
+    bearing_radial: FloatArray
+    bearing_tangential: FloatArray
     wheel_angle: float
     disc_rotation: float
     disc_displacement: float
@@ -166,17 +171,43 @@ class PositionDifference:
     @property
     def missing(self) -> tuple[str, ...]:
         """Contacts that are loaded in one answer only, by name."""
-        return tuple(contact_name(kind, number) for kind in self.kinds for number in self.kinds[kind].missing)
+        return tuple(self.contact_name(kind, number) for kind in self.kinds for number in self.kinds[kind].missing)
+
+    def contact_name(self, kind: Kind, number: int) -> str:
+        """Return the name of one of the contacts, as `contact_name`."""
+        return contact_name(kind, number, _rollers_of_each(self.kinds["roller_outer"].load, self.bearing_radial))
 
     def _worst(self, found: dict[Kind, tuple[int, float]]) -> tuple[Kind, int, float]:
         kind = max(found, key=lambda name: -1.0 if np.isnan(found[name][1]) else abs(found[name][1]))
         return kind, *found[kind]
 
 
-def contact_name(kind: Kind, number: int) -> str:
-    """Return the name of a contact as rows and report give it."""
+def contact_name(kind: Kind, number: int, rollers: int | None = None) -> str:
+    """Return the name of a contact as rows and report give it.
+
+    Parameters
+    ----------
+    kind : Kind
+        What touches what.
+    number : int
+        Which of its kind, rollers counted crank after crank.
+    rollers : int, optional
+        Of each crank, where there are several: the name then says which.
+
+    Examples
+    --------
+    >>> contact_name("roller_outer", 11), contact_name("roller_outer", 11, 9)
+    ('roller 11 bore', 'crank 1 roller 2 bore')
+    """
     names = {"pin": "pin {}", "roller_outer": "roller {} bore", "roller_inner": "roller {} race"}
-    return names.get(kind, "shaft pin {}").format(number)
+    name = names.get(kind, "shaft pin {}")
+    if rollers is None or kind not in ("roller_outer", "roller_inner"):
+        return name.format(number)
+    return f"crank {number // rollers} " + name.format(number % rollers)
+
+
+def _rollers_of_each(load: FloatArray, of_cranks: FloatArray) -> int | None:
+    return None if of_cranks.size == 1 else load.size // of_cranks.size
 
 
 def worst(difference: FloatArray) -> tuple[int, float]:
@@ -247,7 +278,7 @@ def compare_positions(model: PositionAnswer, reference: PositionAnswer) -> Posit
     PositionDifference
         Model less reference.
     """
-    bearing = float(np.hypot(reference.bearing_radial, reference.bearing_tangential))
+    bearing = float(np.max(np.hypot(reference.bearing_radial, reference.bearing_tangential)))
     return PositionDifference(
         kinds={kind: compare_kind(model.kinds[kind], reference.kinds[kind]) for kind in KINDS},
         bearing_radial=(model.bearing_radial - reference.bearing_radial) / bearing,

@@ -2,7 +2,7 @@
 
 - Along the walls models are compared at their stress stations, where they are clear: farther than four half-widths from
   every loaded contact on the wall. A difference is relative to the largest stress of the reference at any such station.
-- **Largest tensile stresses** of roots, bore and holes likewise, relative to the same largest stress.
+- **Largest tensile stresses** of roots, bores and holes likewise, relative to the same largest stress.
 - **Shear stress** below contacts is compared, relative to the reference, where a contact carries over 5 % of the largest
   load of its kind. The model's is Hertz' with what the disc carries along the wall at the contact.
 """
@@ -37,11 +37,11 @@ class DiscStressAnswer:
     Attributes
     ----------
     parameter, stress : tuple of array
-        Places along flank, bore and each hole wall (θ or polar angle, rad) and the stress along the wall there, MPa.
+        Places along flank, each bore and each hole wall (θ or polar angle, rad) and the stress along the wall there, MPa.
     clear : tuple of array of bool
         Which places are clear of contacts.
     largest : dict of str to array
-        Largest tensile stress of each root ("flank"), the bore and each hole, MPa.
+        Largest tensile stress of each root ("flank"), each bore and each hole, MPa.
     shear : dict of str to array
         Largest shear stress in the disc below each contact, by kind, MPa; zero where it is not known.
     """
@@ -104,7 +104,7 @@ def stress_content(stress: DiscStress) -> dict[str, Any]:
         "clear": [clear.tolist() for clear in stress.clear],
         "largest": {
             "flank": plain(stress.root_stress),
-            "bore": plain(np.array([stress.bore_stress])),
+            "bore": plain(_bore_stresses(stress)),
             "holes": plain(stress.hole_stress),
         },
         "shear": {
@@ -113,6 +113,14 @@ def stress_content(stress: DiscStress) -> dict[str, Any]:
             "hole": stress.hole_shear.tolist(),
         },
     }
+
+
+def _bore_stresses(stress: DiscStress) -> FloatArray:
+    """Return the largest clear stress of each bore, MPa."""
+    if stress.bores == 1:
+        return np.array([stress.bore_stress])
+    walls = zip(stress.walls[1 : 1 + stress.bores], stress.clear[1 : 1 + stress.bores], strict=True)
+    return np.array([np.max(wall.stress[clear]) if clear.any() else np.nan for wall, clear in walls])
 
 
 def answer_of_content(content: dict[str, Any]) -> DiscStressAnswer:
@@ -143,12 +151,16 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
         "roller_outer": found.roller_contact,
         "hole": found.hole_contact,
     }
+    bores, cranks = found.bore[:, None], model.geometry.placement.cranks
+    if cranks > 1:  # the largest of all bores would hide the others
+        walls = wall_profiles(model, full.response, analysis.pressures, rotation)[1 : 1 + cranks]
+        bores = np.stack([wall.largest()[0] for wall in walls], axis=1)
     return [
         DiscStressAnswer(
             parameter=tuple(wall.parameter for wall in profiles),
             stress=tuple(wall.stress[row] for wall in profiles),
             clear=tuple(wall.clear[row] for wall in profiles),
-            largest={"flank": found.root[row], "bore": found.bore[row : row + 1], "holes": found.hole[row]},
+            largest={"flank": found.root[row], "bore": bores[row], "holes": found.hole[row]},
             shear={
                 kind: line_contact_shear(answer.kinds[kind].pressure, along[row]) for kind, along in contact.items()
             },
@@ -188,10 +200,13 @@ def compare_stresses(model: DiscStressAnswer, reference: DiscStressAnswer) -> Di
         )
     ]
     scale = float(np.nanmax(np.abs(np.concatenate(theirs))))
-    walls: dict[Region, slice] = {"flank": slice(0, 1), "bore": slice(1, 2), "holes": slice(2, None)}
-    stations = {region: _worst_station(model, theirs, own, scale) for region, own in walls.items()}
+    bores, count = len(model.largest["bore"]), len(model.stress)
+    walls: dict[Region, range] = {"flank": range(1), "bore": range(1, 1 + bores), "holes": range(1 + bores, count)}
+    stations = {region: _worst_station(model, theirs, own, scale) for region, own in walls.items() if own}
     largest = {
-        region: _worst_part(region, model.largest[region], reference.largest[region], scale) for region in REGIONS
+        region: _worst_part(region, model.largest[region], reference.largest[region], scale)
+        for region, own in walls.items()
+        if own
     }
     return DiscStressDifference(
         stations={region: found for region, found in stations.items() if np.isfinite(found.difference)},
@@ -200,31 +215,43 @@ def compare_stresses(model: DiscStressAnswer, reference: DiscStressAnswer) -> Di
     )
 
 
-def _worst_station(model: DiscStressAnswer, theirs: list[FloatArray], walls: slice, scale: float) -> ComparedStress:
-    apart = np.concatenate([own - other for own, other in zip(model.stress[walls], theirs[walls], strict=True)]) / scale
+def _worst_station(model: DiscStressAnswer, theirs: list[FloatArray], walls: range, scale: float) -> ComparedStress:
+    apart = np.concatenate([model.stress[number] - theirs[number] for number in walls]) / scale
+    bores = len(model.largest["bore"])
     names = [
-        f"{wall_name(number)} at {np.degrees(place):.1f}°"
-        for number, parameter in enumerate(model.parameter)
-        if number in range(len(model.parameter))[walls]
-        for place in parameter
+        f"{wall_name(number, bores)} at {np.degrees(place):.1f}°"
+        for number in walls
+        for place in model.parameter[number]
     ]
     place, difference = worst(apart)
     return ComparedStress(
         place=names[place],
-        value=float(np.concatenate(model.stress[walls])[place]),
-        reference=float(np.concatenate(theirs[walls])[place]),
+        value=float(np.concatenate([model.stress[number] for number in walls])[place]),
+        reference=float(np.concatenate([theirs[number] for number in walls])[place]),
         difference=difference,
     )
 
 
-def wall_name(number: int) -> str:
-    """Return the name of a wall as rows give it."""
-    return ("flank", "bore")[number] if number < 2 else f"hole {number - 2}"
+def wall_name(number: int, bores: int = 1) -> str:
+    """Return the name of a wall as rows give it: flank, then each bore by its crank, then each hole.
+
+    Examples
+    --------
+    >>> wall_name(1), wall_name(2), wall_name(2, bores=3), wall_name(4, bores=3)
+    ('bore', 'hole 0', 'bore of crank 1', 'hole 0')
+    """
+    if number == 0:
+        return "flank"
+    return _bore_name(number - 1, bores) if number <= bores else f"hole {number - 1 - bores}"
+
+
+def _bore_name(crank: int, bores: int) -> str:
+    return "bore" if bores == 1 else f"bore of crank {crank}"
 
 
 def _worst_part(region: Region, model: FloatArray, reference: FloatArray, scale: float) -> ComparedStress:
     place, difference = worst((model - reference) / scale)
-    name = {"flank": f"root {place}", "bore": "bore", "holes": f"hole {place}"}[region]
+    name = {"flank": f"root {place}", "bore": _bore_name(place, model.size), "holes": f"hole {place}"}[region]
     return ComparedStress(
         place=name, value=float(model[place]), reference=float(reference[place]), difference=difference
     )

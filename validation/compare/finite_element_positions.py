@@ -314,9 +314,11 @@ def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> Posi
             half_width=np.array(summary[f"{width}_mm"][disc], dtype=float),
         )
 
+    discs = len(summary["pin_load_N"])
+
     def own(name: str) -> Any:
-        """What a disc has one of is a list only where there are several."""
-        return summary[name][disc] if isinstance(summary[name], list) else summary[name]
+        """What a disc has one of is a list by disc only where there are several."""
+        return summary[name][disc] if discs > 1 else summary[name]
 
     shift = own("disc_displacement")
     direction = Placement.of_drive(single).eccentric_direction(np.asarray(summary["crank_angle_rad"]))
@@ -328,8 +330,8 @@ def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> Posi
             "roller_inner": kind("roller_load_inner", "roller_pressure_max_inner", "roller_half_width_inner"),
             "hole": kind("pin_shaft_load", "pin_shaft_pressure_max", "pin_shaft_half_width"),
         },
-        bearing_radial=float(own("bearing_radial_N")),
-        bearing_tangential=float(own("bearing_tangential_N")),
+        bearing_radial=np.array(own("bearing_radial_N"), dtype=float, ndmin=1),
+        bearing_tangential=np.array(own("bearing_tangential_N"), dtype=float, ndmin=1),
         wheel_angle=float(summary["wheel_angle_rad"]),
         disc_radial=float(along.real),
         disc_tangential=float(along.imag),

@@ -86,8 +86,8 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
                 kind: KindAnswer(load=load[row], pressure=pressure[row], half_width=width[row])
                 for kind, (load, pressure, width) in columns.items()
             },
-            bearing_radial=float(analysis.bearing_radial[row, 0, 0]),
-            bearing_tangential=float(analysis.bearing_tangential[row, 0, 0]),
+            bearing_radial=analysis.bearing_radial[row, 0],
+            bearing_tangential=analysis.bearing_tangential[row, 0],
             wheel_angle=float(full.pose[row, 3]),
             disc_radial=float(displacement[row].real),
             disc_tangential=float(displacement[row].imag),

@@ -28,7 +28,7 @@ from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.drive.single_discs import single_discs
-from ltca.geometry.placement import position_angles
+from ltca.geometry.placement import Placement, position_angles
 from ltca.laws.line_contact import LineContactLaw
 from validation.rows import Row, relative_row
 
@@ -249,20 +249,26 @@ def _ball() -> list[Row]:
 
 
 def _power(drive: Drive) -> list[Row]:
-    """Work of crank and wheel over whole periods of the flank: mean tangential bearing load T/(u e) of what a disc carries."""
+    """Work of cranks and wheel over whole periods of the flank: mean tangential bearing load T/(u e) of what a disc carries.
+
+    Several cranks turn together: their loads count by their eccentricities.
+    """
     analysis = analyse(drive, position_angles(360))
-    count = drive.disc.number_of_discs
+    count, cranks = drive.disc.number_of_discs, drive.crank.number
     rows = []
     for number, single in enumerate(single_discs(drive)):
         moment = abs(drive.wheel_moment())
         if count > 1 or drive.wheel_is_held:
             moment = abs(float(np.mean(analysis.disc_torques[:, number])))
-        eccentricity = drive.crank.eccentricity + single.crank.eccentricity_error
+        eccentricities = Placement.of_drive(single).eccentricity
+        eccentricity = float(np.mean(eccentricities))
+        tangential = analysis.bearing_tangential[:, number] * (eccentricities / eccentricity)
+        of = (", sum of all cranks" if cranks > 1 else "") + (f", disc {number}" if count > 1 else "")
         rows.append(
             relative_row(
                 1,
-                "mean tangential bearing load over one turn" + (f", disc {number}" if count > 1 else ""),
-                float(np.mean(analysis.bearing_tangential[:, number])) * drive.driving_sign,
+                f"mean tangential bearing load over one turn{of}",
+                float(np.mean(tangential)) * cranks * drive.driving_sign,
                 moment / (drive.reduction_ratio * eccentricity),
                 "N",
                 5e-4,

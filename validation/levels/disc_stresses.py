@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from validation.compare.compared_positions import ComparedPosition
-from validation.compare.comparison import contact_name
 from validation.compare.disc_stresses import REGIONS, ComparedStress, Region
 from validation.levels.positions import FULL
 from validation.rows import Row
@@ -35,15 +34,17 @@ def disc_stress_rows(compared: ComparedPosition) -> list[Row]:
         rows += [
             _row(compared, model, f"stress along {NAMES[region]}, worst station", difference.stations[region], "wall")
             for region in REGIONS
+            if region in difference.stations  # a disc without holes, or a wall under contacts all along
         ]
         rows += [
             _row(compared, model, f"largest tensile stress, {PARTS[region]}, worst", difference.largest[region], "wall")
             for region in REGIONS
+            if region in difference.largest
         ]
         for kind, contacts in difference.shear.items():
             rows += [
                 _row(compared, model, "largest shear stress in the disc below a contact", found, "shear",
-                     contact=contact_name(kind, number))
+                     contact=compared.full.answer.contact_name(kind, number))
                 for number, found in contacts.items()
             ]  # fmt: skip
     return rows

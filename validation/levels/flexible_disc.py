@@ -39,7 +39,7 @@ class TurnFigures:
     Attributes
     ----------
     pin_load, roller_load, shaft_load : float
-        Largest loads, N.
+        Largest loads, N; not a number without shaft pins.
     pin_pressure, roller_pressure : float
         Largest pressures at mid-width, MPa.
     wind_up : float
@@ -79,7 +79,7 @@ def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
     return TurnFigures(
         pin_load=float(np.max(response.pin_load)),
         roller_load=float(np.max(response.rollers.outer_load)),
-        shaft_load=float(np.max(response.hole_load)),
+        shaft_load=float(np.max(response.hole_load)) if response.hole_load.size else float("nan"),
         pin_pressure=float(np.max(pressures.pins.mid)),
         roller_pressure=float(max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))),
         wind_up=float(np.mean(-wheel)) * analysis.drive.driving_sign,
@@ -97,7 +97,7 @@ class FlexibilityEffect:
     turn : dict of str to TurnFigures
         By model, at the drive's torque.
     by_torque : dict of float to dict of str to float
-        Change of the three largest loads from half-space to ``fe``, by multiple of the torque.
+        Change of the largest loads from half-space to ``fe``, of the kinds that are there, by multiple of the torque.
     """
 
     turn: dict[str, TurnFigures]
@@ -126,7 +126,9 @@ def study_case(drive: Drive, coefficients: DiscCoefficients) -> FlexibilityEffec
             for model in (MODELS[0], MODELS[1])
         )
         by_torque[multiple] = {
-            name: getattr(fe, name) / getattr(half, name) - 1.0 for name in ("pin_load", "roller_load", "shaft_load")
+            name: getattr(fe, name) / getattr(half, name) - 1.0
+            for name in ("pin_load", "roller_load", "shaft_load")
+            if np.isfinite(getattr(half, name))
         }
     return FlexibilityEffect(turn=turn, by_torque=by_torque)
 
@@ -138,6 +140,8 @@ def flexibility_rows(case: str, effect: FlexibilityEffect) -> list[Row]:
     for model in ("half-space", "hybrid"):
         for name, (title, unit) in TITLES.items():
             value, other = float(getattr(effect.turn[model], name)), float(getattr(reference, name))
+            if np.isnan(other):
+                continue
             cause = CAUSE if model == "half-space" else "finite length at the contacts: informs only"
             rows.append(relative_row(6, title, value, other, unit, None, cause, case=case, model=model, against="fe"))
     for multiple, changes in effect.by_torque.items():
@@ -156,7 +160,11 @@ def full_solution_changes(compared: list[ComparedPosition]) -> dict[str, float]:
     half = [position.answers["half-space"] for position in compared]
     full = [position.full.answer for position in compared]
     kinds: dict[str, Kind] = {"pin_load": "pin", "roller_load": "roller_outer", "pin_shaft_load": "hole"}
-    return {name: largest(full, kind) / largest(half, kind) - 1.0 for name, kind in kinds.items()}
+    return {
+        name: largest(full, kind) / largest(half, kind) - 1.0
+        for name, kind in kinds.items()
+        if full[0].kinds[kind].load.size
+    }
 
 
 def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]:
@@ -214,7 +222,10 @@ def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
         changes = {
             case: getattr(item.turn["fe"], name) / getattr(item.turn["half-space"], name) - 1.0
             for case, item in effects.items()
+            if np.isfinite(getattr(item.turn["fe"], name))
         }
+        if not changes:
+            continue
         low, high = min(changes.values()), max(changes.values())
         safe = [case for case, change in changes.items() if abs(change) <= SAFE]
         under = [case for case, change in changes.items() if change > SAFE]

@@ -61,7 +61,7 @@ def _uncoupled(drive: Drive, case: str, crank_angles: FloatArray) -> list[Row]:
         (first.rollers.outer_load, second.rollers.outer_load),
         (first.hole_load, second.hole_load),
     )
-    worst = max(float(np.max(np.abs(a - b)) / np.max(a)) for a, b in pairs)
+    worst = max(float(np.max(np.abs(a - b)) / np.max(a)) for a, b in pairs if a.size)
     return [
         Row(
             level=5,
@@ -203,7 +203,9 @@ def _plane_stress(
                 difference=load,
                 limit=None,
                 reason=cause,
-                contact=f"{kind.replace('_', ' ')} {number}",
+                contact=f"{kind.replace('_', ' ')} {number}"
+                if drive.crank.number == 1
+                else apart.contact_name(kind, number),
                 **place,
             ),
             Row(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ltca.drive.parts import Drive
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import (
     ARCSECONDS,
@@ -12,7 +13,6 @@ from validation.compare.comparison import (
     Kind,
     PositionAnswer,
     PositionDifference,
-    contact_name,
 )
 from validation.rows import Row
 
@@ -93,7 +93,7 @@ def _contact_rows(compared: ComparedPosition, model: str) -> list[Row]:
     for kind in KINDS:
         own, other, apart = answer.kinds[kind], reference.kinds[kind], difference.kinds[kind]
         for number in np.flatnonzero((own.load > 0.0) | (other.load > 0.0)).tolist():
-            name = contact_name(kind, number)
+            name = reference.contact_name(kind, number)
             rows.append(
                 make.row(
                     "load", float(own.load[number]), float(other.load[number]), "N", float(apart.load[number]),
@@ -118,7 +118,7 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
     make = _Maker(compared, model)
     answer, reference, difference = compared.answers[model], compared.full.answer, compared.differences[model]
     wheel = compared.drive.pin_wheel.pin_circle_radius
-    shaft = wheel if compared.drive.pin_shaft is None else compared.drive.pin_shaft.pin_circle_radius
+    lever, levers = _rotation_lever(compared.drive)
     travel = WHEEL_LIMIT / ARCSECONDS * wheel
     rms = max(kind.rms_load for kind in difference.kinds.values())
     rows = [
@@ -134,8 +134,8 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
         ),
         make.row(
             "disc rotation", answer.disc_rotation * ARCSECONDS, reference.disc_rotation * ARCSECONDS, '"',
-            difference.disc_rotation, WHEEL_LIMIT * wheel / shaft,
-            "as the wheel's, at the shorter lever of the shaft pins", difference_unit='"',
+            difference.disc_rotation, WHEEL_LIMIT * wheel / lever,
+            f"as the wheel's, at the shorter lever of {levers}", difference_unit='"',
         ),
         make.row(
             "contacts loaded in one answer only", float(len(difference.missing)), 0.0, "",
@@ -146,6 +146,8 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
     ]  # fmt: skip
     names: dict[Kind, str] = {"pin": "wheel pins", "roller_outer": "rollers", "hole": "shaft pins"}
     for kind, name in names.items():
+        if reference.kinds[kind].load.size == 0:
+            continue
         ours, theirs = answer.loaded(kind), reference.loaded(kind)
         faint = _faint(answer, kind) + _faint(reference, kind)
         rows.append(
@@ -158,16 +160,30 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
     return rows
 
 
+def _rotation_lever(drive: Drive) -> tuple[float, str]:
+    """Return the radius at which a disc is held against rotation, the longest where pins and cranks do, and its name."""
+    shaft, circle = drive.pin_shaft, drive.crank.circle_radius or 0.0
+    if shaft is not None and shaft.pin_circle_radius >= circle:
+        return shaft.pin_circle_radius, "the shaft pins"
+    return circle, "the cranks"
+
+
 def _bearing_rows(
     make: _Maker, answer: PositionAnswer, reference: PositionAnswer, difference: PositionDifference
 ) -> list[Row]:
+    cranks = reference.bearing_radial.size
     reason = "of the bearing force; a sum of roller loads"
-    return [
-        make.row("bearing force, radial", answer.bearing_radial, reference.bearing_radial, "N",
-                 difference.bearing_radial, LOAD_LIMIT, reason),
-        make.row("bearing force, tangential", answer.bearing_tangential, reference.bearing_tangential, "N",
-                 difference.bearing_tangential, LOAD_LIMIT, reason),
-    ]  # fmt: skip
+    if cranks > 1:
+        reason = "of the largest bearing force of all cranks; a sum of roller loads"
+    rows = []
+    for crank in range(cranks):
+        place = "" if cranks == 1 else f"crank {crank}"
+        for way in ("radial", "tangential"):
+            ours, theirs, apart = (
+                float(getattr(found, f"bearing_{way}")[crank]) for found in (answer, reference, difference)
+            )
+            rows.append(make.row(f"bearing force, {way}", ours, theirs, "N", apart, LOAD_LIMIT, reason, contact=place))
+    return rows
 
 
 def _length(answer: PositionAnswer) -> float:
@@ -176,7 +192,7 @@ def _length(answer: PositionAnswer) -> float:
 
 def _faint(answer: PositionAnswer, kind: Kind) -> int:
     load = answer.kinds[kind].load
-    return int(np.count_nonzero((load > 0.0) & (load <= LOADED_SHARE * np.max(load))))
+    return int(np.count_nonzero((load > 0.0) & (load <= LOADED_SHARE * np.max(load, initial=0.0))))
 
 
 def _interpolation_row(compared: ComparedPosition) -> Row:
@@ -186,7 +202,7 @@ def _interpolation_row(compared: ComparedPosition) -> Row:
         apart = compared.differences["fe"].kinds[kind]
         for number in np.flatnonzero((distance >= BETWEEN_STATIONS) & apart.compared).tolist():
             if abs(apart.load[number]) >= abs(worst):
-                worst, name = float(apart.load[number]), contact_name(kind, number)
+                worst, name = float(apart.load[number]), compared.full.answer.contact_name(kind, number)
                 ours = float(compared.answers["fe"].kinds[kind].load[number])
                 theirs = float(compared.full.answer.kinds[kind].load[number])
     return _Maker(compared, "fe").row(
@@ -219,9 +235,9 @@ def shared_file_rows(positions: list[ComparedPosition]) -> list[Row]:
         pressed, place, pressure = difference.worst_pressure
         own, other = position.answers["fe"], position.full.answer
         for quantity, contact, ours, theirs, unit, change, change_unit in (
-            ("load, worst contact", contact_name(kind, number), own.kinds[kind].load[number],
+            ("load, worst contact", difference.contact_name(kind, number), own.kinds[kind].load[number],
              other.kinds[kind].load[number], "N", load, ""),
-            ("peak pressure at mid-width, worst contact", contact_name(pressed, place),
+            ("peak pressure at mid-width, worst contact", difference.contact_name(pressed, place),
              own.kinds[pressed].pressure[place], other.kinds[pressed].pressure[place], "MPa", pressure, ""),
             ("wheel angle", "", own.wheel_angle * ARCSECONDS, other.wheel_angle * ARCSECONDS, '"',
              difference.wheel_angle, '"'),

@@ -8,7 +8,7 @@ from typing import Any
 
 from ltca.output.files import whole_file, write_json
 from validation.compare.compared_positions import ComparedPosition
-from validation.compare.comparison import PositionDifference, contact_name
+from validation.compare.comparison import PositionDifference
 from validation.compare.model_positions import MODELS
 from validation.levels.flexible_disc import full_solution_changes
 from validation.rows import LEVELS, failed_rows, rounded
@@ -33,7 +33,8 @@ def headline(study: Study) -> dict[str, Any]:
     dict
         ``worst_difference_from_full_fe``: by compliance model the largest load difference (of the largest load of its
         kind), pressure difference (relative) and wheel-angle difference (arc seconds), each with its place;
-        ``change_half_space_to_full_fe``: by case, relative change of the largest pin, roller and pin-shaft load.
+        ``change_half_space_to_full_fe``: by case, relative change of the largest pin, roller and pin-shaft load
+        that it has.
     """
     positions = [item for case in study.compared.values() for item in case]
     return {
@@ -61,8 +62,11 @@ def _worst(positions: list[ComparedPosition], model: str) -> dict[str, Any]:
     kind, number, of_load = difference(load).worst_load
     pressed, at, of_pressure = difference(pressure).worst_pressure
     return {
-        "load": {"difference": rounded(of_load), **place(load, contact_name(kind, number))},
-        "pressure": {"difference": rounded(of_pressure), **place(pressure, contact_name(pressed, at))},
+        "load": {"difference": rounded(of_load), **place(load, difference(load).contact_name(kind, number))},
+        "pressure": {
+            "difference": rounded(of_pressure),
+            **place(pressure, difference(pressure).contact_name(pressed, at)),
+        },
         "wheel_angle": {"difference_arcsec": rounded(difference(wheel).wheel_angle), **place(wheel)},
     }
 

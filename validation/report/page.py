@@ -96,7 +96,7 @@ def _context(study: Study) -> dict[str, Any]:
         "headline": head,
         "worst": [_worst_line(model, head["worst_difference_from_full_fe"][model]) for model in MODELS],
         "changes": [
-            (case, *(_signed_percent(values[name]) for name in ("pin_load", "roller_load", "pin_shaft_load")))
+            (case, *(_signed_percent(values.get(name)) for name in ("pin_load", "roller_load", "pin_shaft_load")))
             for case, values in head["change_half_space_to_full_fe"].items()
         ],
         "sentences": judge_half_space(study.flexibility),
@@ -137,6 +137,8 @@ def _turn_table(case: str, content: dict[str, dict[str, float | None]]) -> dict[
     lines = []
     for name, (title, unit) in TITLES.items():
         values = [content[model][name] for model in MODELS]
+        if all(value is None for value in values):  # no shaft pins
+            continue
         half, fe = content["half-space"][name], content["fe"][name]
         lines.append(
             (

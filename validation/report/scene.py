@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ltca.drive.parts import Drive
 from ltca.geometry.pairs import ContactGeometry
 from validation.compare.compared_positions import ComparedPosition
-from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer, contact_name
+from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
 from validation.rows import rounded
 
 FloatArray = NDArray[np.float64]
@@ -18,6 +18,9 @@ ComplexArray = NDArray[np.complex128]
 
 POINTS_PER_LOBE = 36
 DIGITS = 4
+
+Line: TypeAlias = tuple[str, int, float | None]
+"""Title, digits behind the point and value of one line of a table."""
 
 
 def drive_scene(drive: Drive) -> dict[str, Any]:
@@ -28,7 +31,7 @@ def drive_scene(drive: Drive) -> dict[str, Any]:
     outline = geometry.profile.flank(2.0 * np.pi * np.arange(count) / count)
     return {
         "outline": _points(outline),
-        "bore": rounded(drive.bore_radius),
+        "bores": _circles(place.bore_centres, np.full(place.cranks, drive.bore_radius)),
         "race": rounded(drive.crank_bearing.inner_race_radius),
         "holes": _circles(place.hole_centres, place.hole_radii),
         "reach": rounded(1.1 * float(np.max(np.abs(place.wheel_pin_centres) + place.wheel_pin_radii))),
@@ -53,7 +56,7 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
     parts = _places(compared)
     contacts = [
         {
-            "name": contact_name(kind, number),
+            "name": compared.full.answer.contact_name(kind, number),
             "kind": kind,
             "at": _point(centres[number] + radii[number] * towards[number]),
             "to": _point(towards[number]),
@@ -62,18 +65,18 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
         for kind, (centres, radii, towards) in parts.items()
         for number in _loaded(list(answers.values()), kind)
     ]
-    full = compared.full.answer
-    race = ContactGeometry.of_drive(compared.drive).placement.race_centre(np.array([compared.full.crank_angle]))[0]
+    full, place = compared.full.answer, ContactGeometry.of_drive(compared.drive).placement
+    races = place.race_centres(np.array([compared.full.crank_angle]))[0]
     return {
         "case": compared.full.case,
         "angle": rounded(compared.full.crank_angle),
         "disc": [*_point(_disc_centre(compared)), rounded(full.disc_rotation)],
-        "race": _point(race),
+        "cranks": [[*_point(axis), *_point(race)] for axis, race in zip(place.crank_axes, races, strict=True)],
         "pins": _circles(*parts["pin"][:2]),
         "rollers": _circles(*parts["roller_outer"][:2]),
         "shafts": _circles(*parts["hole"][:2]),
         "contacts": contacts,
-        "totals": {model: _totals(answer) for model, answer in answers.items()},
+        "totals": _totals(answers),
         "unknowns": compared.full.unknowns,
     }
 
@@ -99,11 +102,11 @@ def _places(compared: ComparedPosition) -> dict[Kind, tuple[ComplexArray, FloatA
     shift = disc - complex(place.race_centre(angle)[0])
     pose = np.array([[shift.real, shift.imag, answer.disc_rotation, answer.wheel_angle]])
     flank = geometry.flank(angle, pose)
-    rays = geometry.rollers(angle).direction[0]
-    roller_centres = place.race_centre(angle)[0] + (place.inner_race_radius + place.roller_radii) * rays
+    rays, cranks = geometry.rollers(angle).direction[0], place.roller_cranks
+    roller_centres = place.race_centres(angle)[0][cranks] + (place.inner_race_radius + place.roller_radii) * rays
     pins = place.wheel_pin_centres * np.exp(1j * (place.wheel_rotation(angle)[0] + answer.wheel_angle))
     play = place.shaft_pin_centres - (disc + turn * place.hole_centres)
-    outward = roller_centres - disc
+    outward = roller_centres - (disc + turn * place.bore_centres)[cranks]
     return {
         "pin": (pins, place.wheel_pin_radii, -geometry.profile.normal(flank.parameter[0]) * turn),
         "roller_outer": (roller_centres, place.roller_radii, outward / np.abs(outward)),
@@ -122,17 +125,38 @@ def _numbers(answer: PositionAnswer, kind: Kind, number: int) -> list[float | No
     ]
 
 
-def _totals(answer: PositionAnswer) -> list[float | None]:
+def _totals(answers: dict[str, PositionAnswer]) -> list[dict[str, Any]]:
+    """Return the lines of the table of what a position has one of, bearing forces of each crank."""
+    found: dict[str, list[Line]] = {model: _total_lines(answer) for model, answer in answers.items()}
     return [
-        rounded(answer.wheel_angle * ARCSECONDS),
-        _short(answer.bearing_radial),
-        _short(answer.bearing_tangential),
-        _short(1e3 * answer.disc_radial),
-        _short(1e3 * answer.disc_tangential),
-        _short(answer.disc_rotation * ARCSECONDS),
-        float(answer.loaded("pin")),
-        float(answer.loaded("roller_outer")),
-        float(answer.loaded("hole")),
+        {"title": title, "digits": digits, "models": {model: lines[number][2] for model, lines in found.items()}}
+        for number, (title, digits, _) in enumerate(next(iter(found.values())))
+    ]
+
+
+def _total_lines(answer: PositionAnswer) -> list[Line]:
+    cranks = answer.bearing_radial.size
+    names = [""] if cranks == 1 else [f" of crank {crank}" for crank in range(cranks)]
+    bearings: list[Line] = []
+    for name, radial, tangential in zip(
+        names, answer.bearing_radial.tolist(), answer.bearing_tangential.tolist(), strict=True
+    ):
+        bearings += [
+            (f"bearing{name}, radial, N", 0, _short(radial)),
+            (f"bearing{name}, tangential, N", 0, _short(tangential)),
+        ]
+    counted: dict[str, Kind] = {"pins": "pin", "rollers": "roller_outer", "shaft pins": "hole"}
+    return [
+        ("wheel angle, ″", 2, rounded(answer.wheel_angle * ARCSECONDS)),
+        *bearings,
+        ("disc, radial, µm", 2, _short(1e3 * answer.disc_radial)),
+        ("disc, tangential, µm", 2, _short(1e3 * answer.disc_tangential)),
+        ("disc rotation, ″", 2, _short(answer.disc_rotation * ARCSECONDS)),
+        *(
+            (f"loaded {name}", 0, float(answer.loaded(kind)))
+            for name, kind in counted.items()
+            if answer.kinds[kind].load.size
+        ),
     ]
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from validation.compare.compared_positions import _station_distances
 
 
-def boundary(count):
-    return SimpleNamespace(count=count)
+def boundary(count, offset=0.0):
+    return SimpleNamespace(count=count, offset=offset)
 
 
 def test_distances_are_parts_of_a_spacing_in_the_frame_of_the_disc():

@@ -31,8 +31,8 @@ def kind(load, pressure=None, half_width=None):
 def answer():
     return PositionAnswer(
         kinds={name: kind([0.0, 100.0, 400.0]) for name in KINDS},
-        bearing_radial=300.0,
-        bearing_tangential=400.0,
+        bearing_radial=np.array([300.0]),
+        bearing_tangential=np.array([400.0]),
         wheel_angle=-2e-3,
         disc_radial=0.01,
         disc_tangential=-0.02,
@@ -103,7 +103,7 @@ def test_positions(answer):
     other = replace(
         answer,
         kinds=answer.kinds | {"hole": kind([0.0, 100.0, 380.0])},
-        bearing_radial=305.0,
+        bearing_radial=np.array([305.0]),
         wheel_angle=answer.wheel_angle - 0.25 * second,
         disc_radial=0.013,
         disc_tangential=-0.016,

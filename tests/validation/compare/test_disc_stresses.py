@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from validation.compare.comparison import contact_name
 from validation.compare.disc_stresses import DiscStressAnswer, compare_stresses
 from validation.levels.disc_stresses import SHEAR_LIMIT, WALL_LIMIT, disc_stress_rows
 from validation.rows import failed_rows
@@ -82,8 +83,9 @@ def test_another_disc_is_refused():
 
 
 def rows_of(model, other):
+    names = SimpleNamespace(contact_name=contact_name)
     compared = SimpleNamespace(
-        full=SimpleNamespace(case="CS-1", crank_angle=0.5), stress={model: compare_stresses(other, REFERENCE)}
+        full=SimpleNamespace(case="CS-1", crank_angle=0.5, answer=names), stress={model: compare_stresses(other, REFERENCE)}
     )
     return disc_stress_rows(compared)
 

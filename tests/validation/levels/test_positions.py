@@ -18,7 +18,8 @@ SECOND = np.pi / 648_000.0
 def answer(load=LOADS):
     kind = KindAnswer(load=load, pressure=50.0 * np.sqrt(load), half_width=0.01 * np.sqrt(load))
     return PositionAnswer(
-        kinds=dict.fromkeys(KINDS, kind), bearing_radial=300.0, bearing_tangential=400.0, wheel_angle=-400.0 * SECOND,
+        kinds=dict.fromkeys(KINDS, kind), bearing_radial=np.array([300.0]), bearing_tangential=np.array([400.0]),
+        wheel_angle=-400.0 * SECOND,
         disc_radial=0.003, disc_tangential=-0.004, disc_rotation=80.0 * SECOND,
     )  # fmt: skip
 
@@ -63,7 +64,7 @@ def test_rows_of_contacts(paper_cases):
 def test_rows_of_bodies(paper_cases):
     model = replace(
         answer(), wheel_angle=-400.2 * SECOND, disc_radial=0.0035, disc_tangential=-0.0052,
-        disc_rotation=80.3 * SECOND, bearing_radial=301.0, bearing_tangential=402.0,
+        disc_rotation=80.3 * SECOND, bearing_radial=np.array([301.0]), bearing_tangential=np.array([402.0]),
     )  # fmt: skip
     rows = {row.quantity: row for row in _body_rows(compared(paper_cases, model), "fe")}
     wheel = rows["wheel angle"]

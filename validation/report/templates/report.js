@@ -4,7 +4,6 @@
   const NS = "http://www.w3.org/2000/svg";
   const FULL = data.models[0];
   const COLOURS = { "full FE": "#7b8794", "half-space": "#c2571a", "fe": "#1f5fa8", "hybrid": "#2a7d4f" };
-  const TOTALS = ["wheel angle, ″", "bearing, radial, N", "bearing, tangential, N", "disc, radial, µm", "disc, tangential, µm", "disc rotation, ″", "loaded pins", "loaded rollers", "loaded shaft pins"];
   const cases = Object.keys(data.drives);
   const largest = Math.max(...data.positions.flatMap(p => p.contacts.flatMap(c => data.models.map(m => c.models[m][0] || 0))));
   const view = { kase: cases[0], index: 0, model: data.models[1] };
@@ -38,17 +37,23 @@
     const thin = reach / 400;
     const circle = (x, y, r) => `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0Z`;
     const outline = "M" + scene.outline.map(p => p.join(",")).join("L") + "Z";
-    const openings = circle(0, 0, scene.bore) + scene.holes.map(h => circle(h[0], h[1], h[2])).join("");
+    const openings = [...scene.bores, ...scene.holes].map(h => circle(h[0], h[1], h[2])).join("");
     const turn = now.disc[2] / 3600;
     node("path", { d: outline + openings, "fill-rule": "evenodd", fill: "#e6ecf2", stroke: "#8796a5", "stroke-width": thin, transform: `translate(${now.disc[0]},${now.disc[1]}) rotate(${turn})` }, world);
-    node("circle", { cx: now.race[0], cy: now.race[1], r: scene.race, fill: "#f2f0ea", stroke: "#b3aa93", "stroke-width": thin }, world);
-    for (const [list, fill] of [[now.pins, "#d7dde3"], [now.rollers, "#e9e3d3"], [now.shafts, "#dbe5dc"]])
+    for (const [, , x, y] of now.cranks)
+      node("circle", { class: "race", cx: x, cy: y, r: scene.race, fill: "#f2f0ea", stroke: "#b3aa93", "stroke-width": thin }, world);
+    const rollers = now.rollers.length / now.cranks.length; // numbered in every bearing anew
+    for (const [list, fill, each] of [[now.pins, "#d7dde3"], [now.rollers, "#e9e3d3", rollers], [now.shafts, "#dbe5dc"]])
       list.forEach((c, i) => {
         node("circle", { cx: c[0], cy: c[1], r: c[2], fill: fill, stroke: "#97a3af", "stroke-width": thin }, world);
-        node("text", { x: c[0], y: -c[1], dy: "0.35em", "font-size": Math.min(1.1 * c[2], 15 * thin), "text-anchor": "middle", fill: "#66727e", transform: "scale(1,-1)" }, world, String(i));
+        node("text", { x: c[0], y: -c[1], dy: "0.35em", "font-size": Math.min(1.1 * c[2], 15 * thin), "text-anchor": "middle", fill: "#66727e", transform: "scale(1,-1)" }, world, String(each ? i % each : i));
       });
-    node("path", { d: `M0,0L${now.race[0]},${now.race[1]}`, stroke: "#333", "stroke-width": 2 * thin }, world);
-    node("circle", { cx: 0, cy: 0, r: 3 * thin, fill: "#333" }, world);
+    now.cranks.forEach(([axis, up, x, y], i) => {
+      node("path", { d: `M${axis},${up}L${x},${y}`, stroke: "#333", "stroke-width": 2 * thin }, world);
+      node("circle", { cx: axis, cy: up, r: 3 * thin, fill: "#333" }, world);
+      if (now.cranks.length > 1)
+        node("text", { x: x, y: -y, dy: "2em", "font-size": 13 * thin, "text-anchor": "middle", fill: "#66727e", transform: "scale(1,-1)" }, world, `crank ${i}`);
+    });
     const longest = 0.3 * reach;
     for (const contact of now.contacts) {
       if (contact.kind === "roller_inner") continue;
@@ -99,7 +104,8 @@
 
   function drawBars() {
     const svg = el("bars"), now = position(), list = now.contacts.filter(c => c.kind !== "roller_inner");
-    const row = 12 * data.models.length / 2 + 12, left = 108, width = 520, top = 22;
+    const row = 12 * data.models.length / 2 + 12, width = 520, top = 22;
+    const left = Math.max(108, 6.6 * Math.max(...list.map(c => c.name.length)));
     svg.replaceChildren();
     svg.setAttribute("viewBox", `0 0 ${width} ${top + list.length * row + 4}`);
     let x = left;
@@ -127,7 +133,7 @@
   function fillTables() {
     const now = position();
     const head = "<thead><tr><th></th>" + data.models.map(m => `<th>${m}</th>`).join("") + "</tr></thead>";
-    el("totals").innerHTML = head + "<tbody>" + TOTALS.map((title, i) => `<tr><th scope="row">${title}</th>` + data.models.map(m => `<td>${i >= 6 ? number(now.totals[m][i], 0) : number(now.totals[m][i], i === 1 || i === 2 ? 0 : 2)}</td>`).join("") + "</tr>").join("") + "</tbody>";
+    el("totals").innerHTML = head + "<tbody>" + now.totals.map(line => `<tr><th scope="row">${line.title}</th>` + data.models.map(m => `<td>${number(line.models[m], line.digits)}</td>`).join("") + "</tr>").join("") + "</tbody>";
     el("contacts").innerHTML = "<thead><tr><th>contact</th>" + data.models.map(m => `<th>${m}: N</th><th>MPa</th><th>µm</th>`).join("") + "</tr></thead><tbody>" +
       now.contacts.map(c => `<tr><th scope="row">${c.name}</th>` + data.models.map(m => c.models[m].map((v, i) => `<td>${number(v, i === 2 || v < 100 ? 1 : 0)}</td>`).join("")).join("") + "</tr>").join("") + "</tbody>";
   }
