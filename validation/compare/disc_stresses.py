@@ -219,7 +219,7 @@ def _worst_station(model: DiscStressAnswer, theirs: list[FloatArray], walls: ran
     apart = np.concatenate([model.stress[number] - theirs[number] for number in walls]) / scale
     bores = len(model.largest["bore"])
     names = [
-        f"{wall_name(number, bores)} at {np.degrees(place):.1f}°"
+        f"{wall_name(number, bores)} at {np.degrees(place) % 360.0:.1f}°"
         for number in walls
         for place in model.parameter[number]
     ]

@@ -85,7 +85,8 @@ def test_another_disc_is_refused():
 def rows_of(model, other):
     names = SimpleNamespace(contact_name=contact_name)
     compared = SimpleNamespace(
-        full=SimpleNamespace(case="CS-1", crank_angle=0.5, answer=names), stress={model: compare_stresses(other, REFERENCE)}
+        full=SimpleNamespace(case="CS-1", crank_angle=0.5, answer=names),
+        stress={model: compare_stresses(other, REFERENCE)},
     )
     return disc_stress_rows(compared)
 

@@ -38,7 +38,7 @@ def stress_of(solution):
         name="flank", parameter=np.array([0.0, 1.0]), points=np.array([1.0, 1j]), stress=np.array([3.0, 0.1])
     )
     return DiscStress(
-        walls=(wall,), clear=(np.array([True, False]),), root_stress=np.array([3.0, np.nan]), bore_stress=1.5,
+        walls=(wall,) * 10, clear=(np.array([True, False]),) * 10, root_stress=np.array([3.0, np.nan]), bore_stress=1.5,
         hole_stress=np.ones(8), pin_shear=np.arange(14.0), roller_shear=np.zeros(11), hole_shear=np.zeros(8),
     )  # fmt: skip
 

@@ -38,7 +38,7 @@
     const circle = (x, y, r) => `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0Z`;
     const outline = "M" + scene.outline.map(p => p.join(",")).join("L") + "Z";
     const openings = [...scene.bores, ...scene.holes].map(h => circle(h[0], h[1], h[2])).join("");
-    const turn = now.disc[2] / 3600;
+    const turn = now.disc[2] * 180 / Math.PI;
     node("path", { d: outline + openings, "fill-rule": "evenodd", fill: "#e6ecf2", stroke: "#8796a5", "stroke-width": thin, transform: `translate(${now.disc[0]},${now.disc[1]}) rotate(${turn})` }, world);
     for (const [, , x, y] of now.cranks)
       node("circle", { class: "race", cx: x, cy: y, r: scene.race, fill: "#f2f0ea", stroke: "#b3aa93", "stroke-width": thin }, world);
