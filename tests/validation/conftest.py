@@ -10,6 +10,8 @@ import pytest
 
 import validation.levels.flexible_disc
 from ltca.compliance.coefficients import without_coupling
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
 from validation.compare.compared_positions import compare_case
 from validation.compare.disc_stresses import DiscStressAnswer
 from validation.compare.finite_element_positions import FullPosition, Settings
@@ -92,6 +94,39 @@ def make_study(paper_cases):
         )
     plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", settings=Settings())
     return Study(plan=plan, rows=tuple(rows), compared=compared, flexibility=flexibility, coefficients=coefficients)
+
+
+@pytest.fixture(scope="session")
+def crank_drive():
+    """Three rigid cranks that stand at no angle a symmetry likes, no pin shaft, one disc with few teeth."""
+    rv = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+    fields = {
+        "crank.eccentricity": 4.0, "crank.angle": 0.4, "crank_bearing.number_of_rollers": 9,
+        "pin_wheel.number_of_pins": 12, "pin_wheel.pin_radius": 8.0, "disc.number_of_teeth": 11,
+        "disc.number_of_discs": 1, "disc.phases": (), "disc.planes": (), "load.torque": 400e3,
+    }  # fmt: skip
+    return with_fields(replace(rv, crank=replace(rv.crank, support=None)), fields)
+
+
+@pytest.fixture(scope="session")
+def crank_study(crank_drive):
+    """One angle of it; "full FE" is the half-space to the last bit, the other models yield like it but for pins."""
+    angles = (0.3,)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 2)
+        patch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
+        (answer,) = answer_positions(crank_drive, np.array(angles), "half-space")
+        full = FullPosition(
+            case="nominal", crank_angle=angles[0], answer=answer, stress=NO_STRESS, residual=0.0, unknowns=1000,
+            seconds=1.0, pictures=(),
+        )  # fmt: skip
+        coefficients = replace(without_coupling(crank_drive), pin=1e-7)
+        compared = compare_case(crank_drive, [full], coefficients)
+        plan = Plan(name="rv", drives={"nominal": crank_drive}, crank_angles=angles, level="quick", settings=Settings())
+        return Study(
+            plan=plan, rows=tuple(compare_position_rows(compared[0])), compared={"nominal": compared},
+            flexibility={"nominal": study_case(crank_drive, coefficients)}, coefficients={"nominal": coefficients},
+        )  # fmt: skip
 
 
 @pytest.fixture(scope="session")

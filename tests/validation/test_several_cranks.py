@@ -10,65 +10,53 @@ import pytest
 
 from fem.body.wall_stress import WallStress
 from fem.drive.disc_stress import DiscStress
+from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
+from ltca.compliance.stress_coefficients import StressCoefficients
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
-from validation.compare.compared_positions import _AnsweredDisc, _station_distances, compare_case
+from validation.compare.compared_positions import _AnsweredDisc, _station_distances
 from validation.compare.comparison import KINDS, KindAnswer, PositionAnswer, compare_positions
 from validation.compare.disc_stresses import (
     DiscStressAnswer,
     answer_of_content,
     compare_stresses,
     stress_content,
+    stresses_of,
 )
-from validation.compare.finite_element_positions import FullPosition, Settings, answer_of_summary
-from validation.compare.model_positions import answer_positions
+from validation.compare.finite_element_positions import Settings, answer_of_summary
 from validation.levels.closed_forms import _power
 from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.flexible_disc import (
-    FlexibilityEffect,
     flexibility_rows,
     full_solution_changes,
     judge_half_space,
     turn_content,
-    turn_figures,
 )
 from validation.levels.model_laws import _uncoupled
 from validation.levels.positions import _body_rows, _contact_rows, _faint
 from validation.report.page import write_report
 from validation.report.scene import drive_scene, position_scene
 from validation.rows import failed_rows
-from validation.study import Plan, Study, plan_study
+from validation.study import plan_study
 
 ANGLE = 0.3
 ROLLERS = 9
 
 
 @pytest.fixture(scope="module")
-def drive():
-    """Three rigid cranks, no pin shaft, one disc with few teeth."""
-    rv = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
-    fields = {
-        "crank.eccentricity": 4.0, "crank.angle": 0.4, "crank_bearing.number_of_rollers": ROLLERS,
-        "pin_wheel.number_of_pins": 12, "pin_wheel.pin_radius": 8.0, "disc.number_of_teeth": 11,
-        "disc.number_of_discs": 1, "disc.phases": (), "disc.planes": (), "load.torque": 400e3,
-    }  # fmt: skip
-    return with_fields(replace(rv, crank=replace(rv.crank, support=None)), fields)
+def drive(crank_drive):
+    return crank_drive
 
 
 @pytest.fixture(scope="module")
-def compared(drive, no_stress):
+def compared(crank_study):
     """What the half-space says stands for the full solution."""
-    (answer,) = answer_positions(drive, np.array([ANGLE]), "half-space")
-    full = FullPosition(
-        case="nominal", crank_angle=ANGLE, answer=answer, stress=no_stress, residual=0.0, unknowns=1000, seconds=1.0,
-        pictures=(),
-    )  # fmt: skip
-    (item,) = compare_case(drive, [full], without_coupling(drive))
+    (item,) = crank_study.compared["nominal"]
     return item
 
 
@@ -190,6 +178,20 @@ def test_stresses_of_bores_name_the_crank(drive):
     assert {row.contact for row in rows} >= {"crank 0 roller 1 bore", "crank 1 roller 2 bore", "root 0"}
 
 
+def test_a_model_knows_the_stress_of_every_bore(drive):
+    """The largest of them is what the LTCA reports of all bores together."""
+    plain, stations = without_coupling(drive), 12
+    walls = tuple(Boundary(first=stations * wall, count=stations) for wall in range(4))
+    loaded = (plain.flank, *plain.bores)
+    made_up = np.random.default_rng(3).normal(size=(4 * stations, plain.disc.shape[0]))
+    own = replace(plain, stress=StressCoefficients(walls=walls, loaded=loaded, stress=made_up), pin=1e-7)
+    analysis = analyse(drive, np.array([ANGLE, 1.0]), engine=PlaneStrain(coefficients=own))
+    largest = np.array([answer.largest["bore"] for answer in stresses_of(analysis)])
+    assert largest.shape == (2, 3)
+    np.testing.assert_array_equal(largest.max(axis=1), analysis.wall_stresses[0].bore)
+    assert np.ptp(largest, axis=1).min() > 0.0
+
+
 def test_a_full_solution_keeps_the_stress_of_every_bore():
     def wall(name, *stress):
         values = np.array(stress)
@@ -265,28 +267,19 @@ def test_the_page_draws_every_bore_and_race(compared, drive):
     assert line["models"]["half-space"] == pytest.approx(answer.bearing_tangential[2], rel=1e-4)
 
 
-def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(compared, drive, tmp_path):
-    figures = turn_figures(analyse(drive, np.array([0.0, ANGLE])))
-    assert np.isnan(figures.shaft_load)
-    stiffer = replace(figures, pin_load=1.1 * figures.pin_load)
-    effect = FlexibilityEffect(
-        turn={"half-space": figures, "fe": stiffer, "hybrid": stiffer}, by_torque={1.0: {"pin_load": 0.1}}
-    )
+def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(crank_study, tmp_path):
+    effect, compared = crank_study.flexibility["nominal"], crank_study.compared["nominal"]
+    assert np.isnan(effect.turn["fe"].shaft_load)
+    assert set(effect.by_torque[1.0]) == {"pin_load", "roller_load"}
     rows = flexibility_rows("nominal", effect)
-    assert len(rows) == 2 * 7 + 1
+    assert len(rows) == 2 * 7 + 2
     assert not any("shaft" in row.quantity for row in rows)
-    assert set(full_solution_changes([compared])) == {"pin_load", "roller_load"}
-    sentences = judge_half_space({"nominal": effect})
-    assert not any("pin-shaft" in sentence for sentence in sentences)
+    assert set(full_solution_changes(compared)) == {"pin_load", "roller_load"}
+    assert not any("pin-shaft" in sentence for sentence in judge_half_space({"nominal": effect}))
     assert turn_content(effect)["fe"]["shaft_load"] is None
-    plan = Plan(name="rv", drives={"nominal": drive}, crank_angles=(ANGLE,), level="quick", settings=Settings())
-    study = Study(
-        plan=plan, rows=tuple(_body_rows(compared, "half-space")), compared={"nominal": [compared]},
-        flexibility={"nominal": effect}, coefficients={"nominal": without_coupling(drive)},
-    )  # fmt: skip
-    page = write_report(study, tmp_path / "report.html").read_text(encoding="utf-8")
+    page = write_report(crank_study, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "largest pin-shaft load" not in page
-    assert "crank 2" in page
+    assert "bearing of crank 2" in page
 
 
 def test_power_balance_of_several_cranks(drive):

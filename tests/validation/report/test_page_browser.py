@@ -13,6 +13,8 @@ import subprocess
 
 import pytest
 
+from validation.report.page import write_report
+
 BROWSER = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
 )
@@ -143,3 +145,22 @@ def test_nothing_sticks_out_on_a_narrow_screen(small_report, tmp_path):
     assert seen["errors"] == []
     assert console == []
     assert seen["overflow"] <= 0
+
+
+def test_every_crank_is_drawn(crank_study, tmp_path):
+    """Its race, its arm, its name; rollers are numbered in every bearing anew; the disc has three openings."""
+    page = write_report(crank_study, tmp_path / "report.html")
+    run = subprocess.run(
+        [BROWSER, *FLAGS, f"--user-data-dir={tmp_path / 'profile'}", "--virtual-time-budget=5000", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    (picture,) = re.findall(r'<svg[^>]*id="picture".*?</svg>', run.stdout, re.S)
+    assert picture.count('class="race"') == 3
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", picture)
+    assert texts.count("8") == 1 + 3  # a pin, and the last of nine rollers in each bearing
+    assert texts.count("9") == 1
+    assert [text for text in texts if text.startswith("crank")] == ["crank 0", "crank 1", "crank 2"]
+    (disc,) = re.findall(r'<path d="([^"]*)" fill-rule', picture)
+    assert disc.count("M") == 1 + 3
+    totals = re.search(r'<table id="totals".*?</table>', run.stdout, re.S).group(0)
+    assert totals.count("bearing of crank") == 6
