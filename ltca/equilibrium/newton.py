@@ -39,6 +39,7 @@ LINE_TRIALS = 12
 CREEPING = 0.01
 """Residual below which a position that takes many iterations creeps rather than wanders, as a part of the load."""
 VALLEY_STEPS, WALL_STEPS = 60, 6
+"""Steps along a valley, and down to its bottom after each."""
 FIRST_ALONG = 1e-5
 """First step along a valley, as a part of the smallest pin radius; each may be four times the last."""
 SLOPE_LEFT = 0.3

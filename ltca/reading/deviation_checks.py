@@ -11,6 +11,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.drive.deviations import BoreErrors
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.parts import Drive, PlacementErrors, RollerErrors
 from ltca.geometry.flank import FlankProfile
@@ -93,17 +94,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
                     "disc (give disc.runout)"
                 )
             continue
-        for name in ("radial", "tangential"):
-            values = getattr(own.bore_errors, name)
-            path = f"disc.of.{number}.bore_errors.{name}"
-            if values and len(values) != cranks:
-                yield f"{path} has {len(values)} values: must have {cranks}, one for each of the bores (crank.number)"
-            worst = max(values, key=abs, default=0.0)
-            if abs(worst) > bound:
-                yield (
-                    f"{path} holds {worst:g} mm: must be at most {bound:g} mm in size, a tenth of the smallest pin or roller "
-                    "radius"
-                )
+        yield from _part_errors(f"disc.of.{number}.bore_errors", own.bore_errors, cranks, "bores", bound)
     size = min(bound, 0.5 * drive.crank.eccentricity)
     for number, entry in enumerate(entries):
         if cranks > 1 and abs(entry.eccentricity_error or 0.0) > size:
@@ -138,16 +129,7 @@ def find_deviation_problems(drive: Drive) -> Iterator[str]:
         parts.append(("pin_shaft.pin_errors", drive.pin_shaft.pin_errors, holes, "pins"))
     bound = deviation_bound(drive)
     for path, errors, count, things in parts:
-        for name in ("radial", "tangential", "diameter"):
-            values = getattr(errors, name, ())
-            if values and len(values) != count:
-                yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
-            worst = max(values, key=abs, default=0.0)
-            if abs(worst) > bound:
-                yield (
-                    f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
-                    "a tenth of the smallest pin or roller radius"
-                )
+        yield from _part_errors(path, errors, count, things, bound)
     lengths = {
         "crank.eccentricity_error": drive.crank.eccentricity_error,
         "crank.axis_offset.x": drive.crank.axis_offset.x,
@@ -164,6 +146,22 @@ def find_deviation_problems(drive: Drive) -> Iterator[str]:
                 "roller radius and half the eccentricity"
             )
     yield from _profile_errors(drive, bound)
+
+
+def _part_errors(
+    path: str, errors: PlacementErrors | RollerErrors | BoreErrors, count: int, things: str, bound: float
+) -> Iterator[str]:
+    """Counts and sizes of the errors of single pins, holes, rollers or bores."""
+    for name in ("radial", "tangential", "diameter"):
+        values = getattr(errors, name, ())
+        if values and len(values) != count:
+            yield f"{path}.{name} has {len(values)} values: must have {count}, one for each of the {things}"
+        worst = max(values, key=abs, default=0.0)
+        if abs(worst) > bound:
+            yield (
+                f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
+                "a tenth of the smallest pin or roller radius"
+            )
 
 
 def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:

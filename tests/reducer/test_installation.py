@@ -10,7 +10,6 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.torque_curve import torque_curve
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import disc_responses
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
@@ -71,24 +70,9 @@ def test_stiffness_and_play_at_the_output(paper):
     assert np.all(np.diff(held.output_angle, axis=1) > 0.0)
 
 
-def stored(model, response):
-    """ΣU, N·mm, and ∂U/∂ρ of every wheel pin, N, by differences of the law alone."""
-    total, slopes = 0.0, []
-    for disc, part in zip(model.discs, disc_responses(response), strict=True):
-        laws, flank = disc.roller_laws, part.flank
-        total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
-        total = total + 0.5 * disc.hole_stiffness * (np.maximum(part.holes.approach, 0.0) ** 2).sum(axis=1)
-        total = total + laws.inner.energy(part.rollers.inner_approach, laws.inner_radius).sum(axis=1)
-        total = total + laws.outer.energy(part.rollers.outer_approach, laws.outer_radius).sum(axis=1)
-        step = 1e-4 * flank.effective_radius
-        ends = [disc.pin_law.energy(flank.approach, flank.effective_radius + side * step) for side in (1.0, -1.0)]
-        slopes.append((ends[0] - ends[1]) / (2.0 * step))
-    return total, np.concatenate(slopes, axis=1)
-
-
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 @pytest.mark.parametrize("discs", [1, 2, 3])
-def test_virtual_work_at_every_position(joint, discs, held):
+def test_virtual_work_at_every_position(joint, discs, held, stored):
     """T_C + T_W (1/u + w′) = U′ − Σ ∂U/∂ρ ρ′ with the cage's moment in T_C."""
     words = {"disc.number_of_discs": discs, "disc.phases": (), "disc.planes": (), "installation.held": held}
     drive = with_fields(joint, words)
@@ -97,14 +81,16 @@ def test_virtual_work_at_every_position(joint, discs, held):
     angle = 2.0 * np.pi * np.arange(5) / 5.0 + 0.05
     centre = solve_at_output(model, drive, angle, drive.load.torque)
     crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
-    slope = stored(model, centre.response)[1]
+    slope = stored(model, centre.response, centre.pose)[1]
 
     def left(step):
         ends = []
         for side in (1.0, -1.0):
             at = angle + side * step
             found = solve_at_output(model, drive, at, drive.load.torque, centre.pose)
-            ends.append((stored(model, found.response)[0], found.pose[:, WHEEL_ANGLE], found.response.flank))
+            ends.append(
+                (stored(model, found.response, found.pose)[0], found.pose[:, WHEEL_ANGLE], found.response.flank)
+            )
         (up, wheel_up, flank_up), (down, wheel_down, flank_down) = ends
         turn = (wheel_up - wheel_down) / (2.0 * step)
         radii = (flank_up.effective_radius - flank_down.effective_radius) / (2.0 * step)
