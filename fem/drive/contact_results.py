@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.body.surface import PressureZone
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.drive.model import ContactPair, DriveModel, PairKind
 from fem.drive.pose import PoseSolution, pair_forces
@@ -87,24 +88,59 @@ class ContactResults:
     details: tuple[PairResult, ...]
 
 
-def open_gaps(model: DriveModel, solution: PoseSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the smallest gap left between the deformed bodies at each pin, roller and hole, mm.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeformedContacts:
+    """How open a solution leaves the contacts of the disc, and where they press; arrays over all parts of a kind.
 
-    NaN where a part has no contact zone; a roller's is the sum of its two.
+    Attributes
+    ----------
+    pin_gaps, roller_gaps, hole_gaps : array of float
+        Smallest gap left between the deformed bodies, mm, NaN where a part has no contact zone; a roller's is the sum of
+        its two.
+    flank_points, bore_points, hole_points : array of complex
+        Where the pressure has its centre on flank, bores and hole walls, frame of the undeformed disc, mm; NaN where there
+        is none.
     """
+
+    pin_gaps: FloatArray
+    roller_gaps: FloatArray
+    hole_gaps: FloatArray
+    flank_points: NDArray[np.complex128]
+    bore_points: NDArray[np.complex128]
+    hole_points: NDArray[np.complex128]
+
+
+def deformed_contacts(model: DriveModel, solution: PoseSolution) -> DeformedContacts:
+    """Return how open a solution leaves the contacts of the disc, and where they press."""
     place = model.placement
-    pins = np.full(len(place.wheel_pin_radii), np.nan)
-    rollers = np.full(len(place.roller_radii), np.nan)
-    holes = np.full(len(place.hole_radii), np.nan)
+    counts = {"pin": len(place.wheel_pin_radii), "roller": len(place.roller_radii), "hole": len(place.hole_radii)}
+    gaps = {kind: np.full(count, np.nan) for kind, count in counts.items()}
+    points = {kind: np.full(count, complex(np.nan, np.nan)) for kind, count in counts.items()}
     for pair, integral in zip(model.pairs, solution.integrals, strict=True):
+        kind, index = pair.kind.partition("_")[0], pair.index
         left = float(np.min(solution.contact.opening[pair.unknowns] / integral.measure))
-        if pair.kind == "pin":
-            pins[pair.index] = left
-        elif pair.kind == "hole":
-            holes[pair.index] = left
-        else:
-            rollers[pair.index] = left if np.isnan(rollers[pair.index]) else rollers[pair.index] + left
-    return pins, rollers, holes
+        gaps[kind][index] = left if np.isnan(gaps[kind][index]) else gaps[kind][index] + left
+        if pair.kind != "roller_inner":
+            points[kind][index] = _centre_of_pressure(pair.zone, solution.contact.pressure[pair.unknowns])
+    return DeformedContacts(
+        pin_gaps=gaps["pin"],
+        roller_gaps=gaps["roller"],
+        hole_gaps=gaps["hole"],
+        flank_points=points["pin"],
+        bore_points=points["roller"],
+        hole_points=points["hole"],
+    )
+
+
+def _centre_of_pressure(zone: PressureZone, pressure: FloatArray) -> complex:
+    """Return the centre of pressure on the exact boundary, mm, NaN without pressure."""
+    arc = zone.arc
+    total, centre, _ = pressure_moments(arc, zone.at_vertices(pressure))
+    if total <= 0.0:
+        return complex(np.nan, np.nan)
+    vertices = np.append(zone.places[:, 0], zone.places[-1, -1])
+    points, _ = zone.exact(np.atleast_1d(np.interp(centre, arc, vertices)))
+    return complex(points[0])
 
 
 def summarise_contacts(model: DriveModel, solution: PoseSolution) -> ContactResults:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drive.contact_results import summarise_contacts
+from fem.drive.contact_results import DeformedContacts, summarise_contacts
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements, on_turned_flank
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
@@ -28,6 +28,9 @@ ComplexArray = NDArray[np.complex128]
 FINE_SHARE = 0.05
 # Elements may be this much larger than asked for before the meshes are graded anew.
 SLACK = 1.1
+# A soft disc turns and bends under its flank: the pressure then lies beside the place where the rigid bodies meet. Up to
+# this part of a half-width the fine elements, which reach half a half-width further than the contact, serve it there.
+SHIFT = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,7 +108,7 @@ def grade_contacts(
     margin: float,
     smallest_share: float,
     elastic_shaft_pins: bool = False,
-    open_gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
+    deformed: DeformedContacts | None = None,
 ) -> ExpectedContacts:
     """Return the contacts to grade meshes for.
 
@@ -121,9 +124,9 @@ def grade_contacts(
         Candidates get elements for at least this share of the largest load of their kind.
     elastic_shaft_pins : bool
         Whether the shaft pins yield, too.
-    open_gaps : tuple of three arrays, optional
-        Gaps of pins, rollers and holes between the deformed bodies, mm, NaN where not known; the gaps of the rigid
-        bodies count there, and for all without this.
+    deformed : DeformedContacts, optional
+        Gaps and places of pressure of a solution at this pose: they count, where known and far enough from those of the
+        rigid bodies (`SHIFT`).
 
     Returns
     -------
@@ -137,7 +140,7 @@ def grade_contacts(
     bore, race, radius = place.bore_radius, place.inner_race_radius, place.roller_radii
     turn_back = np.exp(-1j * rotation)
 
-    pin_gaps, roller_gaps, hole_gaps = _gaps_left(gaps, open_gaps)
+    pin_gaps, roller_gaps, hole_gaps = _gaps_left(gaps, deformed)
 
     def group(
         load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
@@ -153,39 +156,66 @@ def grade_contacts(
         )
 
     hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
-    flank_effective = profile.effective_radius(gaps.flank_parameters, place.wheel_pin_radii)
     outer_effective, inner_effective = radius * bore / (bore - radius), radius * race / (race + radius)
+    pin_modulus = contact_modulus(materials.disc, materials.wheel_pin)
     outer_modulus = contact_modulus(materials.disc, materials.roller)
     inner_modulus = contact_modulus(materials.inner_race, materials.roller)
     pins, rollers, holes = loads
     hole_modulus = 1.0 / materials.disc.plane_strain_compliance
     if elastic_shaft_pins:
         hole_modulus = contact_modulus(materials.disc, materials.shaft_pin)
+
+    def pin_group(theta: FloatArray) -> ContactGroup:
+        effective = profile.effective_radius(theta, place.wheel_pin_radii)
+        return group(pins, pin_gaps, effective, pin_modulus, -profile.normal(theta) * np.exp(1j * rotation))
+
+    theta = gaps.flank_parameters
+    flank_points = profile.flank(theta)
+    bore_points = (
+        place.bore_centres[place.roller_cranks]
+        + _bore_points(_of_rollers(place, crank_angle, displacement, rotation), place, rays) * turn_back
+    )
+    hole_points = place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back
+    outer = group(rollers, roller_gaps, outer_effective, outer_modulus, rays)
+    on_holes = group(holes, hole_gaps, hole_effective, hole_modulus, gaps.hole_directions)
+    if deformed is not None:
+        shifted = _is_shifted(flank_points, deformed.flank_points, pin_group(theta))
+        theta = np.where(
+            shifted, profile.nearest_parameter(np.where(shifted, deformed.flank_points, flank_points), theta), theta
+        )
+        flank_points = profile.flank(theta)
+        bore_points = np.where(_is_shifted(bore_points, deformed.bore_points, outer), deformed.bore_points, bore_points)
+        hole_points = np.where(
+            _is_shifted(hole_points, deformed.hole_points, on_holes), deformed.hole_points, hole_points
+        )
     return ExpectedContacts(
         crank_angle=float(crank_angle),
         disc_x=displacement.real,
         disc_y=displacement.imag,
         disc_rotation=float(rotation),
         wheel_angle=float(wheel_angle),
-        pins=group(
-            pins, pin_gaps, flank_effective, contact_modulus(materials.disc, materials.wheel_pin), -gaps.pin_normals
-        ),
-        flank_points=profile.flank(gaps.flank_parameters),
-        rollers_outer=group(rollers, roller_gaps, outer_effective, outer_modulus, rays),
+        pins=pin_group(theta),
+        flank_points=flank_points,
+        rollers_outer=outer,
         rollers_inner=group(rollers, roller_gaps, inner_effective, inner_modulus, -rays),
-        bore_points=place.bore_centres[place.roller_cranks]
-        + _bore_points(_of_rollers(place, crank_angle, displacement, rotation), place, rays) * turn_back,
+        bore_points=bore_points,
         race_points=race * rays,
-        holes=group(holes, hole_gaps, hole_effective, hole_modulus, gaps.hole_directions),
-        hole_points=place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back,
+        holes=on_holes,
+        hole_points=hole_points,
     )
 
 
-def _gaps_left(gaps: RigidGaps, known: tuple[FloatArray, FloatArray, FloatArray] | None) -> tuple[FloatArray, ...]:
+def _is_shifted(rigid: ComplexArray, deformed: ComplexArray, group: ContactGroup) -> NDArray[np.bool_]:
+    """Return which contacts press so far from where the rigid bodies would that small elements there miss them."""
+    return np.asarray(np.abs(deformed - rigid) > SHIFT * group.half_width) & (group.half_width > 0.0)
+
+
+def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[FloatArray, ...]:
     """Return the gaps of pins, rollers and holes: those known of the deformed bodies, else those of the rigid ones."""
     rigid = (gaps.pins, gaps.rollers, gaps.holes)
-    if known is None:
+    if deformed is None:
         return rigid
+    known = (deformed.pin_gaps, deformed.roller_gaps, deformed.hole_gaps)
     return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.drive.condensed import condense_drive, keep_rounds
-from fem.drive.contact_results import open_gaps, summarise_contacts
+from fem.drive.contact_results import DeformedContacts, deformed_contacts, summarise_contacts
 from fem.drive.expected_contacts import ExpectedContacts, expect_contacts, require_one_disc
 from fem.drive.full_solution import FullSolution
 from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts, measure_gaps
@@ -107,8 +107,8 @@ class _Task:
         place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
         loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
-        margin, gaps = FINE_MARGIN * 2.0 ** (grading - 1), open_gaps(model, solution)
-        contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, gaps=gaps)
+        margin, deformed = FINE_MARGIN * 2.0 ** (grading - 1), deformed_contacts(model, solution)
+        contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
         self.say("meshes")
         graded = self.condense(contacts, self.scale * RESERVE, rounds, watch, fine_walls=fine_walls)
         watch.lap("assembly and factorisation")
@@ -141,7 +141,7 @@ class _Task:
         *,
         margin: float,
         share: float,
-        gaps: tuple[FloatArray, FloatArray, FloatArray] | None = None,
+        deformed: DeformedContacts | None = None,
     ) -> ExpectedContacts:
         return grade_contacts(
             self.drive,
@@ -151,7 +151,7 @@ class _Task:
             margin=margin * self.approach,
             smallest_share=share,
             elastic_shaft_pins=self.elastic_shaft_pins,
-            open_gaps=gaps,
+            deformed=deformed,
         )
 
 
