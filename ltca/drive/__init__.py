@@ -7,8 +7,8 @@ units          Units of the drive file: what a text may carry, and how a field c
 names          Names of drives and cases: files and folders are called after them, and they are printed, drawn and put on
                pages
 deviations     Deviations of real parts from their drawing: part of the drive's definition, all zero unless given
-crank          Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
 materials      What parts are made of, linear-elastic, and the profile they are ground to along their length
+members        Parts that take a page of their own: crankshafts, and the pins of wheel and shaft
 fingerprints   Hashes of definitions: what is at its default is left out, so that a field that later versions add changes none
 parts          The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
 single_discs   A drive of several discs as drives of one disc each, and how far each flank is turned against its holes

@@ -34,7 +34,7 @@ class Material:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Materials:
-    """Material of each part."""
+    """Material of each part: `wheel_seat` of the slots that wheel pins lie in, `sleeve` of sleeves on either kind of pin."""
 
     disc: Material = field(default_factory=Material)
     wheel_pin: Material = field(default_factory=Material)
@@ -42,6 +42,8 @@ class Materials:
     inner_race: Material = field(default_factory=Material)
     shaft_pin: Material = field(default_factory=Material)
     crankshaft: Material = field(default_factory=Material)
+    wheel_seat: Material = field(default_factory=Material)
+    sleeve: Material = field(default_factory=Material)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

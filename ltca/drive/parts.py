@@ -13,11 +13,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport, Stiffness
 from ltca.drive.deviations import (
     STRICT,
     Angle,
-    AxisOffset,
     NonNegativeLength,
     OneDisc,
     PlacementErrors as PlacementErrors,
@@ -34,30 +32,21 @@ from ltca.drive.materials import (
     Materials as Materials,
     contact_modulus as contact_modulus,
 )
+from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
+from ltca.drive.members.pins import (
+    PinShaft as PinShaft,
+    PinWheel as PinWheel,
+    ShaftPinBeam as ShaftPinBeam,
+    ShaftPinSeat as ShaftPinSeat,
+    WheelPinBeam as WheelPinBeam,
+    WheelPinSeat as WheelPinSeat,
+)
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, quantity
 from ltca.errors import DriveError
 
 SAME_PART = 1e-9
 """Angle between two flanks that are cut alike, rad: round-off of a phase, far below what moves a flank by a nanometre."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class PinWheel:
-    """Pin wheel: `number_of_pins` z_P, `pin_circle_radius` R_C and `pin_radius` r_P in mm.
-
-    `axis_offset` is the axis the wheel turns about against the centre of the pin shaft; a pin circle eccentric to
-    that axis is a matter of `pin_errors`. `support_stiffness` is the radial stiffness of the wheel's main bearing,
-    N/mm, rigid when left out.
-    """
-
-    number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
-    pin_circle_radius: PositiveLength
-    pin_radius: PositiveLength
-    pin_profile: LengthProfile = field(default_factory=LengthProfile)
-    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
-    axis_offset: AxisOffset = field(default_factory=AxisOffset)
-    support_stiffness: Stiffness | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -75,8 +64,8 @@ class Disc:
     phases : tuple of float
         Phase ζ of each disc's eccentric against that of the crank angle, rad; 2πk/n for an empty tuple.
     planes : tuple of float
-        Axial place of each disc's middle, mm; side by side about 0 for an empty tuple. Without effect on any result
-        while pins and shafts do not bend.
+        Axial place of each disc's middle, mm; side by side about 0 for an empty tuple. They matter where pins or
+        shafts bend.
     equidistant_offset : float
         Δr_P: the flank is generated with pins of radius r_P + Δr_P, mm (Eq. 1).
     shifting_offset : float
@@ -122,32 +111,6 @@ class Disc:
         """Axial place of every disc, mm."""
         count = self.number_of_discs
         return self.planes or tuple(self.thickness * (disc - 0.5 * (count - 1)) for disc in range(count))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class PinShaft:
-    """Pins of the pin shaft, the carrier of the cranks.
-
-    Attributes
-    ----------
-    number_of_pins : int
-        z_PS, also the number of holes in the disc.
-    pin_circle_radius : float
-        R_PS, of pins and holes alike, mm.
-    pin_radius, hole_radius : float
-        r_PS and the nominal r_PSH (without clearance), mm.
-    stiffness : float
-        k_PS of one pin for the full thickness of one disc, N/mm.
-    pin_errors : PlacementErrors
-        Errors of the shaft pins.
-    """
-
-    number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]
-    pin_circle_radius: PositiveLength
-    pin_radius: PositiveLength
-    hole_radius: PositiveLength
-    stiffness: Stiffness
-    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -325,8 +288,23 @@ class Drive:
 
     @property
     def hole_stiffness(self) -> float:
-        """k_PS of one shaft pin, N/mm; without a pin shaft that of none, 1."""
-        return 1.0 if self.pin_shaft is None else self.pin_shaft.stiffness
+        """k_PS of one shaft pin, N/mm; without a pin shaft that of none, 1. DriveError where the pins are beams."""
+        if self.pin_shaft is None:
+            return 1.0
+        if self.pin_shaft.stiffness is None:
+            raise DriveError(["pin_shaft.stiffness: is left out, the shaft pins are beams (pin_shaft.beam)"])
+        return self.pin_shaft.stiffness
+
+    @property
+    def flank_pin(self) -> Material:
+        """Material of what the flank touches: the wheel pins or their sleeves."""
+        return self.materials.sleeve if self.pin_wheel.seat.kind == "sleeve" else self.materials.wheel_pin
+
+    @property
+    def hole_pin(self) -> Material:
+        """Material of what the holes touch: the shaft pins or their sleeves."""
+        sleeved = self.pin_shaft is not None and self.pin_shaft.seat.kind == "sleeve"
+        return self.materials.sleeve if sleeved else self.materials.shaft_pin
 
     @property
     def pattern(self) -> int:
@@ -392,8 +370,13 @@ class Drive:
         turn = self.part_turn[0]
         if turn:
             shape["flank_turn"] = turn
-        for part in ("disc", "wheel_pin", "roller", "inner_race"):
-            material: Material = getattr(self.materials, part)
+        bodies = {
+            "disc": self.materials.disc,
+            "wheel_pin": self.flank_pin,
+            "roller": self.materials.roller,
+            "inner_race": self.materials.inner_race,
+        }
+        for part, material in bodies.items():
             shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
             shape[f"materials.{part}.poisson_ratio"] = material.poisson_ratio
         # Sums of radii and clearances must not differ by their rounding.

@@ -57,7 +57,7 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
                 f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
             ]
     shaft = drive.pin_shaft
-    if shaft is None:
+    if shaft is None or shaft.stiffness is None:
         return []
     # Some third of the pins carry, on a lever of about two thirds of their circle.
     load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)

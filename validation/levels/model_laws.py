@@ -89,7 +89,9 @@ def widen(drive: Drive, coefficients: InfluenceCoefficients, width: float) -> tu
         drive,
         disc=replace(drive.disc, thickness=width * drive.disc.thickness),
         crank_bearing=replace(bearing, roller_length=width * bearing.roller_length),
-        pin_shaft=None if shaft is None else replace(shaft, stiffness=width * shaft.stiffness),
+        pin_shaft=shaft
+        if shaft is None or shaft.stiffness is None
+        else replace(shaft, stiffness=width * shaft.stiffness),
         load=replace(load, torque=width * load.torque, light_torque=width * load.light_torque),
     )
     scaled = replace(

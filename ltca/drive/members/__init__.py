@@ -1,0 +1,9 @@
+"""Parts that take a page of their own: crankshafts, and the pins of wheel and shaft.
+
+Modules in the order data passes:
+
+=====  ============================================================
+crank  Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
+pins   Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
+=====  ============================================================
+"""

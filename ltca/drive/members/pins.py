@@ -1,0 +1,165 @@
+"""Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import Annotated, Literal
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import STRICT, AxisOffset, PlacementErrors, PositiveLength
+from ltca.drive.materials import LengthProfile
+from ltca.drive.members.crank import Stiffness
+from ltca.drive.units.quantities import COUNT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class WheelPinSeat:
+    """How wheel pins sit.
+
+    Attributes
+    ----------
+    kind : {"fixed", "slot", "sleeve"}
+        Fixed in the wheel; loose in a round slot; or fixed, with a loose sleeve that rolls on the flank.
+    radius : float or None
+        Of the slot, mm.
+    pin_radius, bore_radius : float or None
+        Of the pin within the sleeve and of the sleeve's bore, mm; `PinWheel.pin_radius` is the sleeve's outer radius.
+    """
+
+    kind: Literal["fixed", "slot", "sleeve"] = "fixed"
+    radius: PositiveLength | None = None
+    pin_radius: PositiveLength | None = None
+    bore_radius: PositiveLength | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class ShaftPinSeat:
+    """How shaft pins sit.
+
+    Attributes
+    ----------
+    kind : {"fixed", "sleeve"}
+        Whether a loose sleeve runs on each pin.
+    pin_radius, bore_radius : float or None
+        Of the pin within the sleeve and of the sleeve's bore, mm; `PinShaft.pin_radius` is the sleeve's outer radius.
+    """
+
+    kind: Literal["fixed", "sleeve"] = "fixed"
+    pin_radius: PositiveLength | None = None
+    bore_radius: PositiveLength | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class WheelPinBeam:
+    """A wheel pin as a beam between two walls of the wheel, its middle at the zero of `Disc.planes`.
+
+    Attributes
+    ----------
+    span : float
+        Between the walls, mm.
+    ends : {"supported", "clamped"}
+        Whether the ends may turn in the walls.
+    diameter : float or None
+        Of the beam, mm; that of the seat's pin when left out.
+    """
+
+    span: PositiveLength
+    ends: Literal["supported", "clamped"]
+    diameter: PositiveLength | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class ShaftPinBeam:
+    """A shaft pin as a beam clamped in the flange at −span/2 of the axis of `Disc.planes`.
+
+    Attributes
+    ----------
+    span : float
+        From the flange to the tip, mm.
+    tip : {"free", "tied-clamped", "tied-pinned"}
+        Free, or tied to the other tips by a rigid ring that floats: clamped in it, or free to turn.
+    diameter : float or None
+        Of the beam, mm; that of the seat's pin when left out.
+    """
+
+    span: PositiveLength
+    tip: Literal["free", "tied-clamped", "tied-pinned"]
+    diameter: PositiveLength | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class PinWheel:
+    """Pin wheel: `number_of_pins` z_P, `pin_circle_radius` R_C and `pin_radius` r_P in mm.
+
+    `axis_offset` is the axis the wheel turns about against the centre of the pin shaft; a pin circle eccentric to
+    that axis is a matter of `pin_errors`. `support_stiffness` is the radial stiffness of the wheel's main bearing,
+    N/mm, rigid when left out. `seat` and `beam` say how the pins sit and whether they bend.
+    """
+
+    number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
+    pin_circle_radius: PositiveLength
+    pin_radius: PositiveLength
+    pin_profile: LengthProfile = field(default_factory=LengthProfile)
+    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
+    axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    support_stiffness: Stiffness | None = None
+    seat: WheelPinSeat = field(default_factory=WheelPinSeat)
+    beam: WheelPinBeam | None = None
+
+    @property
+    def seat_play(self) -> float:
+        """By how much the seat's bore is larger in radius than the pin in it, mm; 0 for fixed pins."""
+        if self.seat.kind == "slot":
+            return (self.seat.radius or 0.0) - self.pin_radius
+        return (self.seat.bore_radius or 0.0) - (self.seat.pin_radius or 0.0) if self.seat.kind == "sleeve" else 0.0
+
+    @property
+    def beam_diameter(self) -> float:
+        """Of the pin that bends, mm."""
+        held = None if self.beam is None else self.beam.diameter
+        return held or 2.0 * (self.seat.pin_radius or self.pin_radius)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class PinShaft:
+    """Pins of the pin shaft, the carrier of the cranks.
+
+    Attributes
+    ----------
+    number_of_pins : int
+        z_PS, also the number of holes in the disc.
+    pin_circle_radius : float
+        R_PS, of pins and holes alike, mm.
+    pin_radius, hole_radius : float
+        r_PS and the nominal r_PSH (without clearance), mm.
+    stiffness : float or None
+        k_PS of one pin for the full thickness of one disc, N/mm; left out where the pins are beams.
+    pin_errors : PlacementErrors
+        Errors of the shaft pins.
+    seat : ShaftPinSeat
+        Whether sleeves run on them.
+    beam : ShaftPinBeam or None
+        How they bend, in the place of `stiffness`.
+    """
+
+    number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]
+    pin_circle_radius: PositiveLength
+    pin_radius: PositiveLength
+    hole_radius: PositiveLength
+    stiffness: Stiffness | None = None
+    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
+    seat: ShaftPinSeat = field(default_factory=ShaftPinSeat)
+    beam: ShaftPinBeam | None = None
+
+    @property
+    def seat_play(self) -> float:
+        """By how much the sleeves' bores are larger in radius than the pins, mm; 0 without sleeves."""
+        return (self.seat.bore_radius or 0.0) - (self.seat.pin_radius or 0.0) if self.seat.kind == "sleeve" else 0.0
+
+    @property
+    def beam_diameter(self) -> float:
+        """Of the pin that bends, mm."""
+        held = None if self.beam is None else self.beam.diameter
+        return held or 2.0 * (self.seat.pin_radius or self.pin_radius)
