@@ -46,6 +46,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, disc_displacement
 from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
+from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_spring
 from ltca.laws.contact_law import ContactLaw, LoadLaw
 from ltca.laws.series import SpringLaw, approach_at_load
 
@@ -134,14 +135,17 @@ class CoupledCompliance:
         place = geometry.placement
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
+        spring = shaft_pin_spring(drive)
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum)
         race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=laws.hole if hole_near_field else SpringLaw(stiffness=drive.hole_stiffness),
-            hole_spring=1.0 / drive.hole_stiffness if hole_near_field else 0.0,
+            hole_law=back_shaft_pins(
+                drive, laws.hole if hole_near_field else SpringLaw(stiffness=1.0 / spring), place.shaft_pin_plays
+            ),
+            hole_spring=spring if hole_near_field else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
             inner_radius=place.inner_effective_radii,
@@ -290,6 +294,7 @@ class _Batch:
         self.effective_radius = np.take_along_axis(flank.effective_radius, on_flank, axis=1)
         self.outer_radius, self.inner_radius = model.outer_radius[in_bore], model.inner_radius[in_bore]
         self.hole_radius = model.hole_radius[in_holes]
+        self.pin_law, self.hole_law = of_pairs(model.near_field.pin, on_flank), of_pairs(model.hole_law, in_holes)
         self.inner_near = self.inner_compliance = self.inner_load = np.zeros(in_bore.shape)
         self.placed = False
         self.place_rollers(np.zeros((rows.size, rollers)))
@@ -321,9 +326,9 @@ class _Batch:
         """Return loads and stiffnesses of the near fields."""
         m, outer = self.model, self.outer
         parts = (
-            m.near_field.pin.load_and_stiffness(near[:, : outer.start], self.effective_radius),
+            self.pin_law.load_and_stiffness(near[:, : outer.start], self.effective_radius),
             m.near_field.outer.load_and_stiffness(near[:, outer], self.outer_radius),
-            m.hole_law.load_and_stiffness(near[:, outer.stop :], self.hole_radius),
+            self.hole_law.load_and_stiffness(near[:, outer.stop :], self.hole_radius),
         )
         load, stiffness = (np.concatenate(columns, axis=1) for columns in zip(*parts, strict=True))
         return load, stiffness

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,6 @@ from ltca.compliance.response import (
     Response,
     Start,
     assemble_response,
-    spring_load_and_stiffness,
 )
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
@@ -22,8 +22,10 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.contact_law import ContactLaw
+from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_spring
+from ltca.laws.contact_law import ContactLaw, LoadLaw
 from ltca.laws.generator_law import law_for_profile
+from ltca.laws.series import SpringLaw
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -44,8 +46,8 @@ class HalfSpaceCompliance:
         Law of wheel pin and flank.
     roller_laws : RollerLaws
         Laws of the rollers.
-    hole_stiffness : float
-        k_PS, N/mm.
+    hole_law : LoadLaw
+        Law of shaft pins and holes: springs k_PS, with what is before them.
     kinds : ContactKinds
         The contacts as grids see them, for what no table holds.
     """
@@ -53,7 +55,7 @@ class HalfSpaceCompliance:
     geometry: ContactGeometry
     pin_law: ContactLaw
     roller_laws: RollerLaws[ContactLaw]
-    hole_stiffness: float | FloatArray
+    hole_law: LoadLaw
     kinds: ContactKinds
 
     @classmethod
@@ -66,7 +68,7 @@ class HalfSpaceCompliance:
             lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
             turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
             pin_radii = _effective_radii(geometry.profile, geometry.placement.wheel_pin_radii, turn)
-        return cls._of_geometry(geometry, drive, pin_radii, drive.hole_stiffness)
+        return cls._of_geometry(geometry, drive, pin_radii, 1.0 / shaft_pin_spring(drive))
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
@@ -80,7 +82,7 @@ class HalfSpaceCompliance:
             Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
         """
         geometry = ContactGeometry.of_drives(drives, positions)
-        stiffness = np.repeat([[drive.hole_stiffness] for drive in drives], positions, axis=0)
+        stiffness = np.repeat([[1.0 / shaft_pin_spring(drive)] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
         pin_radii = np.ones(1)
         if not drives[0].pin_wheel.pin_profile.is_cylinder:
@@ -107,22 +109,23 @@ class HalfSpaceCompliance:
                 effective_radii=rungs(effective_radii),
             )
 
+        on_flank = law_for_profile(
+            drive.pin_wheel.pin_profile,
+            length=drive.disc.thickness,
+            radius=drive.pin_wheel.pin_radius,
+            contact_modulus=contact_modulus(parts.disc, drive.flank_pin),
+            effective_radii=rungs(pin_radii),
+        )
         return cls(
             geometry=geometry,
-            pin_law=law_for_profile(
-                drive.pin_wheel.pin_profile,
-                length=drive.disc.thickness,
-                radius=drive.pin_wheel.pin_radius,
-                contact_modulus=contact_modulus(parts.disc, parts.wheel_pin),
-                effective_radii=rungs(pin_radii),
-            ),
+            pin_law=back_wheel_pins(drive, on_flank, place.wheel_pin_plays),
             roller_laws=RollerLaws(
                 inner=roller_law(parts.inner_race, inner_radius),
                 outer=roller_law(parts.disc, outer_radius),
                 inner_radius=inner_radius,
                 outer_radius=outer_radius,
             ),
-            hole_stiffness=hole_stiffness,
+            hole_law=back_shaft_pins(drive, SpringLaw(stiffness=hole_stiffness), place.shaft_pin_plays),
             kinds=ContactKinds.of_drive(drive),
         )
 
@@ -133,14 +136,14 @@ class HalfSpaceCompliance:
         laws = self.roller_laws
         return HalfSpaceCompliance(
             geometry=self.geometry.take(rows),
-            pin_law=self.pin_law,
+            pin_law=cast(ContactLaw, law_at(self.pin_law, rows)),
             roller_laws=RollerLaws(
                 inner=laws.inner,
                 outer=laws.outer,
                 inner_radius=laws.inner_radius[rows],
                 outer_radius=laws.outer_radius[rows],
             ),
-            hole_stiffness=np.asarray(self.hole_stiffness)[rows],
+            hole_law=law_at(self.hole_law, rows),
             kinds=self.kinds,
         )
 
@@ -180,7 +183,9 @@ class HalfSpaceCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
-        hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
+        hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
+            holes.approach, self.geometry.placement.hole_effective_radii
+        )
         bores, rays = self.geometry.bores(crank_angle, pose), self.geometry.rollers(crank_angle)
         rollers = balance_rollers(
             rays,

@@ -253,7 +253,7 @@ class ContactGeometry:
         distance = _dot(normal, point - curve.point)
         curvature = _cross(tangent, second) / speed**3
         offset = self.profile.contact_offset
-        approach = place.wheel_pin_radii - offset - distance
+        approach = place.wheel_pin_radii - place.wheel_pin_plays - offset - distance
         flank_curvature = curvature / (1.0 - offset * curvature)
         effective_radius = 1.0 / (1.0 / place.wheel_pin_radii + flank_curvature)
 
@@ -289,7 +289,7 @@ class ContactGeometry:
         gradient[..., DISC_ROTATION] = -_cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
         along[..., DISC_ROTATION] = _dot(direction, arm)
-        approach = distance - (place.hole_radii - place.shaft_pin_radii)
+        approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ class LoadLaw(Protocol):
         ...
 
 
+@runtime_checkable
 class ContactLaw(LoadLaw, Protocol):
     """A law that knows its energy and its pressure at mid-width as well."""
 

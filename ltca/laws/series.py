@@ -16,9 +16,9 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpringLaw:
-    """Unilateral linear spring; `stiffness` in N/mm."""
+    """Unilateral linear spring; `stiffness` in N/mm, of a batch of drives an array of shape (positions, 1)."""
 
-    stiffness: float
+    stiffness: float | FloatArray
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the load at an approach and its derivative, N and N/mm."""
