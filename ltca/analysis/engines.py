@@ -29,6 +29,7 @@ from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
 from ltca.equilibrium.reducer import reducer_of
+from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
@@ -183,8 +184,8 @@ class HalfSpace:
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         singles = single_discs(drive)
-        supports = support_stiffness(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
+        supports, pins = support_stiffness(drive), SharedPins.of_drive(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
         model = tables
         if self.contacts == "grids":
             model = reducer_of([GridCompliance.of_drive(single) for single in singles], supports)
@@ -203,8 +204,8 @@ class HalfSpace:
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
         """Return the tables of several drives, each at the same number of positions."""
         discs = zip(*(single_discs(drive) for drive in drives), strict=True)
-        supports = support_stiffnesses(drives, positions)
-        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs], supports)
+        supports, pins = support_stiffnesses(drives, positions), SharedPins.of_drives(drives, positions)
+        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs], supports, pins)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -293,12 +294,14 @@ class _Coupled:
                 for single, own in zip(singles, each, strict=True)
             ],
             support_stiffness(drive),
+            SharedPins.of_drive(drive),
         )
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         singles, supports = single_discs(drive), support_stiffness(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
+        pins = SharedPins.of_drive(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
         return _FromTables(drive=drive, tables=tables, model=self.model(drive))
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:

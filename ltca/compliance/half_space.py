@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -15,6 +15,7 @@ from ltca.compliance.response import (
     Response,
     Start,
     assemble_response,
+    split_shifts,
 )
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
@@ -22,8 +23,8 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_spring
-from ltca.laws.contact_law import ContactLaw, LoadLaw
+from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_spring, tip_share
+from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.series import SpringLaw
 
@@ -46,7 +47,7 @@ class HalfSpaceCompliance:
         Law of wheel pin and flank.
     roller_laws : RollerLaws
         Laws of the rollers.
-    hole_law : LoadLaw
+    hole_law : EnergyLaw
         Law of shaft pins and holes: springs k_PS, with what is before them.
     kinds : ContactKinds
         The contacts as grids see them, for what no table holds.
@@ -55,13 +56,13 @@ class HalfSpaceCompliance:
     geometry: ContactGeometry
     pin_law: ContactLaw
     roller_laws: RollerLaws[ContactLaw]
-    hole_law: LoadLaw
+    hole_law: EnergyLaw
     kinds: ContactKinds
 
     @classmethod
     def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
         """Return the half-space model of a drive."""
-        geometry = ContactGeometry.of_drive(drive)
+        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         pin_radii = np.ones(1)
         if not drive.pin_wheel.pin_profile.is_cylinder:
             # A flank without deviations has the same radii on every lobe.
@@ -81,7 +82,8 @@ class HalfSpaceCompliance:
         positions : int
             Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
         """
-        geometry = ContactGeometry.of_drives(drives, positions)
+        tips = np.repeat([[[tip_share(drive)]] for drive in drives], positions, axis=0)
+        geometry = replace(ContactGeometry.of_drives(drives, positions), tip_share=tips)
         stiffness = np.repeat([[1.0 / shaft_pin_spring(drive)] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
         pin_radii = np.ones(1)
@@ -157,7 +159,9 @@ class HalfSpaceCompliance:
         """What its poses are made of."""
         return self.geometry.coordinates
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
         """Return the contact forces at the poses of a batch of positions.
 
         Parameters
@@ -168,6 +172,8 @@ class HalfSpaceCompliance:
             q of `ltca.geometry.coordinates`.
         start : Start, optional
             Inner unknowns of a neighbouring pose.
+        shifts : array of complex, shape (positions, z_P + z_PS), optional
+            Displacements of the pins in the fixed frame, mm.
 
         Returns
         -------
@@ -180,9 +186,10 @@ class HalfSpaceCompliance:
         force it would add to the gradient of the energy (about 1e-5 of the load, along the flank) is no contact
         force without friction: the force acts along the common normal.
         """
-        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
+        moved = split_shifts(shifts, self.geometry)
+        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
-        holes = self.geometry.holes(crank_angle, pose)
+        holes = self.geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
             holes.approach, self.geometry.placement.hole_effective_radii
         )
@@ -193,7 +200,17 @@ class HalfSpaceCompliance:
             self.roller_laws,
             None if start is None else start.share,
         )
-        return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, bores)
+        return assemble_response(
+            flank,
+            pin_load,
+            pin_stiffness,
+            holes,
+            hole_load,
+            hole_stiffness,
+            rollers,
+            bores,
+            with_slopes=shifts is not None,
+        )
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures from the laws."""

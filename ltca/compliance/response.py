@@ -22,6 +22,22 @@ ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PairSlopes:
+    """How the loads on pins and holes follow their approaches and the pose, the pins held where they are.
+
+    Attributes
+    ----------
+    by_approach : array, shape (positions, pairs) or (positions, pairs, pairs)
+        ∂F/∂δ of wheel pins and shaft pins, N/mm; a matrix where the contacts of a disc feel each other.
+    by_pose : array, shape (positions, pairs, coordinates)
+        ∂F/∂q, N/mm and N.
+    """
+
+    by_approach: FloatArray
+    by_pose: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
     """Contacts of a batch of positions at given poses.
 
@@ -42,6 +58,8 @@ class Response:
     warm_start : array of object, shape (positions,)
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
         wants nothing. It saves work and alters no answer. Of several discs shape (positions, discs).
+    slopes : PairSlopes or None
+        Where displacements of the pins were given.
     """
 
     force: FloatArray
@@ -52,6 +70,7 @@ class Response:
     pin_load: FloatArray
     hole_load: FloatArray
     warm_start: NDArray[np.object_]
+    slopes: PairSlopes | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,8 +132,10 @@ class ComplianceModel(Protocol):
         """The compliance of each disc."""
         ...
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
-        """Return the contact forces at the poses of a batch of positions."""
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
+        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any."""
         ...
 
     def pressures(self, response: Response) -> ContactPressures:
@@ -151,20 +172,33 @@ class Start:
         Shares of `ltca.compliance.rollers`.
     warm_start : array of object, shape (positions,)
         Of the model, see `Response`.
+    shifts : array of complex, shape (positions, discs, pairs), or None
+        Displacements of pins that several discs bend, mm.
     """
 
     parameter: FloatArray
     share: FloatArray
     warm_start: NDArray[np.object_]
+    shifts: ComplexArray | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
         """Return the start that a response gives for the next pose."""
-        return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
+        return cls(
+            parameter=response.flank.parameter,
+            share=response.rollers.share,
+            warm_start=response.warm_start,
+            shifts=getattr(response, "shifts", None),
+        )
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
-        return Start(parameter=self.parameter[rows], share=self.share[rows], warm_start=self.warm_start[rows])
+        return Start(
+            parameter=self.parameter[rows],
+            share=self.share[rows],
+            warm_start=self.warm_start[rows],
+            shifts=None if self.shifts is None else self.shifts[rows],
+        )
 
 
 def assemble_response(
@@ -177,6 +211,7 @@ def assemble_response(
     rollers: RollerState,
     bores: BoreMotion,
     warm_start: NDArray[np.object_] | None = None,
+    with_slopes: bool = False,
 ) -> Response:
     """Put the loads of uncoupled pairs together: generalised force and tangent.
 
@@ -188,6 +223,8 @@ def assemble_response(
         N and N/mm.
     warm_start : array of object, shape (positions,), optional
         See `Response`.
+    with_slopes : bool
+        Whether the slopes of the loads are wanted.
     """
     force = resultant(flank, pin_load, holes, hole_load, rollers, bores)
     tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
@@ -201,7 +238,54 @@ def assemble_response(
         pin_load=pin_load,
         hole_load=hole_load,
         warm_start=np.full(force.shape[0], None, dtype=object) if warm_start is None else warm_start,
+        slopes=_slopes(flank, pin_stiffness, holes, hole_stiffness) if with_slopes else None,
     )
+
+
+def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatArray) -> PairSlopes:
+    by_approach = np.concatenate((pin, hole), axis=1)
+    gradient = np.concatenate((flank.gradient, holes.gradient), axis=1)
+    return PairSlopes(by_approach=by_approach, by_pose=by_approach[..., None] * gradient)
+
+
+def coupled_slopes(
+    root: FloatArray, inside: FloatArray, changed: FloatArray, chosen: NDArray[np.intp], kept: NDArray[np.intp]
+) -> PairSlopes:
+    """Return how the loads follow approaches and pose where contacts feel each other: dF = r (1 + r C r)⁻¹ r dδ.
+
+    Parameters
+    ----------
+    root : array, shape (positions, chosen)
+        r, square root of the stiffness of each contact that may carry.
+    inside : array, shape (positions, chosen, chosen)
+        1 + r C r.
+    changed : array, shape (positions, chosen, coordinates)
+        (1 + r C r)⁻¹ r ∂δ/∂q.
+    chosen : array of int, shape (positions, chosen)
+        Which of all contacts they are.
+    kept : array of int
+        Numbers of wheel pins and shaft pins among all contacts, the last of which is the last of these.
+    """
+    positions, contacts, rows = (
+        root.shape[0],
+        max(int(kept[-1]), int(chosen.max())) + 1,
+        np.arange(root.shape[0])[:, None],
+    )
+    by_pose, by_approach = np.zeros((positions, contacts, changed.shape[2])), np.zeros((positions, contacts, contacts))
+    by_pose[rows, chosen] = root[..., None] * changed
+    between = root[..., None] * np.linalg.solve(inside, root[..., None] * np.eye(root.shape[1]))
+    by_approach[rows[..., None], chosen[:, :, None], chosen[:, None, :]] = between
+    return PairSlopes(by_approach=by_approach[:, kept[:, None], kept], by_pose=by_pose[:, kept])
+
+
+def split_shifts(
+    shifts: ComplexArray | None, geometry: ContactGeometry
+) -> tuple[ComplexArray | None, ComplexArray | None]:
+    """Return the displacements of wheel pins and of shaft pins, shape (positions, pairs); None for none."""
+    if shifts is None:
+        return None, None
+    pins = geometry.placement.wheel_pin_radii.shape[-1]
+    return shifts[:, :pins], shifts[:, pins:]
 
 
 def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -276,6 +360,8 @@ def join_positions(parts: Sequence[Any]) -> Any:
 
 def _of_arrays(function: Callable[..., NDArray[Any]], *parts: Any) -> Any:
     first = parts[0]
+    if first is None:
+        return None
     if isinstance(first, np.ndarray):
         return function(*parts)
     if isinstance(first, tuple):

@@ -180,11 +180,14 @@ class ContactGeometry:
         Where the parts stand, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
+    tip_share : float or array, shape (positions, 1, 1)
+        Displacement of a shaft pin at the disc by that of its tip, where a ring ties the tips.
     """
 
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
+    tip_share: float | FloatArray = 0.0
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
@@ -203,7 +206,14 @@ class ContactGeometry:
         """Return the geometry of some positions: itself for one drive, these rows of a batch."""
         if not self.placement.is_batch:
             return self
-        return replace(self, placement=self.placement.take(rows), profile=self.profile.take(rows))
+        tips = self.tip_share[rows] if isinstance(self.tip_share, np.ndarray) else self.tip_share
+        return replace(self, placement=self.placement.take(rows), profile=self.profile.take(rows), tip_share=tips)
+
+    @property
+    def tips_by_ring(self) -> ComplexArray:
+        """Displacement of the tips of the shaft pins by x, y and rotation of the ring that ties them, shape (…, z_PS, 3)."""
+        places = self.placement.shaft_pin_centres
+        return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates that a pose has: those of rigid members where it has no more than four."""
@@ -222,7 +232,13 @@ class ContactGeometry:
             pins = pins - np.angle(self.profile.turn)
         return np.asarray(crank_angle)[:, None] / self.placement.reduction_ratio + pins
 
-    def flank(self, crank_angle: FloatArray, pose: FloatArray, start: FloatArray | None = None) -> FlankMotion:
+    def flank(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: FloatArray | None = None,
+        shifts: ComplexArray | None = None,
+    ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
         Parameters
@@ -233,6 +249,8 @@ class ContactGeometry:
             q.
         start : array, shape (positions, z_P), optional
             First guess of the contact parameters; the nominal ones by default.
+        shifts : array of complex, shape (positions, z_P), optional
+            Displacements of the pins in the fixed frame, mm.
         """
         place, coordinates = self.placement, self.coordinates_of(pose)
         rotation, wheel_angle = pose[:, DISC_ROTATION, None], pose[:, WHEEL_ANGLE, None]
@@ -242,6 +260,8 @@ class ContactGeometry:
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
         pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
         arm = place.wheel_axis + pin - disc_centre
+        if shifts is not None:
+            arm = arm + shifts
         turn = unit(rotation)
         point = arm * turn.conjugate()
         if start is None:
@@ -276,19 +296,28 @@ class ContactGeometry:
             effective_radius=effective_radius,
         )
 
-    def holes(self, crank_angle: FloatArray, pose: FloatArray) -> PairMotion:
+    def holes(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
         disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
         arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
         play = place.shaft_pin_centres - disc_centre - arm
+        coordinates = self.coordinates_of(pose)
+        ring = self.tip_share * self.tips_by_ring if coordinates.ring else None
+        if ring is not None:
+            play = play + np.matmul(pose[:, None, coordinates.ring_place], ring.swapaxes(-1, -2))[:, 0]
+        if shifts is not None:
+            play = play + shifts
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
-        gradient, along = (np.zeros((*distance.shape, self.coordinates_of(pose).size)) for _ in range(2))
+        gradient, along = (np.zeros((*distance.shape, coordinates.size)) for _ in range(2))
         gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
         gradient[..., DISC_ROTATION] = -_cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
         along[..., DISC_ROTATION] = _dot(direction, arm)
+        if ring is not None:
+            gradient[..., coordinates.ring_place] = _dot(direction[..., None], ring)
+            along[..., coordinates.ring_place] = _cross(ring, direction[..., None])
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 

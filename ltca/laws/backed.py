@@ -20,7 +20,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.laws.beam import End, PinBeam
 from ltca.laws.conforming import ConformingLaw
-from ltca.laws.contact_law import ContactLaw, LoadLaw
+from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw
 
 FloatArray = NDArray[np.float64]
@@ -52,7 +52,7 @@ class BackedLaw:
 
     Attributes
     ----------
-    contact : LoadLaw
+    contact : EnergyLaw
         Of the contact itself.
     seat : SeatLaw or None
         What the seats yield.
@@ -62,7 +62,7 @@ class BackedLaw:
         c, mm/N.
     """
 
-    contact: LoadLaw
+    contact: EnergyLaw
     seat: SeatLaw | None
     play: FloatArray
     flexibility: float | FloatArray = 0.0
@@ -120,7 +120,7 @@ class BackedLaw:
         return near, load, stiffness, slope
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """Return ∫ F dδ of contact, seat and beam, N·mm; the contact's law has to know its own (`ContactLaw`)."""
+        """Return ∫ F dδ of contact, seat and beam, N·mm."""
         near, load, _, _ = self._solve(np.asarray(approach, dtype=float), effective_radius)
         held = 0.5 * self.flexibility * load**2
         if self.seat is not None:
@@ -130,7 +130,7 @@ class BackedLaw:
             for point, weight in zip(0.5 * (1.0 + GAUSS_POINTS), 0.5 * GAUSS_WEIGHTS, strict=True):
                 part, _ = self.seat.approach_and_compliance(load * point**3, np.broadcast_to(self.play, load.shape))
                 held = held - weight * 3.0 * point**2 * load * part
-        return np.asarray(self.known_contact.energy(near, effective_radius) + held)
+        return np.asarray(self.contact.energy(near, effective_radius) + held)
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the largest pressure of the contacts at mid-width, MPa."""
@@ -158,7 +158,7 @@ class BackedLaw:
         return self.contact
 
 
-def law_at(law: LoadLaw, rows: NDArray[np.intp] | NDArray[np.bool_]) -> LoadLaw:
+def law_at(law: EnergyLaw, rows: NDArray[np.intp] | NDArray[np.bool_]) -> EnergyLaw:
     """Return the law of some positions of a batch: what each of its drives has of its own at these."""
     if isinstance(law, BackedLaw):
         return law.take(rows)
@@ -167,7 +167,7 @@ def law_at(law: LoadLaw, rows: NDArray[np.intp] | NDArray[np.bool_]) -> LoadLaw:
     return law
 
 
-def of_pairs(law: LoadLaw, chosen: NDArray[np.intp]) -> LoadLaw:
+def of_pairs(law: EnergyLaw, chosen: NDArray[np.intp]) -> EnergyLaw:
     """Return the law of some pairs of one drive, shape (positions, chosen)."""
     return replace(law, play=law.play[chosen]) if isinstance(law, BackedLaw) else law
 
@@ -195,7 +195,7 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray) -> Cont
     return BackedLaw(contact=contact, seat=seat, play=play, flexibility=_own_flexibility(drive, beam))
 
 
-def back_shaft_pins(drive: Drive, contact: LoadLaw, play: FloatArray) -> LoadLaw:
+def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray) -> EnergyLaw:
     """Return the law of shaft pins and holes with the sleeves behind it; arguments as for `back_wheel_pins`."""
     shaft = drive.pin_shaft
     if shaft is None or shaft.seat.kind == "fixed":
@@ -247,6 +247,14 @@ def shaft_pin_beam(drive: Drive) -> PinBeam | None:
         youngs_modulus=material.youngs_modulus,
         poisson_ratio=material.poisson_ratio,
     )
+
+
+def tip_share(drive: Drive) -> float:
+    """Return how far a shaft pin moves at the disc of a drive of one disc where a ring moves its tip by one; 0 without ring."""
+    beam = shaft_pin_beam(drive)
+    if beam is None or beam.ends[1] == "free":
+        return 0.0
+    return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness)[0])
 
 
 def from_start(beam: PinBeam, drive: Drive) -> FloatArray:

@@ -18,13 +18,17 @@ class LoadLaw(Protocol):
         ...
 
 
-@runtime_checkable
-class ContactLaw(LoadLaw, Protocol):
-    """A law that knows its energy and its pressure at mid-width as well."""
+class EnergyLaw(LoadLaw, Protocol):
+    """A law that knows its energy."""
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return ∫ F dδ, N·mm."""
         ...
+
+
+@runtime_checkable
+class ContactLaw(EnergyLaw, Protocol):
+    """A law that knows its pressure at mid-width as well."""
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the largest pressure at mid-width, MPa."""

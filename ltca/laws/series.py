@@ -25,6 +25,10 @@ class SpringLaw:
         delta = np.asarray(approach, dtype=float)
         return self.stiffness * np.maximum(delta, 0.0), np.where(delta > 0.0, self.stiffness, 0.0)
 
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return ∫ F dδ, N·mm."""
+        return np.asarray(0.5 * self.stiffness * np.maximum(np.asarray(approach, dtype=float), 0.0) ** 2)
+
 
 def approach_at_load(
     law: LoadLaw, load: FloatArray, effective_radius: ArrayLike, start: FloatArray | None = None

@@ -20,7 +20,9 @@ def stored_energy(model, response, pose):
     for disc, part in zip(model.discs, disc_responses(response), strict=True):
         laws, flank = disc.roller_laws, part.flank
         total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
-        total = total + 0.5 * disc.hole_stiffness * (np.maximum(part.holes.approach, 0.0) ** 2).sum(axis=1)
+        total = total + disc.hole_law.energy(part.holes.approach, disc.geometry.placement.hole_effective_radii).sum(
+            axis=1
+        )
         total = total + laws.inner.energy(part.rollers.inner_approach, laws.inner_radius).sum(axis=1)
         total = total + laws.outer.energy(part.rollers.outer_approach, laws.outer_radius).sum(axis=1)
         step = 1e-4 * flank.effective_radius
