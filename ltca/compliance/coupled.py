@@ -183,14 +183,16 @@ class CoupledCompliance:
                 _Bodies(self, crank_angle[rows], pose[rows], take_positions(flank, rows), take_positions(holes, rows)),
                 start,
                 rows,
-                shifts is not None,
+                None if shifts is None else shifts[rows],
             )
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
         joined: Response = join_positions(parts)
         return joined
 
-    def _solve(self, bodies: _Bodies, start: Start | None, rows: NDArray[np.intp], with_slopes: bool) -> Response:
+    def _solve(
+        self, bodies: _Bodies, start: Start | None, rows: NDArray[np.intp], shifts: ComplexArray | None
+    ) -> Response:
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
@@ -198,7 +200,7 @@ class CoupledCompliance:
                     guess[row] = warm
         for margin in (MARGIN, np.inf):
             batch = _Batch(bodies, margin)
-            response = batch.response(batch.solve(guess), with_slopes)
+            response = batch.response(batch.solve(guess), shifts)
             if response is not None:
                 return response
         raise AssertionError("all contacts are taken, none is left out")
@@ -379,7 +381,7 @@ class _Batch:
                 return near, matrix  # round-off of radii of 100 mm
         raise ConvergenceError("near-field approaches do not settle; largest residual in mm", history)
 
-    def response(self, solution: tuple[FloatArray, FloatArray], with_slopes: bool) -> Response | None:
+    def response(self, solution: tuple[FloatArray, FloatArray], shifts: ComplexArray | None) -> Response | None:
         """Return forces and tangent at the solution; None where a contact that was left out is pressed together."""
         near, matrix = solution
         bodies, (on_flank, in_bore, in_holes), outer = self.bodies, self.loaded, self.outer
@@ -445,5 +447,6 @@ class _Batch:
             pin_load=pin_load,
             hole_load=hole_load,
             warm_start=warm_start,
-            slopes=coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept) if with_slopes else None,
+            shifts=shifts,
+            slopes=None if shifts is None else coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
         )

@@ -209,7 +209,7 @@ class HalfSpaceCompliance:
             hole_stiffness,
             rollers,
             bores,
-            with_slopes=shifts is not None,
+            shifts=shifts,
         )
 
     def pressures(self, response: Response) -> ContactPressures:

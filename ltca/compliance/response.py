@@ -58,8 +58,11 @@ class Response:
     warm_start : array of object, shape (positions,)
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
         wants nothing. It saves work and alters no answer. Of several discs shape (positions, discs).
+    shifts : array of complex, shape (positions, pairs), or None
+        Displacements of wheel pins and shaft pins that were given, mm: what the forces of other discs make them yield.
+        Of several discs shape (positions, discs, pairs).
     slopes : PairSlopes or None
-        Where displacements of the pins were given.
+        Where they were given.
     """
 
     force: FloatArray
@@ -70,6 +73,7 @@ class Response:
     pin_load: FloatArray
     hole_load: FloatArray
     warm_start: NDArray[np.object_]
+    shifts: ComplexArray | None = None
     slopes: PairSlopes | None = None
 
 
@@ -188,7 +192,7 @@ class Start:
             parameter=response.flank.parameter,
             share=response.rollers.share,
             warm_start=response.warm_start,
-            shifts=getattr(response, "shifts", None),
+            shifts=response.shifts,
         )
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
@@ -211,7 +215,7 @@ def assemble_response(
     rollers: RollerState,
     bores: BoreMotion,
     warm_start: NDArray[np.object_] | None = None,
-    with_slopes: bool = False,
+    shifts: ComplexArray | None = None,
 ) -> Response:
     """Put the loads of uncoupled pairs together: generalised force and tangent.
 
@@ -223,8 +227,8 @@ def assemble_response(
         N and N/mm.
     warm_start : array of object, shape (positions,), optional
         See `Response`.
-    with_slopes : bool
-        Whether the slopes of the loads are wanted.
+    shifts : array of complex, shape (positions, pairs), optional
+        See `Response`; slopes are wanted with them.
     """
     force = resultant(flank, pin_load, holes, hole_load, rollers, bores)
     tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
@@ -238,7 +242,8 @@ def assemble_response(
         pin_load=pin_load,
         hole_load=hole_load,
         warm_start=np.full(force.shape[0], None, dtype=object) if warm_start is None else warm_start,
-        slopes=_slopes(flank, pin_stiffness, holes, hole_stiffness) if with_slopes else None,
+        shifts=shifts,
+        slopes=None if shifts is None else _slopes(flank, pin_stiffness, holes, hole_stiffness),
     )
 
 

@@ -41,12 +41,9 @@ class ReducerResponse(Response):
     ----------
     parts : tuple of Response
         Of each disc alone, by its own pose.
-    shifts : array of complex, shape (positions, discs, pairs), or None
-        Displacements of pins that several discs bend: what the others' forces make each disc find them moved by, mm.
     """
 
     parts: tuple[Response, ...]
-    shifts: ComplexArray | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -215,6 +215,14 @@ class ContactGeometry:
         places = self.placement.shaft_pin_centres
         return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
 
+    def moved_by_ring(self, pose: FloatArray) -> ComplexArray | None:
+        """Return how far the ring moves the shaft pins at the disc, shape (positions, z_PS), mm; None without ring."""
+        coordinates = self.coordinates_of(pose)
+        if not coordinates.ring:
+            return None
+        by_ring = self.tip_share * self.tips_by_ring
+        return np.asarray(np.matmul(pose[:, None, coordinates.ring_place], by_ring.swapaxes(-1, -2))[:, 0])
+
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates that a pose has: those of rigid members where it has no more than four."""
         return Coordinates() if pose.shape[-1] == RIGID else self.coordinates
@@ -303,9 +311,9 @@ class ContactGeometry:
         arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
         play = place.shaft_pin_centres - disc_centre - arm
         coordinates = self.coordinates_of(pose)
-        ring = self.tip_share * self.tips_by_ring if coordinates.ring else None
-        if ring is not None:
-            play = play + np.matmul(pose[:, None, coordinates.ring_place], ring.swapaxes(-1, -2))[:, 0]
+        ring, tips = self.tip_share * self.tips_by_ring, self.moved_by_ring(pose)
+        if tips is not None:
+            play = play + tips
         if shifts is not None:
             play = play + shifts
         distance = np.sqrt(play.real**2 + play.imag**2)
@@ -315,7 +323,7 @@ class ContactGeometry:
         gradient[..., DISC_ROTATION] = -_cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
         along[..., DISC_ROTATION] = _dot(direction, arm)
-        if ring is not None:
+        if tips is not None:
             gradient[..., coordinates.ring_place] = _dot(direction[..., None], ring)
             along[..., coordinates.ring_place] = _cross(ring, direction[..., None])
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)

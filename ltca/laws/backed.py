@@ -189,33 +189,22 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray) -> Cont
     ContactLaw
         That of the contact itself for fixed pins that do not bend.
     """
-    beam, seat = wheel_pin_beam(drive), _wheel_seat(drive)
+    beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
         return contact
-    return BackedLaw(contact=contact, seat=seat, play=play, flexibility=_own_flexibility(drive, beam))
+    return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam))
 
 
 def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray) -> EnergyLaw:
     """Return the law of shaft pins and holes with the sleeves behind it; arguments as for `back_wheel_pins`."""
-    shaft = drive.pin_shaft
-    if shaft is None or shaft.seat.kind == "fixed":
-        return contact
-    seat, parts = shaft.seat, drive.materials
-    law = ConformingLaw.of_bodies(
-        pin=parts.shaft_pin,
-        bore=parts.sleeve,
-        pin_radius=seat.pin_radius or 0.0,
-        bore_radius=seat.bore_radius or 0.0,
-        datum_radius=shaft.pin_radius,
-        length=drive.disc.thickness,
-    )
-    return BackedLaw(contact=contact, seat=law, play=play)
+    seat = shaft_pin_seat(drive)
+    return contact if seat is None else BackedLaw(contact=contact, seat=seat, play=play)
 
 
 def shaft_pin_spring(drive: Drive) -> float:
     """Return what a shaft pin yields behind one disc by that disc alone, mm/N: as a spring, or as a beam at its plane."""
     beam = shaft_pin_beam(drive)
-    return 1.0 / drive.hole_stiffness if beam is None else _own_flexibility(drive, beam)
+    return 1.0 / drive.hole_stiffness if beam is None else own_flexibility(drive, beam)
 
 
 def wheel_pin_beam(drive: Drive) -> PinBeam | None:
@@ -262,13 +251,30 @@ def from_start(beam: PinBeam, drive: Drive) -> FloatArray:
     return np.asarray(drive.disc.disc_planes) + 0.5 * beam.span
 
 
-def _own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
+def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
+    """Return what the pin of a drive of one disc yields by that disc alone, mm/N; 0 for no beam."""
     if beam is None:
         return 0.0
     return float(beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)[0, 0])
 
 
-def _wheel_seat(drive: Drive) -> ConformingLaw | None:
+def shaft_pin_seat(drive: Drive) -> ConformingLaw | None:
+    """Return the law of the sleeves on the shaft pins of a drive of one disc; None without sleeves."""
+    shaft, parts = drive.pin_shaft, drive.materials
+    if shaft is None or shaft.seat.kind == "fixed":
+        return None
+    return ConformingLaw.of_bodies(
+        pin=parts.shaft_pin,
+        bore=parts.sleeve,
+        pin_radius=shaft.seat.pin_radius or 0.0,
+        bore_radius=shaft.seat.bore_radius or 0.0,
+        datum_radius=shaft.pin_radius,
+        length=drive.disc.thickness,
+    )
+
+
+def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
+    """Return the law of the wheel pins in their slots, or of the sleeves on them, of a drive of one disc; None for fixed pins."""
     wheel, parts, length = drive.pin_wheel, drive.materials, drive.disc.thickness
     if wheel.seat.kind == "slot":
         radius = wheel.seat.radius or 0.0
