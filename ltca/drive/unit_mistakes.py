@@ -26,9 +26,15 @@ DIAMOND, STIFF = 1.2e6, 2e6
 """Young's modulus of diamond, and one that nothing has, MPa."""
 METALS = 40e3, 700e3
 """Young's moduli of magnesium and of cemented carbide, MPa."""
-PARTS = tuple(item.name for item in fields(Materials) if item.name != "crankshaft")
 BORNE = 10_000.0
 """Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
+
+
+def _parts(drive: Drive) -> list[str]:
+    """Parts whose material is pressed; crankshafts, and slots and sleeves where there are none, are of no account."""
+    seats = {drive.pin_wheel.seat.kind} | (set() if drive.pin_shaft is None else {drive.pin_shaft.seat.kind})
+    counts = {"crankshaft": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
+    return [item.name for item in fields(Materials) if counts.get(item.name, True)]
 
 
 def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]:
@@ -71,7 +77,7 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
 
 def _modulus(drive: Drive) -> list[str]:
     values: dict[float, list[str]] = {}
-    for part in PARTS:
+    for part in _parts(drive):
         values.setdefault(getattr(drive.materials, part).youngs_modulus, []).append(part)
     return [
         f"materials.{', '.join(names)}: youngs_modulus = {value:g} MPa is softer than any rigid plastic (some {SOFT:g} MPa) "
@@ -85,7 +91,7 @@ def _pressure(drive: Drive, share: float) -> float:
     """Hertz pressure of a wheel pin under its part of the torque, a third of the pins carrying, MPa."""
     lever = drive.crank.eccentricity * drive.reduction_ratio
     load = share / (lever * drive.pin_wheel.number_of_pins / 3.0)
-    modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
+    modulus = contact_modulus(drive.materials.disc, drive.flank_pin)
     return sqrt(load * modulus / (pi * drive.disc.thickness * drive.pin_wheel.pin_radius))
 
 
@@ -151,15 +157,16 @@ def stiffness_warning(drive: Drive) -> str | None:
     drive : Drive
         The drive.
     """
-    for part in PARTS:
+    parts = _parts(drive)
+    for part in parts:
         modulus = getattr(drive.materials, part).youngs_modulus
         if modulus > STIFF:
             return (
                 f"materials.{part}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
                 "number is MPa, not Pa"
             )
-    stiffest = max(getattr(drive.materials, part).youngs_modulus for part in PARTS)
-    for part in PARTS:
+    stiffest = max(getattr(drive.materials, part).youngs_modulus for part in parts)
+    for part in parts:
         modulus = getattr(drive.materials, part).youngs_modulus
         if METALS[0] <= 1000.0 * modulus <= METALS[1] and stiffest >= 100.0 * modulus:
             return (
