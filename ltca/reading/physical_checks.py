@@ -257,7 +257,8 @@ def _holes(drive: Drive) -> Iterator[str]:
     if shaft is None:
         return
     play = shaft.hole_radius - shaft.pin_radius
-    # Seen from the hole, a sleeve with play is a smaller fixed pin. Pins in tight holes push the disc along the eccentricity: by half of it they would lead it no more.
+    # Seen from the hole, a sleeve with play is a smaller fixed pin. Pins in tight holes push the disc along the
+    # eccentricity: by half of it they would lead it no more.
     most = min(deviation_bound(drive), 0.5 * e)
     smallest = shaft.pin_radius - shaft.seat_play + e - drive.clearance.pin_hole - most
     if shaft.hole_radius < smallest - ROUNDING:

@@ -190,7 +190,11 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
     wheel, shaft, name = drive.pin_wheel, drive.pin_shaft, path.rpartition(".")[2]
     if path.startswith(("crank.support.", "materials.crankshaft.")) and drive.crank.support is None:
         return _SUPPORT
-    kinds = {"pin_wheel.seat.radius": "slot", "pin_wheel.seat.pin_radius": "sleeve", "pin_wheel.seat.bore_radius": "sleeve"}
+    kinds = {
+        "pin_wheel.seat.radius": "slot",
+        "pin_wheel.seat.pin_radius": "sleeve",
+        "pin_wheel.seat.bore_radius": "sleeve",
+    }
     kinds |= {f"materials.{part}.{name}": kind for part, kind in (("wheel_seat", "slot"), ("sleeve", "sleeve"))}
     if path in kinds and wheel.seat.kind != kinds[path]:
         return _seat(drive, "pin_wheel", kinds[path])

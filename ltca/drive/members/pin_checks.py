@@ -116,9 +116,7 @@ def _slots(wheel: PinWheel) -> Iterator[str]:
         )
 
 
-def _beam(
-    drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str
-) -> Iterator[str]:
+def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[str]:
     half, thickness, planes = 0.5 * beam.span, drive.disc.thickness, drive.disc.disc_planes
     disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
     reach = abs(planes[disc]) + 0.5 * thickness

@@ -151,7 +151,7 @@ def test_several_mistakes_come_together():
         "-4.0",
         "'11.8 N'",
         "number_of_rollers = 0",
-        "stifness",
+        "hole_radus",
         "`hole_radius`, which is missing",
         "bearing = nan",
     ):
