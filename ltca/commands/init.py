@@ -9,7 +9,9 @@ from pathlib import Path
 
 from ltca.reading.arguments import path_argument
 
-SUMMARY = "write a commented drive file to start from: the paper's drive, a robot joint's, an RV reducer's, one of loose pins"
+SUMMARY = (
+    "write a commented drive file to start from: the paper's drive, a robot joint's, an RV reducer's, one of loose pins"
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -14,7 +14,7 @@ from dataclasses import fields
 from math import pi, sqrt
 from typing import ParamSpec, TypeVar
 
-from ltca.drive.parts import Drive, Materials, contact_modulus
+from ltca.drive.parts import Drive, Material, Materials, contact_modulus
 from ltca.errors import ConvergenceError, CycloError, DriveError
 
 P = ParamSpec("P")
@@ -62,17 +62,44 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
                 f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m and would press the wheel pins with some "
                 f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
             ]
-    shaft = drive.pin_shaft
-    if shaft is None or shaft.stiffness is None:
+    return _yielding(drive, share)
+
+
+def _yielding(drive: Drive, share: float) -> list[str]:
+    """Pins so soft, or so long, that they would leave their place."""
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    if wheel.beam is not None:
+        bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / wheel.beam.span**3
+        load = _pin_load(drive, share)
+        if load / bending > 0.5 * wheel.pin_radius:
+            return [_too_long("pin_wheel.beam", wheel.beam.span, wheel.beam_diameter, load / bending)]
+    if shaft is None:
         return []
     # Some third of the pins carry, on a lever of about two thirds of their circle.
     load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)
-    if load / shaft.stiffness > 0.5 * shaft.hole_radius:
+    if shaft.beam is not None:
+        # In the middle of the span, half of it from the flange.
+        bending = 24.0 * _bending_stiffness(drive.materials.shaft_pin, shaft.beam_diameter) / shaft.beam.span**3
+        if load / bending > 0.5 * shaft.hole_radius:
+            return [_too_long("pin_shaft.beam", shaft.beam.span, shaft.beam_diameter, load / bending)]
+    if shaft.stiffness is not None and load / shaft.stiffness > 0.5 * shaft.hole_radius:
         return [
             f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: a shaft pin would yield by {load / shaft.stiffness:.3g} mm "
             'under its load; a plain number is N/mm, a thousand newtons a micrometre are 1e6 or "1000 N/µm"'
         ]
     return []
+
+
+def _bending_stiffness(material: Material, diameter: float) -> float:
+    """E I of a round bar, N·mm²."""
+    return material.youngs_modulus * pi * diameter**4 / 64.0
+
+
+def _too_long(path: str, span: float, diameter: float, bent: float) -> str:
+    return (
+        f"{path}.span = {span:g} mm: a pin of {diameter:g} mm would bend by {bent:.3g} mm under its load; a plain number is mm, "
+        'micrometres are written "16000 µm"'
+    )
 
 
 def _modulus(drive: Drive) -> list[str]:
@@ -87,10 +114,15 @@ def _modulus(drive: Drive) -> list[str]:
     ]
 
 
-def _pressure(drive: Drive, share: float) -> float:
-    """Hertz pressure of a wheel pin under its part of the torque, a third of the pins carrying, MPa."""
+def _pin_load(drive: Drive, share: float) -> float:
+    """Load of a wheel pin under its part of the torque, a third of the pins carrying, N."""
     lever = drive.crank.eccentricity * drive.reduction_ratio
-    load = share / (lever * drive.pin_wheel.number_of_pins / 3.0)
+    return share / (lever * drive.pin_wheel.number_of_pins / 3.0)
+
+
+def _pressure(drive: Drive, share: float) -> float:
+    """Hertz pressure of such a pin, MPa."""
+    load = _pin_load(drive, share)
     modulus = contact_modulus(drive.materials.disc, drive.flank_pin)
     return sqrt(load * modulus / (pi * drive.disc.thickness * drive.pin_wheel.pin_radius))
 

@@ -54,7 +54,7 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
     """Fields and radii of a seat, its play at most a part of the eccentricity."""
     kind = part.seat.kind
     given = {name: getattr(part.seat, name, None) for name in BELONGS}
-    said = f'{path}.seat.kind = "{kind}"'
+    said = f'{path}.seat.kind = "{kind}"' + (" (the default)" if kind == "fixed" else "")
     sound = True
     for name, value in given.items():
         if value is not None and BELONGS[name] != kind:
@@ -109,8 +109,8 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
 
 def _slots(wheel: PinWheel) -> Iterator[str]:
     room, radius = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins), wheel.seat.radius or 0.0
-    # Where the pins overlap themselves that is told.
-    if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius:
+    # Where the pins overlap themselves, or have no hold in their slots, that is told.
+    if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
         yield (
             f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
         )

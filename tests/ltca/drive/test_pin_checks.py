@@ -45,6 +45,7 @@ WRONG = [
     ({"pin_wheel.seat.radius": 3.5}, "pin_wheel.seat.radius = 3.5 mm: must be greater than 3.5 mm (pin_wheel.pin_radius), or"),
     ({"pin_wheel.seat.radius": 0.0}, "pin_wheel.seat.radius = 0.0: must be greater than 0 mm"),
     ({"pin_wheel.seat.radius": 7.0}, "pin_wheel.seat.radius = 7 mm: must be less than 7 mm, twice pin_wheel.pin_radius"),
+    ({"pin_wheel.seat.radius": 35.1}, "pin_wheel.seat.radius = 35.1 mm: must be less than 7 mm, twice pin_wheel.pin_radius"),
     ({"pin_wheel.seat.radius": 5.1}, "pin_wheel.seat.radius = 5.1 mm: must be at most 5 mm, pin_wheel.pin_radius and the ecc"),
     (
         {"pin_wheel.pin_errors.diameter": (0.02,) + (0.0,) * 29},
