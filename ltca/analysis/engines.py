@@ -23,7 +23,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_one_bore, require_rigid_members
+from ltca.drive.plane_strain import require_fixed_pins, require_one_bore, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
@@ -183,6 +183,8 @@ class HalfSpace:
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
+        if self.method != "tables":
+            require_fixed_pins(drive, f"method {self.method}")
         singles = single_discs(drive)
         supports, pins = support_stiffness(drive), SharedPins.of_drive(drive)
         tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
