@@ -44,6 +44,7 @@ from numpy.typing import ArrayLike, NDArray
 from ltca.drive.materials import Material, contact_modulus
 from ltca.errors import DriveError
 from ltca.frozen_arrays import freeze
+from ltca.laws.sleeve_wall import sleeve_wall
 
 FloatArray = NDArray[np.float64]
 
@@ -118,7 +119,9 @@ def _points() -> tuple[_Points, _Points, _Points]:
     return plain, logarithmic, _Points(s=s, weights=np.empty(0), functions=_functions(s))
 
 
-def solve_arc(half_width: float, mismatch: float, breathing: float) -> ArcSolution:
+def solve_arc(
+    half_width: float, mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
+) -> ArcSolution:
     """Return the contact over a given arc.
 
     Parameters
@@ -129,6 +132,8 @@ def solve_arc(half_width: float, mismatch: float, breathing: float) -> ArcSoluti
         η; zero for equal materials.
     breathing : float
         c₀; one for equal materials.
+    sleeve : tuple of float, optional
+        κ, a/R and E*/4μ of a sleeve; the bore is in an infinite body without.
     """
     b = half_width
     plain, logarithmic, points = _points()
@@ -152,6 +157,15 @@ def solve_arc(half_width: float, mismatch: float, breathing: float) -> ArcSoluti
     system[-1, :-1] = np.pi * first
     right = np.zeros(FUNCTIONS + 1)
     right[-1] = 1.0
+    if sleeve is not None:
+        kappa, ratio, part = sleeve
+        wall = sleeve_wall(kappa, ratio)
+        n = np.arange(len(wall.own), dtype=float)[:, None]
+        harmonics = (weights * np.cos(n * angle)) @ plain.functions / np.pi
+        harmonics[0] *= 0.5
+        waves = part * (1.0 - n**2) * np.cos(n * 2.0 * np.arctan(b * points.s))
+        system[:-1, :-1] += (waves * wall.own[:, None]).T @ harmonics
+        right[:-1] = -wall.across @ waves
     solved = np.asarray(np.linalg.solve(system, right), dtype=float)
     angle, weights = logarithmic.on_arc(b)
     # Σ over n ≥ 2 of (1 + η)/(n + 1) + (1 − η)/(n − 1) times cos nθ, and half the harmonic n = 0.
@@ -162,6 +176,10 @@ def solve_arc(half_width: float, mismatch: float, breathing: float) -> ArcSoluti
         + 0.5 * breathing
     )
     approach = (weights * kernel) @ (logarithmic.functions @ solved[:-1]) / np.pi
+    if sleeve is not None:
+        # Less the first harmonic, which does not know the arc.
+        moved = np.where(n[:, 0] == 1.0, 0.0, wall.own - wall.back) @ harmonics
+        approach += part * (moved @ solved[:-1] + wall.across.sum() + wall.outside)
     return ArcSolution(half_width=b, play=float(solved[-1]), approach=float(approach), coefficients=solved[:-1])
 
 
@@ -192,21 +210,29 @@ class ConformingSeries:
         return np.asarray(chebyshev.chebval(2.0 * z - 1.0, series, tensor=False))
 
 
-def _neat_fit(mismatch: float, breathing: float) -> float:
+def _neat_fit(mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None) -> float:
     """Return b where the play is nothing beside the load."""
-    low, high = 0.3, 1.0
-    while solve_arc(high, mismatch, breathing).play > 0.0:
-        low, high = high, 1.5 * high
-    at_low, at_high = (solve_arc(b, mismatch, breathing).play for b in (low, high))
-    for _ in range(60):  # Illinois' regula falsi
+
+    def left(b: float) -> float:
+        """Play times b², 1/π for small arcs."""
+        return b**2 * solve_arc(b, mismatch, breathing, sleeve).play
+
+    # In small steps: sleeves so thin that they bend away have more such arcs, far beyond the first.
+    low = 0.3 if sleeve is None else 0.002
+    high = 1.2 * low
+    at_low, at_high = left(low), left(high)
+    while at_high > 0.0:
+        low, high, at_low = high, 1.2 * high, at_high
+        at_high = left(high)
+    for _ in range(80):  # Illinois' regula falsi
         b = (low * at_high - high * at_low) / (at_high - at_low)
-        play = solve_arc(b, mismatch, breathing).play
-        if abs(play) < 1e-14:
+        found = left(b)
+        if abs(found) < 1e-14:
             break
-        if play < 0.0:
-            high, at_high, at_low = b, play, 0.5 * at_low
+        if found < 0.0:
+            high, at_high, at_low = b, found, 0.5 * at_low
         else:
-            low, at_low, at_high = b, play, 0.5 * at_high
+            low, at_low, at_high = b, found, 0.5 * at_high
     return b
 
 
@@ -215,7 +241,9 @@ def _fit(nodes: FloatArray, values: FloatArray) -> FloatArray:
 
 
 @lru_cache(maxsize=256)
-def conforming_series(mismatch: float, breathing: float) -> ConformingSeries:
+def conforming_series(
+    mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
+) -> ConformingSeries:
     """Return the series of two materials.
 
     Parameters
@@ -224,11 +252,13 @@ def conforming_series(mismatch: float, breathing: float) -> ConformingSeries:
         η; zero for equal materials.
     breathing : float
         c₀; one for equal materials.
+    sleeve : tuple of float, optional
+        κ, a/R and E*/4μ of a sleeve; the bore is in an infinite body without.
     """
-    widest = _neat_fit(mismatch, breathing)
+    widest = _neat_fit(mismatch, breathing, sleeve)
     nodes = chebyshev.chebpts1(DEGREE + 1)
     place = 0.5 * (nodes + 1.0)
-    arcs = [solve_arc(float(b), mismatch, breathing) for b in widest * place]
+    arcs = [solve_arc(float(b), mismatch, breathing, sleeve) for b in widest * place]
     b = np.array([arc.half_width for arc in arcs])
     # Analytic in b: b² times the play, b times the peak pressure, the approach without its logarithm.
     play = _fit(nodes, b**2 * [arc.play for arc in arcs])
@@ -260,6 +290,44 @@ def conforming_series(mismatch: float, breathing: float) -> ConformingSeries:
             slope=np.asarray(2.0 * chebyshev.chebder(closing), dtype=float),
         )
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Seat:
+    """Dimensionless numbers of a pin and the body around it; `part` and κ are those of that body.
+
+    Rounded where series are found by them: the same materials with another last bit share theirs.
+    """
+
+    modulus: float
+    radius: float
+    mismatch: float
+    breathing: float
+    kappa: float
+    part: float
+    pin_first: float
+
+    @classmethod
+    def of_bodies(cls, pin: Material, bore: Material, pin_radius: float, bore_radius: float, length: float) -> _Seat:
+        if not 0.0 < pin_radius <= bore_radius:
+            raise DriveError(
+                [f"pin radius {pin_radius:g} mm: must be greater than 0 mm and at most {bore_radius:g} mm, its bore"]
+            )
+        if not length > 0.0:
+            raise DriveError([f"length {length:g} mm of a seat: must be greater than 0 mm"])
+        modulus = contact_modulus(pin, bore)
+        pin_kappa, kappa = (3.0 - 4.0 * part.poisson_ratio for part in (pin, bore))
+        # E*/4μ of each body
+        pin_part, part = (0.5 * modulus * (1.0 + part.poisson_ratio) / part.youngs_modulus for part in (pin, bore))
+        return cls(
+            modulus=modulus,
+            radius=float(np.sqrt(pin_radius * bore_radius)),
+            mismatch=round(0.5 * ((pin_kappa - 1.0) * pin_part - (kappa - 1.0) * part), 12),
+            breathing=round(max((pin_kappa - 1.0) * pin_part + 2.0 * part, SMALLEST_BREATHING), 12),
+            kappa=kappa,
+            part=round(part, 12),
+            pin_first=0.5 * (pin_kappa - 1.0) * pin_part,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -315,29 +383,65 @@ class ConformingLaw:
         DriveError
             When a radius or the length leaves no such bodies.
         """
-        if not 0.0 < pin_radius <= bore_radius:
-            raise DriveError(
-                [f"pin radius {pin_radius:g} mm: must be greater than 0 mm and at most {bore_radius:g} mm, its bore"]
-            )
         if not datum_radius >= bore_radius:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
-        if not length > 0.0:
-            raise DriveError([f"length {length:g} mm of a seat: must be greater than 0 mm"])
-        modulus, radius = contact_modulus(pin, bore), float(np.sqrt(pin_radius * bore_radius))
-        pin_kappa, bore_kappa = (3.0 - 4.0 * part.poisson_ratio for part in (pin, bore))
-        # E*/4μ of each body
-        pin_part, bore_part = (0.5 * modulus * (1.0 + part.poisson_ratio) / part.youngs_modulus for part in (pin, bore))
-        mismatch = 0.5 * ((pin_kappa - 1.0) * pin_part - (bore_kappa - 1.0) * bore_part)
-        breathing = max((pin_kappa - 1.0) * pin_part + 2.0 * bore_part, SMALLEST_BREATHING)
-        yielding = 2.0 * bore_kappa / (bore_kappa + 1.0) * np.log(datum_radius / radius) + 0.5
-        first = 0.5 * (pin_kappa - 1.0) * pin_part + yielding * bore_part
+        seat = _Seat.of_bodies(pin, bore, pin_radius, bore_radius, length)
+        yielding = 2.0 * seat.kappa / (seat.kappa + 1.0) * np.log(datum_radius / seat.radius) + 0.5
         return cls(
             length=length,
-            radius=radius,
-            contact_modulus=modulus,
-            first_harmonic=float(first / np.pi),
-            # Rounded: the same materials in other units of the last bit share their series.
-            series=conforming_series(round(mismatch, 12), round(breathing, 12)),
+            radius=seat.radius,
+            contact_modulus=seat.modulus,
+            first_harmonic=float((seat.pin_first + yielding * seat.part) / np.pi),
+            series=conforming_series(seat.mismatch, seat.breathing),
+        )
+
+    @classmethod
+    def of_sleeve(
+        cls,
+        *,
+        pin: Material,
+        sleeve: Material,
+        pin_radius: float,
+        bore_radius: float,
+        outer_radius: float,
+        datum: float,
+        length: float,
+    ) -> ConformingLaw:
+        """Return the law of a sleeve between its pin and a load outside, in line: pin, seat and wall of the sleeve.
+
+        The load outside is narrow beside the wall. Its own law counts the sleeve as a half-plane down to the datum
+        distance (`ltca.laws.plane_strain`); what is left of the travel between the pin and the patch outside is here.
+
+        Parameters
+        ----------
+        pin, sleeve : Material
+            Of both bodies.
+        pin_radius, bore_radius, outer_radius : float
+            mm.
+        datum : float
+            Distance D of the law of the load outside, mm. With D much larger than the wall nothing may be left, or less.
+        length : float
+            mm.
+
+        Raises
+        ------
+        DriveError
+            When a radius or the length leaves no such bodies.
+        """
+        if not outer_radius > bore_radius:
+            raise DriveError(
+                [f"outer radius {outer_radius:g} mm of a sleeve: must be greater than {bore_radius:g} mm, its bore"]
+            )
+        seat = _Seat.of_bodies(pin, sleeve, pin_radius, bore_radius, length)
+        kappa, ratio = round(seat.kappa, 12), round(seat.radius / outer_radius, 12)
+        wall = sleeve_wall(kappa, ratio)
+        yielding = wall.own[1] - wall.back[1] + (kappa + 1.0) * np.log(outer_radius / datum)
+        return cls(
+            length=length,
+            radius=seat.radius,
+            contact_modulus=seat.modulus,
+            first_harmonic=float((seat.pin_first + yielding * seat.part) / np.pi),
+            series=conforming_series(seat.mismatch, seat.breathing, (kappa, ratio, seat.part)),
         )
 
     def _place(self, load: ArrayLike, play: ArrayLike) -> tuple[FloatArray, FloatArray]:
