@@ -48,7 +48,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, X, Y
 from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
-from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_spring
+from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_spring, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw, approach_at_load
 
@@ -133,7 +133,7 @@ class CoupledCompliance:
                     f"{drive.shape_fingerprint()}"
                 ]
             )
-        geometry = ContactGeometry.of_drive(drive)
+        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         place = geometry.placement
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
@@ -179,20 +179,13 @@ class CoupledCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         holes = self.geometry.holes(crank_angle, pose, moved[1])
         parts = [
-            self._solve(
-                _Bodies(self, crank_angle[rows], pose[rows], take_positions(flank, rows), take_positions(holes, rows)),
-                start,
-                rows,
-                None if shifts is None else shifts[rows],
-            )
+            self._solve(_Bodies(self, *take_positions((crank_angle, pose, flank, holes, shifts), rows)), start, rows)
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
         joined: Response = join_positions(parts)
         return joined
 
-    def _solve(
-        self, bodies: _Bodies, start: Start | None, rows: NDArray[np.intp], shifts: ComplexArray | None
-    ) -> Response:
+    def _solve(self, bodies: _Bodies, start: Start | None, rows: NDArray[np.intp]) -> Response:
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
@@ -200,7 +193,7 @@ class CoupledCompliance:
                     guess[row] = warm
         for margin in (MARGIN, np.inf):
             batch = _Batch(bodies, margin)
-            response = batch.response(batch.solve(guess), shifts)
+            response = batch.response(batch.solve(guess))
             if response is not None:
                 return response
         raise AssertionError("all contacts are taken, none is left out")
@@ -228,9 +221,15 @@ class _Bodies:
     """Some positions at given poses, undeformed: where their contacts are and how far they overlap."""
 
     def __init__(
-        self, model: CoupledCompliance, angle: FloatArray, pose: FloatArray, flank: FlankMotion, holes: PairMotion
+        self,
+        model: CoupledCompliance,
+        angle: FloatArray,
+        pose: FloatArray,
+        flank: FlankMotion,
+        holes: PairMotion,
+        shifts: ComplexArray | None,
     ) -> None:
-        self.model, self.flank, self.holes = model, flank, holes
+        self.model, self.flank, self.holes, self.shifts = model, flank, holes, shifts
         self.bores, self.rays = model.geometry.bores(angle, pose), model.geometry.rollers(angle)
         bores, each = self.bores, self.rays.bore_play.size
         self.displacement, self.moved = bores.each(bores.displacement, each), bores.each(bores.gradient, each)
@@ -360,12 +359,11 @@ class _Batch:
         residual, matrix = self.evaluate(near)
         size = np.max(np.abs(residual), axis=1)
         history: list[float] = []
-        one = np.eye(near.shape[1])
         for _ in range(ITERATIONS):
             history.append(float(np.max(size, initial=0.0)))
             if history[-1] < 1e-13:
                 return near, matrix
-            jacobian = one + matrix * self.stiffness[:, None, :]
+            jacobian = np.eye(near.shape[1]) + matrix * self.stiffness[:, None, :]
             step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
             fraction = np.ones(near.shape[0])
             for _ in range(12):
@@ -381,7 +379,7 @@ class _Batch:
                 return near, matrix  # round-off of radii of 100 mm
         raise ConvergenceError("near-field approaches do not settle; largest residual in mm", history)
 
-    def response(self, solution: tuple[FloatArray, FloatArray], shifts: ComplexArray | None) -> Response | None:
+    def response(self, solution: tuple[FloatArray, FloatArray]) -> Response | None:
         """Return forces and tangent at the solution; None where a contact that was left out is pressed together."""
         near, matrix = solution
         bodies, (on_flank, in_bore, in_holes), outer = self.bodies, self.loaded, self.outer
@@ -447,6 +445,8 @@ class _Batch:
             pin_load=pin_load,
             hole_load=hole_load,
             warm_start=warm_start,
-            shifts=shifts,
-            slopes=None if shifts is None else coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
+            shifts=bodies.shifts,
+            slopes=None
+            if bodies.shifts is None
+            else coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
         )

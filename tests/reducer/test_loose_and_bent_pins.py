@@ -10,10 +10,14 @@ from scipy.optimize import root
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficients import without_coupling
+from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import disc_responses
+from ltca.equilibrium.reducer import disc_responses, reducer_of
+from ltca.equilibrium.shared_pins import SharedPins
+from ltca.equilibrium.supports import support_stiffness
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.flank import FlankProfile
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam, wheel_pin_seat
@@ -223,6 +227,26 @@ def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
         return complex(-load * away / abs(away))
 
     return on_shaft_pin
+
+
+@pytest.mark.parametrize("name", ["sleeves", "three discs on bent sleeved pins", "tied-clamped", "everything"])
+def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
+    """Coefficients without coupling: the coupled model, its matrix of slopes too, gives what the tables give."""
+    drive = kind(joint, name)
+    discs = [
+        CoupledCompliance.of_drive(single, without_coupling(single), "half-space", hole_near_field=False)
+        for single in single_discs(drive)
+    ]
+    model = reducer_of(discs, support_stiffness(drive), SharedPins.of_drive(drive))
+    found = solve_at_output(model, drive, ANGLES[:2], drive.load.torque)
+    expected = analyse(drive, ANGLES[:2]).full
+    np.testing.assert_allclose(found.pose[:, WHEEL_ANGLE], expected.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(found.response.pin_load, expected.response.pin_load, rtol=0.0, atol=LOAD)
+    np.testing.assert_allclose(found.response.hole_load, expected.response.hole_load, rtol=0.0, atol=LOAD)
+    np.testing.assert_allclose(
+        found.response.tangent, expected.response.tangent, rtol=0.0, atol=1e-6 * np.abs(expected.response.tangent).max()
+    )
+    assert np.max(found.iterations) < 20
 
 
 def test_kinds_typed_out_are_those_left_out(joint):
