@@ -22,6 +22,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +55,7 @@ from ltca.laws.series import SpringLaw, approach_at_load
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+Shifts: TypeAlias = ComplexArray | None
 
 ITERATIONS = 60
 CHUNK = 256
@@ -179,7 +181,7 @@ class CoupledCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         holes = self.geometry.holes(crank_angle, pose, moved[1])
         parts = [
-            self._solve(_Bodies(self, *take_positions((crank_angle, pose, flank, holes, shifts), rows)), start, rows)
+            self._solve(_Bodies(self, *take_positions((crank_angle, pose, (flank, holes, shifts)), rows)), start, rows)
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
         joined: Response = join_positions(parts)
@@ -225,11 +227,10 @@ class _Bodies:
         model: CoupledCompliance,
         angle: FloatArray,
         pose: FloatArray,
-        flank: FlankMotion,
-        holes: PairMotion,
-        shifts: ComplexArray | None,
+        pins: tuple[FlankMotion, PairMotion, Shifts],
     ) -> None:
-        self.model, self.flank, self.holes, self.shifts = model, flank, holes, shifts
+        self.model, (flank, holes, self.shifts) = model, pins
+        self.flank, self.holes = flank, holes
         self.bores, self.rays = model.geometry.bores(angle, pose), model.geometry.rollers(angle)
         bores, each = self.bores, self.rays.bore_play.size
         self.displacement, self.moved = bores.each(bores.displacement, each), bores.each(bores.gradient, each)
