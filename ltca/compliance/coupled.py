@@ -22,7 +22,6 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,15 +46,15 @@ from ltca.compliance.rollers import RollerState
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, X, Y
-from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
+from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.undeformed import UndeformedBodies
 from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_spring, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw, approach_at_load
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-Shifts: TypeAlias = ComplexArray | None
 
 ITERATIONS = 60
 CHUNK = 256
@@ -180,21 +179,21 @@ class CoupledCompliance:
         moved = split_shifts(shifts, self.geometry)
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         holes = self.geometry.holes(crank_angle, pose, moved[1])
-        parts = [
-            self._solve(_Bodies(self, *take_positions((crank_angle, pose, (flank, holes, shifts)), rows)), start, rows)
-            for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
-        ]
+        pins, parts = (flank, holes, shifts), []
+        for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK))):
+            bodies = UndeformedBodies(self.geometry, *take_positions((crank_angle, pose, pins), rows))
+            parts.append(self._solve(bodies, start, rows))
         joined: Response = join_positions(parts)
         return joined
 
-    def _solve(self, bodies: _Bodies, start: Start | None, rows: NDArray[np.intp]) -> Response:
+    def _solve(self, bodies: UndeformedBodies, start: Start | None, rows: NDArray[np.intp]) -> Response:
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
                 if warm is not None:
                     guess[row] = warm
         for margin in (MARGIN, np.inf):
-            batch = _Batch(bodies, margin)
+            batch = _Batch(self, bodies, margin)
             response = batch.response(batch.solve(guess))
             if response is not None:
                 return response
@@ -219,53 +218,11 @@ class CoupledCompliance:
         )
 
 
-class _Bodies:
-    """Some positions at given poses, undeformed: where their contacts are and how far they overlap."""
-
-    def __init__(
-        self,
-        model: CoupledCompliance,
-        angle: FloatArray,
-        pose: FloatArray,
-        pins: tuple[FlankMotion, PairMotion, Shifts],
-    ) -> None:
-        self.model, (flank, holes, self.shifts) = model, pins
-        self.flank, self.holes = flank, holes
-        self.bores, self.rays = model.geometry.bores(angle, pose), model.geometry.rollers(angle)
-        bores, each = self.bores, self.rays.bore_play.size
-        self.displacement, self.moved = bores.each(bores.displacement, each), bores.each(bores.gradient, each)
-        turn = pose[:, 2, None]
-        play = -(holes.gradient[..., X] + 1j * holes.gradient[..., Y])
-        length, outward, _ = self.rollers_at(0.0)
-        self.bore_places, self.hole_places = np.angle(outward) - turn, np.angle(play) - turn
-        self.geometric = np.concatenate([flank.approach, length - self.rays.bore_play, holes.approach], axis=1)
-        """Overlap of the undeformed bodies, shape (positions, contacts)."""
-
-    def rollers_at(self, inner_approach: FloatArray | float) -> tuple[FloatArray, ComplexArray, FloatArray]:
-        """Distances of the rollers from the disc centre, directions, and cosines to their rays, at inner approaches, mm."""
-        arm = (self.rays.outermost - inner_approach) * self.rays.direction - self.displacement
-        length = np.sqrt(arm.real**2 + arm.imag**2)
-        outward = arm / length
-        return length, outward, (outward * self.rays.direction.conjugate()).real
-
-    def within(self, margin: float) -> list[NDArray[np.intp]]:
-        """Pins, rollers and holes that overlap or nearly do, as many in each position, shape (positions, chosen)."""
-        reach = margin * np.max(self.geometric, axis=1, initial=0.0)[:, None]
-        pins, rollers = self.flank.approach.shape[1], self.rays.bore_play.size
-        chosen = []
-        for part in np.split(self.geometric, (pins, pins + rollers), axis=1):
-            near = (part > 0.0) | (part > -reach)
-            most = max(1, int(np.max(np.count_nonzero(near, axis=1))))
-            chosen.append(np.sort(np.argsort(-part, axis=1, kind="stable")[:, :most], axis=1))
-        return chosen
-
-
 class _Batch:
     """The coupled problem of some positions: as many contacts in each of them as may carry anywhere."""
 
-    def __init__(self, bodies: _Bodies, margin: float) -> None:
-        self.bodies, self.model = bodies, bodies.model
-        model, flank = bodies.model, bodies.flank
+    def __init__(self, model: CoupledCompliance, bodies: UndeformedBodies, margin: float) -> None:
+        self.bodies, self.model, flank = bodies, model, bodies.flank
         pins, rollers = flank.approach.shape[1], model.outer_radius.size
         own = (model.own.pin, model.own.outer, model.own.hole + model.hole_spring)
         self.loaded = bodies.within(margin)
