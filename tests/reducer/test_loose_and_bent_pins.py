@@ -58,7 +58,7 @@ def kind(joint, name):
     if name == "bent wheel pins":
         return wheel(beam=WALLS)
     if name == "three discs on bent sleeved pins":
-        three = wheel(seat=SLEEVE, beam=replace(WALLS, span=40.0, ends="clamped", diameter=4.0))
+        three = wheel(seat=SLEEVE, beam=replace(WALLS, span=40.0, ends="clamped", diameter=2.8))
         return replace(three, disc=replace(joint.disc, number_of_discs=3, phases=(), planes=()))
     if name in ("free", "tied-clamped", "tied-pinned"):
         return replace(joint, pin_shaft=replace(joint.pin_shaft, **tips(name)))

@@ -125,7 +125,7 @@ def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, mon
     few = model.respond(ANGLES, pose)
     monkeypatch.setattr(coupled, "MARGIN", np.inf)
     everything = model.respond(ANGLES, pose)
-    within = coupled._Bodies.within
+    within = coupled.UndeformedBodies.within
     asked = []
 
     def blind(bodies, margin):
@@ -135,7 +135,7 @@ def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, mon
         return found if len(asked) > 1 else [np.sort(np.argsort(loads, axis=1)[:, :2], axis=1) for loads in carried]
 
     carried = (everything.pin_load, everything.rollers.outer_load, everything.hole_load)
-    monkeypatch.setattr(coupled._Bodies, "within", blind)
+    monkeypatch.setattr(coupled.UndeformedBodies, "within", blind)
     mended = model.respond(ANGLES, pose)
     assert len(asked) == 2
     for other in (few, mended):
