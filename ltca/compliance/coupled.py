@@ -49,7 +49,7 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.undeformed import UndeformedBodies
-from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_spring, tip_share
+from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw, approach_at_load
 
@@ -138,7 +138,7 @@ class CoupledCompliance:
         place = geometry.placement
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
-        spring = shaft_pin_spring(drive)
+        stiffness = shaft_pin_stiffness(drive)
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum)
         race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
@@ -146,9 +146,9 @@ class CoupledCompliance:
             coefficients=body,
             near_field=laws,
             hole_law=back_shaft_pins(
-                drive, laws.hole if hole_near_field else SpringLaw(stiffness=1.0 / spring), place.shaft_pin_plays
+                drive, laws.hole if hole_near_field else SpringLaw(stiffness=stiffness), place.shaft_pin_plays
             ),
-            hole_spring=spring if hole_near_field else 0.0,
+            hole_spring=1.0 / stiffness if hole_near_field else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
             inner_radius=place.inner_effective_radii,

@@ -23,7 +23,7 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_spring, tip_share
+from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.series import SpringLaw
@@ -69,7 +69,7 @@ class HalfSpaceCompliance:
             lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
             turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
             pin_radii = _effective_radii(geometry.profile, geometry.placement.wheel_pin_radii, turn)
-        return cls._of_geometry(geometry, drive, pin_radii, 1.0 / shaft_pin_spring(drive))
+        return cls._of_geometry(geometry, drive, pin_radii, shaft_pin_stiffness(drive))
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
@@ -84,7 +84,7 @@ class HalfSpaceCompliance:
         """
         tips = np.repeat([[[tip_share(drive)]] for drive in drives], positions, axis=0)
         geometry = replace(ContactGeometry.of_drives(drives, positions), tip_share=tips)
-        stiffness = np.repeat([[1.0 / shaft_pin_spring(drive)] for drive in drives], positions, axis=0)
+        stiffness = np.repeat([[shaft_pin_stiffness(drive)] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
         pin_radii = np.ones(1)
         if not drives[0].pin_wheel.pin_profile.is_cylinder:

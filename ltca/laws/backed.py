@@ -201,10 +201,10 @@ def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray) -> Energ
     return contact if seat is None else BackedLaw(contact=contact, seat=seat, play=play)
 
 
-def shaft_pin_spring(drive: Drive) -> float:
-    """Return what a shaft pin yields behind one disc by that disc alone, mm/N: as a spring, or as a beam at its plane."""
+def shaft_pin_stiffness(drive: Drive) -> float:
+    """Return the stiffness of a shaft pin against one disc alone, N/mm: of its spring, or of the beam at the disc's plane."""
     beam = shaft_pin_beam(drive)
-    return 1.0 / drive.hole_stiffness if beam is None else own_flexibility(drive, beam)
+    return drive.hole_stiffness if beam is None else 1.0 / own_flexibility(drive, beam)
 
 
 def wheel_pin_beam(drive: Drive) -> PinBeam | None:
