@@ -217,8 +217,11 @@ def test_fields_of_loose_pins_are_used(path, model, models):
         base = with_fields(
             base, {"pin_shaft.stiffness": None, "pin_shaft.beam.span": 30.0, "pin_shaft.beam.tip": "free"}
         )
-    change = {path: sensible_change(base, path)} | ({path: (-7.0, 7.0)} if path == "disc.planes" else {})
-    assert moves(answer(base), answer(with_fields(base, change)))
+    change = {path: sensible_change(base, path)} | ({path: (-6.5, 6.5)} if path == "disc.planes" else {})
+    key = (model, "sleeved")
+    if key not in answers:
+        answers[key] = answer(base)
+    assert moves(answers[key], answer(with_fields(base, change)))
 
 
 def test_the_walk_sees_what_is_ignored(answers):
