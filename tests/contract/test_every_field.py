@@ -182,22 +182,10 @@ def test_fields_of_several_cranks_are_used(path, model, models):
 
 
 OF_LOOSE_PINS = [
-    "pin_wheel.seat.radius",
-    "pin_wheel.beam.span",
-    "pin_wheel.beam.ends",
-    "pin_wheel.beam.diameter",
     "pin_wheel.pin_errors.diameter",
-    "pin_shaft.seat.pin_radius",
-    "pin_shaft.seat.bore_radius",
-    "pin_shaft.beam.span",
     "pin_shaft.beam.tip",
-    "pin_shaft.beam.diameter",
     "disc.planes",
-    "materials.disc.youngs_modulus",
     "materials.wheel_pin.youngs_modulus",
-    "materials.wheel_pin.poisson_ratio",
-    "materials.wheel_seat.youngs_modulus",
-    "materials.wheel_seat.poisson_ratio",
     "materials.shaft_pin.youngs_modulus",
     "materials.shaft_pin.poisson_ratio",
     "materials.sleeve.youngs_modulus",
@@ -210,7 +198,7 @@ OF_LOOSE_PINS = [
 )
 @pytest.mark.parametrize("path", OF_LOOSE_PINS)
 def test_fields_of_loose_pins_are_used(path, model, models, answers):
-    """On two discs with pins loose in slots and sleeves on the output pins: there sleeves are on the shaft alone."""
+    """The walk above starts from one disc and has sleeves on the wheel; here two discs bend pins, sleeves are on the shaft."""
     _, answer = models[model]
     base = parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"]
     change = {path: sensible_change(base, path)} | ({path: (-6.5, 6.5)} if path == "disc.planes" else {})
