@@ -109,7 +109,7 @@ def derive_coefficients(
     bodies = _Bodies(
         shapes=shapes,
         places=places,
-        materials=nominal.materials,
+        materials=nominal.body_materials,
         thickness=nominal.disc.thickness,
         state=state,
         tell=progress or (lambda step: None),
@@ -146,7 +146,7 @@ def derive_coefficients(
         version=code_version(),
         code_hash=code_hash("ltca", "fem"),
         gmsh=str(load_gmsh().__version__),
-        **elastic_constants(nominal.materials),
+        **elastic_constants(nominal.body_materials),
     )
     return dataset
 

@@ -28,7 +28,7 @@ WHEEL = {
 @pytest.mark.parametrize("kind", WHEEL)
 def test_drawn_parts_touch(kind, tmp_path):
     drive = parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"]
-    one = {"disc.number_of_discs": 1, "disc.phases": (), "disc.planes": (), "load.torque": 100_000.0}
+    one = {"disc.number_of_discs": 1, "disc.phases": (), "disc.planes": (), "load.torque": 20_000.0}
     seats = {"pin_shaft.seat.bore_radius": 4.5 + PLAY}
     errors = {"pin_wheel.pin_errors.diameter": (0.02, -0.02) * 15}
     drive = with_fields(drive, one | WHEEL[kind] | seats | errors)
@@ -37,10 +37,10 @@ def test_drawn_parts_touch(kind, tmp_path):
     (pins, pin_load, pin_radii, _), _, (shaft_pins, hole_load, shaft_radii, _) = shown.loads
     flank = shown.disc + shown.turn * shown.profile.flank(np.linspace(0.0, 2.0 * np.pi, 20_000))
     pin, hole = int(np.argmax(pin_load)), int(np.argmax(hole_load))
-    # Bodies yield, pins bend by some hundredths, and the flank is looked at every 0.02 mm.
-    assert np.min(np.abs(flank - pins[pin])) == pytest.approx(pin_radii[pin], abs=0.2 * PLAY)
+    # Under this load bodies yield and pins bend by a hundredth.
+    assert np.min(np.abs(flank - pins[pin])) == pytest.approx(pin_radii[pin], abs=0.1 * PLAY)
     reach = abs(shaft_pins[hole] - shown.holes[hole]) + shaft_radii[hole]
-    assert reach == pytest.approx(drive.hole_radius, abs=0.2 * PLAY)
+    assert reach == pytest.approx(drive.hole_radius, abs=0.1 * PLAY)
     # A pin loose in its slot moves as a whole, less where it is thicker; a sleeve about its pin.
     play = PLAY - 0.01 * np.tile([1.0, -1.0], 15) * (kind == "slot")
     assert np.abs(pins - shown.pins) == pytest.approx(play, abs=1e-9)
