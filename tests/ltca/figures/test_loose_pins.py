@@ -17,8 +17,8 @@ WHEEL = {
     "sleeve": {
         "pin_wheel.seat.kind": "sleeve",
         "pin_wheel.seat.radius": None,
-        "pin_wheel.seat.pin_radius": 2.0,
-        "pin_wheel.seat.bore_radius": 2.0 + PLAY,
+        "pin_wheel.seat.pin_radius": 2.8,
+        "pin_wheel.seat.bore_radius": 2.8 + PLAY,
         "materials.wheel_seat.youngs_modulus": 206_000.0,
         "materials.wheel_seat.poisson_ratio": 0.3,
     },
