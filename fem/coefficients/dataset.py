@@ -147,7 +147,7 @@ def derive_coefficients(
         version=code_version(),
         code_hash=code_hash("ltca", "fem"),
         gmsh=str(load_gmsh().__version__),
-        **elastic_constants(nominal.materials),
+        **elastic_constants(nominal.body_materials),
     )
     return dataset
 

@@ -6,7 +6,7 @@ cases, `ltca.reading.physical_checks` holds the physical checks.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import field, replace
 from math import gcd, pi
 from typing import Annotated, Literal
 
@@ -301,6 +301,11 @@ class Drive:
         return self.materials.sleeve if self.pin_wheel.seat.kind == "sleeve" else self.materials.wheel_pin
 
     @property
+    def body_materials(self) -> Materials:
+        """Materials of the plane bodies whose coefficients are derived: as `wheel_pin` that of what the flank touches."""
+        return replace(self.materials, wheel_pin=self.flank_pin)
+
+    @property
     def hole_pin(self) -> Material:
         """Material of what the holes touch: the shaft pins or their sleeves."""
         sleeved = self.pin_shaft is not None and self.pin_shaft.seat.kind == "sleeve"
@@ -370,13 +375,8 @@ class Drive:
         turn = self.part_turn[0]
         if turn:
             shape["flank_turn"] = turn
-        bodies = {
-            "disc": self.materials.disc,
-            "wheel_pin": self.flank_pin,
-            "roller": self.materials.roller,
-            "inner_race": self.materials.inner_race,
-        }
-        for part, material in bodies.items():
+        for part in ("disc", "wheel_pin", "roller", "inner_race"):
+            material = getattr(self.body_materials, part)
             shape[f"materials.{part}.youngs_modulus"] = material.youngs_modulus
             shape[f"materials.{part}.poisson_ratio"] = material.poisson_ratio
         # Sums of radii and clearances must not differ by their rounding.

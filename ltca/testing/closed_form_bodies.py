@@ -51,7 +51,7 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
     """
     import xarray as xr
 
-    thickness, parts = drive.disc.thickness, drive.materials
+    thickness, parts = drive.disc.thickness, drive.body_materials
     boundaries, normals = _stations(drive)
     numbers = [len(places) for places in boundaries]
     boundary = np.repeat(np.arange(len(boundaries)), numbers)

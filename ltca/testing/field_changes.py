@@ -31,6 +31,8 @@ _CLOSE = {
     "pin_shaft.hole_radius": 1.001,
     "pin_shaft.pin_circle_radius": 1.002,
     "pin_wheel.pin_radius": 0.9995,
+    "pin_wheel.beam.span": 1.1,
+    "pin_shaft.beam.span": 1.1,
     "pin_wheel.seat.radius": 1.001,
     "pin_wheel.seat.pin_radius": 0.999,
     "pin_wheel.seat.bore_radius": 1.001,

@@ -182,22 +182,10 @@ def test_fields_of_several_cranks_are_used(path, model, models):
 
 
 OF_LOOSE_PINS = [
-    "pin_wheel.seat.radius",
-    "pin_wheel.beam.span",
-    "pin_wheel.beam.ends",
-    "pin_wheel.beam.diameter",
     "pin_wheel.pin_errors.diameter",
-    "pin_shaft.seat.pin_radius",
-    "pin_shaft.seat.bore_radius",
-    "pin_shaft.beam.span",
     "pin_shaft.beam.tip",
-    "pin_shaft.beam.diameter",
     "disc.planes",
-    "materials.disc.youngs_modulus",
     "materials.wheel_pin.youngs_modulus",
-    "materials.wheel_pin.poisson_ratio",
-    "materials.wheel_seat.youngs_modulus",
-    "materials.wheel_seat.poisson_ratio",
     "materials.shaft_pin.youngs_modulus",
     "materials.shaft_pin.poisson_ratio",
     "materials.sleeve.youngs_modulus",
@@ -209,16 +197,15 @@ OF_LOOSE_PINS = [
     "model", ["tables", pytest.param("hybrid", marks=pytest.mark.slow), pytest.param("fe", marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize("path", OF_LOOSE_PINS)
-def test_fields_of_loose_pins_are_used(path, model, models):
-    """On two discs with pins loose in slots and sleeves on the output pins: there sleeves are on the shaft alone."""
+def test_fields_of_loose_pins_are_used(path, model, models, answers):
+    """The walk above starts from one disc and has sleeves on the wheel; here two discs bend pins, sleeves are on the shaft."""
     _, answer = models[model]
     base = parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"]
-    if "shaft" in path:
-        base = with_fields(
-            base, {"pin_shaft.stiffness": None, "pin_shaft.beam.span": 30.0, "pin_shaft.beam.tip": "free"}
-        )
-    change = {path: sensible_change(base, path)} | ({path: (-7.0, 7.0)} if path == "disc.planes" else {})
-    assert moves(answer(base), answer(with_fields(base, change)))
+    change = {path: sensible_change(base, path)} | ({path: (-6.5, 6.5)} if path == "disc.planes" else {})
+    key = (model, "sleeved")
+    if key not in answers:
+        answers[key] = answer(base)
+    assert moves(answers[key], answer(with_fields(base, change)))
 
 
 def test_the_walk_sees_what_is_ignored(answers):
