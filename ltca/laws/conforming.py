@@ -28,6 +28,9 @@ With load q = F/(L E* ΔR) and z² = q/(q + π b₁²), b₁ of the neat fit, th
 its logarithm are analytic in z from Hertz (z = 0) to the neat fit (z = 1: the play is nothing beside the approach, and the
 contact linear): one Chebyshev series each. The first harmonic adds a spring, the only part that knows the datum.
 
+A sleeve has harmonics of a ring in place of those of the infinite body (`ltca.laws.sleeve_wall`): smooth terms more in the
+same equation. docs/seats.md has all of it, with figures.
+
 Left out: displacements and play are small against the radius (both circles are taken at :math:`a = \sqrt{r r_s}`, which
 keeps Hertz' curvature exact), friction, and what bounds the body with the bore.
 """
@@ -197,6 +200,8 @@ class ConformingSeries:
         Of z times the peak pressure in F/(aL).
     approach, slope : array
         Of the approach in F/(L E*) without its logarithm, −2/π ln z, and the first harmonic; of its derivative by z.
+    complement : array
+        Of ∫ δ dF in F²/(L E*) without its logarithm, −1/π ln z, and the first harmonic.
     """
 
     load_scale: float
@@ -204,6 +209,7 @@ class ConformingSeries:
     pressure: FloatArray
     approach: FloatArray
     slope: FloatArray
+    complement: FloatArray
 
     def evaluate(self, series: FloatArray, z: FloatArray) -> FloatArray:
         """Return one of the series at z, 0 … 1."""
@@ -238,6 +244,17 @@ def _neat_fit(mismatch: float, breathing: float, sleeve: tuple[float, float, flo
 
 def _fit(nodes: FloatArray, values: FloatArray) -> FloatArray:
     return np.asarray(chebyshev.chebfit(nodes, values, DEGREE), dtype=float)
+
+
+def _complement(z: FloatArray, approach: FloatArray) -> FloatArray:
+    """Return ∫ δ dF in F²/(L E*) at places z, from the series of the approach, less its logarithm."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    # Parts u = v⁴ of the load; z² goes with it as u z²/(1 − (1 − u) z²).
+    v = 0.5 * (nodes + 1.0)
+    u, weights = v**4, 2.0 * v**3 * weights
+    at = np.sqrt(u / (1.0 - (1.0 - u) * z[:, None] ** 2))
+    level = chebyshev.chebval(2.0 * z[:, None] * at - 1.0, approach) - 2.0 / np.pi * np.log(at)
+    return np.asarray(level @ (weights * u))
 
 
 @lru_cache(maxsize=256)
@@ -288,6 +305,7 @@ def conforming_series(
             pressure=peak,
             approach=closing,
             slope=np.asarray(2.0 * chebyshev.chebder(closing), dtype=float),
+            complement=_fit(nodes, _complement(place, closing)),
         )
     )
 
@@ -471,6 +489,14 @@ class ConformingLaw:
         bend = 0.5 * (1.0 - z**2) * (z * self.series.evaluate(self.series.slope, z) - 2.0 / np.pi)
         approach = np.where(np.asarray(load) > 0.0, force * level / self.contact_modulus, 0.0)
         return approach, (level + bend) / (self.contact_modulus * self.length)
+
+    def energy(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
+        """Return ∫ F dδ = F δ − ∫ δ dF, N·mm; parameters as for `approach_and_compliance`."""
+        force, z = self._place(load, play)
+        unit = self.length / self.contact_modulus * force**2
+        approach = self.first_harmonic - 2.0 / np.pi * np.log(z) + self.series.evaluate(self.series.approach, z)
+        complement = 0.5 * self.first_harmonic - np.log(z) / np.pi + self.series.evaluate(self.series.complement, z)
+        return np.asarray(unit * (approach - complement))
 
     def half_angle(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
         """Return half the arc of contact, rad; parameters as for `approach_and_compliance`."""
