@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ltca.laws.conforming import solve_arc
+from ltca.laws.seats.arc import solve_arc
 from validation.seats import draw, hertz_rows, persson_load, persson_pressure
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -7,7 +7,9 @@ import pytest
 
 from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import DriveError
-from ltca.laws.conforming import SMALLEST_BREATHING, ConformingLaw, conforming_series, solve_arc
+from ltca.laws.conforming import SMALLEST_BREATHING, ConformingLaw
+from ltca.laws.seats.arc import solve_arc
+from ltca.laws.seats.series import conforming_series
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 BRONZE = Material(youngs_modulus=110_000.0, poisson_ratio=0.34)
