@@ -12,7 +12,7 @@ shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
 generator_law          The tabulated law of a roller or pin with the generator that the drive gives it
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
-sleeve_wall            What a sleeve has beyond an infinite body: harmonics of a ring pressed from within and outside
+seats                  Conforming seats: contact over a given arc, series over the load, the wall of a sleeve
 conforming             A pin in a bore that is hardly larger: arc, pressure and approach, with a datum; a sleeve
                        on its pin
 beam                   Round shafts and pins as beams: how far they yield at some planes under the forces of discs at these

@@ -7,7 +7,9 @@ import pytest
 
 from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import DriveError
-from ltca.laws.conforming import SMALLEST_BREATHING, ConformingLaw, conforming_series, solve_arc
+from ltca.laws.conforming import SMALLEST_BREATHING, ConformingLaw
+from ltca.laws.seats.arc import solve_arc
+from ltca.laws.seats.series import conforming_series
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 BRONZE = Material(youngs_modulus=110_000.0, poisson_ratio=0.34)
@@ -192,6 +194,19 @@ def test_monotone_and_smooth(pair):
     for measure in (law.half_angle, law.largest_pressure):
         # The arc stays at that of the neat fit once the play is nothing.
         assert np.all(np.diff(measure(load, PLAY)) > -1e-13)
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_energy(pair):
+    """Its derivative by the load is F dδ/dF, and it starts at zero; differences of 1e-4 leave 1e-7."""
+    law = law_of(*PAIRS[pair])
+    load = np.geomspace(1e-4, 1e8, 300)
+    ahead, behind = law.energy(1.0001 * load, PLAY), law.energy(0.9999 * load, PLAY)
+    _, compliance = law.approach_and_compliance(load, PLAY)
+    np.testing.assert_allclose((ahead - behind) / (2e-4 * load), load * compliance, rtol=1e-6)
+    assert law.energy(0.0, PLAY) == pytest.approx(0.0, abs=1e-100)
+    # Linear without play: half of F δ.
+    assert law.energy(10.0, 0.0) == pytest.approx(5.0 * law.approach_and_compliance(10.0, 0.0)[0], rel=1e-7)
 
 
 def test_no_load():

@@ -8,7 +8,7 @@ import pytest
 from ltca.drive.parts import Material
 from ltca.errors import DriveError
 from ltca.laws.conforming import ConformingLaw
-from ltca.laws.sleeve_wall import sleeve_wall
+from ltca.laws.seats.sleeve_wall import sleeve_wall
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 BRONZE = Material(youngs_modulus=110_000.0, poisson_ratio=0.34)

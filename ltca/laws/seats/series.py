@@ -1,0 +1,147 @@
+r"""Arc, pressure and approach of a conforming seat over the load, from Hertz to the neat fit: one Chebyshev series each.
+
+With load q = F/(L E* ΔR) and z² = q/(q + π b₁²), b₁ of the neat fit, the arc, the peak pressure and the approach less
+its logarithm are analytic in z from Hertz (z = 0) to the neat fit (z = 1: the play is nothing beside the approach, and the
+contact linear): one Chebyshev series each. The first harmonic adds a spring, the only part that knows the datum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from ltca.frozen_arrays import freeze
+from ltca.laws.seats.arc import solve_arc
+
+FloatArray = NDArray[np.float64]
+
+DEGREE = 20
+"""Of the Chebyshev series over b and over z."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConformingSeries:
+    """Arc, pressure and approach over z, from Hertz (z = 0) to the neat fit (z = 1), as Chebyshev series.
+
+    Attributes
+    ----------
+    load_scale : float
+        π b₁², b₁ of the neat fit.
+    half_width : array
+        Of b/z.
+    pressure : array
+        Of z times the peak pressure in F/(aL).
+    approach, slope : array
+        Of the approach in F/(L E*) without its logarithm, −2/π ln z, and the first harmonic; of its derivative by z.
+    complement : array
+        Of ∫ δ dF in F²/(L E*) without its logarithm, −1/π ln z, and the first harmonic.
+    """
+
+    load_scale: float
+    half_width: FloatArray
+    pressure: FloatArray
+    approach: FloatArray
+    slope: FloatArray
+    complement: FloatArray
+
+    def evaluate(self, series: FloatArray, z: FloatArray) -> FloatArray:
+        """Return one of the series at z, 0 … 1."""
+        return np.asarray(chebyshev.chebval(2.0 * z - 1.0, series, tensor=False))
+
+
+def _neat_fit(mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None) -> float:
+    """Return b where the play is nothing beside the load."""
+
+    def left(b: float) -> float:
+        """Play times b², 1/π for small arcs."""
+        return b**2 * solve_arc(b, mismatch, breathing, sleeve).play
+
+    # In small steps: sleeves so thin that they bend away have more such arcs, far beyond the first.
+    low = 0.3 if sleeve is None else 0.002
+    high = 1.2 * low
+    at_low, at_high = left(low), left(high)
+    while at_high > 0.0:
+        low, high, at_low = high, 1.2 * high, at_high
+        at_high = left(high)
+    for _ in range(80):  # Illinois' regula falsi
+        b = (low * at_high - high * at_low) / (at_high - at_low)
+        found = left(b)
+        if abs(found) < 1e-14:
+            break
+        if found < 0.0:
+            high, at_high, at_low = b, found, 0.5 * at_low
+        else:
+            low, at_low, at_high = b, found, 0.5 * at_high
+    return b
+
+
+def _fit(nodes: FloatArray, values: FloatArray) -> FloatArray:
+    return np.asarray(chebyshev.chebfit(nodes, values, DEGREE), dtype=float)
+
+
+def _complement(z: FloatArray, approach: FloatArray) -> FloatArray:
+    """Return ∫ δ dF in F²/(L E*) at places z, from the series of the approach, less its logarithm."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    # Parts u = v⁴ of the load; z² goes with it as u z²/(1 − (1 − u) z²).
+    v = 0.5 * (nodes + 1.0)
+    u, weights = v**4, 2.0 * v**3 * weights
+    at = np.sqrt(u / (1.0 - (1.0 - u) * z[:, None] ** 2))
+    level = chebyshev.chebval(2.0 * z[:, None] * at - 1.0, approach) - 2.0 / np.pi * np.log(at)
+    return np.asarray(level @ (weights * u))
+
+
+@lru_cache(maxsize=256)
+def conforming_series(
+    mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
+) -> ConformingSeries:
+    """Return the series of two materials.
+
+    Parameters
+    ----------
+    mismatch : float
+        η; zero for equal materials.
+    breathing : float
+        c₀; one for equal materials.
+    sleeve : tuple of float, optional
+        κ, a/R and E*/4μ of a sleeve; the bore is in an infinite body without.
+    """
+    widest = _neat_fit(mismatch, breathing, sleeve)
+    nodes = chebyshev.chebpts1(DEGREE + 1)
+    place = 0.5 * (nodes + 1.0)
+    arcs = [solve_arc(float(b), mismatch, breathing, sleeve) for b in widest * place]
+    b = np.array([arc.half_width for arc in arcs])
+    # Analytic in b: b² times the play, b times the peak pressure, the approach without its logarithm.
+    play = _fit(nodes, b**2 * [arc.play for arc in arcs])
+    pressure = _fit(nodes, b * [float(arc.pressure(0.0)) for arc in arcs])
+    approach = _fit(nodes, 2.0 / np.pi * np.log(b) + [arc.approach for arc in arcs])
+    # 1/z² = 1 + π b₁² ΔR: the place x = b/b₁ of every z by Newton's method from x = z.
+    slope = chebyshev.chebder(play)
+    z, x = place, place.copy()
+    for _ in range(50):
+        found = chebyshev.chebval(2.0 * x - 1.0, play) * np.pi
+        miss = x**2 * (1.0 - z**2) - z**2 * found
+        step = miss / (2.0 * x * (1.0 - z**2) - 2.0 * z**2 * np.pi * chebyshev.chebval(2.0 * x - 1.0, slope))
+        x = np.clip(x - step, 0.25 * x, 1.0)
+        if np.max(np.abs(step)) < 1e-14:
+            break
+    at = 2.0 * x - 1.0
+    series = (
+        x * widest / z,
+        chebyshev.chebval(at, pressure) * z / (x * widest),
+        chebyshev.chebval(at, approach) - 2.0 / np.pi * np.log(x * widest / z),
+    )
+    half_width, peak, closing = (_fit(nodes, values) for values in series)
+    return freeze(
+        ConformingSeries(
+            load_scale=float(np.pi * widest**2),
+            half_width=half_width,
+            pressure=peak,
+            approach=closing,
+            slope=np.asarray(2.0 * chebyshev.chebder(closing), dtype=float),
+            complement=_fit(nodes, _complement(place, closing)),
+        )
+    )
