@@ -106,9 +106,11 @@ class OwnParts:
             1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
             1.0 / parts.disc.plane_strain_compliance,
         )
+        sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
         disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
+        whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
         return cls(
-            pin=remove(disc, parts.disc, *at_pin, thickness) + c.pin + remove(pin, drive.flank_pin, *at_pin, thickness),
+            pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
             outer=remove(disc, parts.disc, *in_bore, thickness)
             + float(c.roller[1, 1])
             + remove(roller, parts.roller, *in_bore, length),

@@ -139,15 +139,14 @@ class CoupledCompliance:
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
         stiffness = shaft_pin_stiffness(drive)
+        at_hole = laws.hole if hole_near_field else SpringLaw(stiffness=stiffness)
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum)
         race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=back_shaft_pins(
-                drive, laws.hole if hole_near_field else SpringLaw(stiffness=stiffness), place.shaft_pin_plays
-            ),
+            hole_law=back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth if hole_near_field else None),
             hole_spring=1.0 / stiffness if hole_near_field else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,

@@ -11,7 +11,7 @@ from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import DriveError
 from ltca.geometry.placement import Placement
-from ltca.laws.backed import back_wheel_pins
+from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import PlaneContactLaw
@@ -71,6 +71,8 @@ class NearFieldLaws:
             raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
         parts, thickness = drive.materials, drive.disc.thickness
         wall = 1.0 / parts.disc.plane_strain_compliance
+        # A sleeve yields: only a bare pin is rigid where its own spring follows.
+        rigid_shaft_pins = rigid_shaft_pins and (drive.pin_shaft is None or drive.pin_shaft.seat.kind == "fixed")
         at_hole = wall if rigid_shaft_pins else contact_modulus(parts.disc, drive.hole_pin)
         # Only its logarithm enters, and cancels where the body part is in plane strain, too.
         datum = max(thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
@@ -94,7 +96,7 @@ class NearFieldLaws:
 
         return cls(
             kind=kind,
-            pin=back_wheel_pins(drive, law(contact_modulus(parts.disc, drive.flank_pin)), plays),
+            pin=back_wheel_pins(drive, law(contact_modulus(parts.disc, drive.flank_pin)), plays, datum),
             outer=law(contact_modulus(parts.disc, parts.roller)),
             inner=law(contact_modulus(parts.inner_race, parts.roller)),
             hole=law(at_hole),
@@ -102,6 +104,11 @@ class NearFieldLaws:
             datum=datum,
             kinds=ContactKinds.of_drive(drive),
         )
+
+    @property
+    def depth(self) -> float:
+        """Depth down to which the near field of a contact over the disc's thickness counts, mm."""
+        return HALF_SPACE_DATUM * self.kinds.holes.length if self.has_ends else self.datum
 
     @property
     def has_ends(self) -> bool:

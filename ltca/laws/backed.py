@@ -27,7 +27,8 @@ FloatArray = NDArray[np.float64]
 
 SLOT_DATUM = 3.0
 """Radius, in radii of the slot, of the circle in the wheel against which a slot's yielding is measured."""
-GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
+HALF_SPACE_DATUM = 0.7
+"""Depth, in lengths of the contact, down to which a half-space of finite length counts: 0.68 to 0.72 (docs/seats.md)."""
 
 
 class SeatLaw(Protocol):
@@ -35,6 +36,10 @@ class SeatLaw(Protocol):
 
     def approach_and_compliance(self, load: FloatArray, play: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the approach at a load and its derivative, mm and mm/N, for bores wider by `play` in radius, mm."""
+        ...
+
+    def energy(self, load: FloatArray, play: FloatArray) -> FloatArray:
+        """Return ∫ F ds up to a load, N·mm."""
         ...
 
     def half_angle(self, load: FloatArray, play: FloatArray) -> FloatArray:
@@ -59,17 +64,22 @@ class BackedLaw:
     play : array
         Play of each seat, shape (pairs,) or (positions, pairs), mm.
     flexibility : float or array, shape (positions, 1)
-        c, mm/N.
+        c of the pin's bending, mm/N.
+    overlap : float
+        What the contact's law counts of a sleeve beyond its outer surface, where the sleeve's own law begins, mm/N: it is
+        taken off.
     """
 
     contact: EnergyLaw
     seat: SeatLaw | None
     play: FloatArray
     flexibility: float | FloatArray = 0.0
+    overlap: float = 0.0
 
     def behind(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return s + c F and its derivative, mm and mm/N."""
-        given, slope = self.flexibility * load, np.zeros_like(load) + self.flexibility
+        """Return s + c F, overlap taken off, and its derivative, mm and mm/N."""
+        slope = np.zeros_like(load) + self.flexibility - self.overlap
+        given = slope * load
         if self.seat is not None:
             approach, compliance = self.seat.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))
             given, slope = given + approach, slope + compliance
@@ -97,8 +107,9 @@ class BackedLaw:
         closed = delta > 0.0
         near = np.where(closed, 0.5 * delta, delta)
         history: list[float] = []
-        # The approach lies between these two, and every evaluation moves one of them.
-        low, high = np.zeros_like(delta), np.where(closed, delta, 0.0)
+        # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole
+        # where overlap is taken off.
+        low, high = np.zeros_like(delta), np.full_like(delta, np.inf)
         for _ in range(80):
             load, stiffness = self.contact.load_and_stiffness(near, effective_radius)
             given, slope = self.behind(load)
@@ -108,7 +119,7 @@ class BackedLaw:
             high, low = np.where(left > 0.0, near, high), np.where(left < 0.0, near, low)
             following = near - left / (1.0 + stiffness * slope)
             outside = (following <= low) | (following >= high)
-            following = np.where(closed & outside, 0.5 * (low + high), following)
+            following = np.where(closed & outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
             history.append(float(np.max(np.abs(following - near) / np.maximum(np.abs(delta), 1e-300), initial=0.0)))
             near = np.where(closed, following, near)
             if history[-1] < 1e-13:
@@ -122,14 +133,9 @@ class BackedLaw:
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return ∫ F dδ of contact, seat and beam, N·mm."""
         near, load, _, _ = self._solve(np.asarray(approach, dtype=float), effective_radius)
-        held = 0.5 * self.flexibility * load**2
+        held = 0.5 * (self.flexibility - self.overlap) * load**2
         if self.seat is not None:
-            # ∫ F ds = F s − ∫ s dF; s behaves as F ln F at no load, which F = F₁ t³ smooths.
-            given, _ = self.seat.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))
-            held = held + load * given
-            for point, weight in zip(0.5 * (1.0 + GAUSS_POINTS), 0.5 * GAUSS_WEIGHTS, strict=True):
-                part, _ = self.seat.approach_and_compliance(load * point**3, np.broadcast_to(self.play, load.shape))
-                held = held - weight * 3.0 * point**2 * load * part
+            held = held + self.seat.energy(load, np.broadcast_to(self.play, load.shape))
         return np.asarray(self.contact.energy(near, effective_radius) + held)
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
@@ -172,7 +178,7 @@ def of_pairs(law: EnergyLaw, chosen: NDArray[np.intp]) -> EnergyLaw:
     return replace(law, play=law.play[chosen]) if isinstance(law, BackedLaw) else law
 
 
-def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray) -> ContactLaw:
+def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
     """Return the law of the wheel pins of a drive of one disc with what is behind them.
 
     Parameters
@@ -183,6 +189,8 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray) -> Cont
         Of pins, or their sleeves, and flank.
     play : array, shape (z_P,) or (positions, z_P)
         Of each in its seat, mm.
+    depth : float, optional
+        Down to which `contact` counts a sleeve, mm; that of a half-space as long as the disc is thick by default.
 
     Returns
     -------
@@ -192,13 +200,37 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray) -> Cont
     beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
         return contact
-    return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam))
+    overlap = 0.0
+    if drive.pin_wheel.seat.kind == "sleeve":
+        overlap = _overlap(drive, drive.pin_wheel.pin_radius, depth or HALF_SPACE_DATUM * drive.disc.thickness)
+    return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam), overlap=overlap)
 
 
-def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray) -> EnergyLaw:
-    """Return the law of shaft pins and holes with the sleeves behind it; arguments as for `back_wheel_pins`."""
-    seat = shaft_pin_seat(drive)
-    return contact if seat is None else BackedLaw(contact=contact, seat=seat, play=play)
+def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray, depth: float | None = None) -> EnergyLaw:
+    """Return the law of shaft pins and holes with the sleeves behind it.
+
+    Parameters
+    ----------
+    drive : Drive
+        Of one disc.
+    contact : EnergyLaw
+        Of pins, or their sleeves, and holes.
+    play : array, shape (z_PS,) or (positions, z_PS)
+        Of the sleeves on their pins, mm.
+    depth : float, optional
+        Down to which `contact` counts a sleeve, mm; nowhere by default, where a spring stands for all outside.
+    """
+    seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
+    if seat is None or shaft is None:
+        return contact
+    overlap = 0.0 if depth is None else _overlap(drive, shaft.pin_radius, depth)
+    return BackedLaw(contact=contact, seat=seat, play=play, overlap=overlap)
+
+
+def _overlap(drive: Drive, radius: float, depth: float) -> float:
+    """What a half-plane of the sleeve yields between its outer radius and a depth, 2 (1 − ν²) ln(D/R)/(π E L), mm/N."""
+    compliance = drive.materials.sleeve.plane_strain_compliance
+    return float(2.0 * compliance * np.log(depth / radius) / (np.pi * drive.disc.thickness))
 
 
 def shaft_pin_stiffness(drive: Drive) -> float:
@@ -263,18 +295,19 @@ def shaft_pin_seat(drive: Drive) -> ConformingLaw | None:
     shaft, parts = drive.pin_shaft, drive.materials
     if shaft is None or shaft.seat.kind == "fixed":
         return None
-    return ConformingLaw.of_bodies(
+    return ConformingLaw.of_sleeve(
         pin=parts.shaft_pin,
-        bore=parts.sleeve,
+        sleeve=parts.sleeve,
         pin_radius=shaft.seat.pin_radius or 0.0,
         bore_radius=shaft.seat.bore_radius or 0.0,
-        datum_radius=shaft.pin_radius,
+        outer_radius=shaft.pin_radius,
+        datum=shaft.pin_radius,
         length=drive.disc.thickness,
     )
 
 
 def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
-    """Return the law of the wheel pins in their slots, or of the sleeves on them, of a drive of one disc; None for fixed pins."""
+    """Return the law of the wheel pins in their slots, or of their sleeves, of a drive of one disc; None for fixed pins."""
     wheel, parts, length = drive.pin_wheel, drive.materials, drive.disc.thickness
     if wheel.seat.kind == "slot":
         radius = wheel.seat.radius or 0.0
@@ -287,12 +320,13 @@ def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
             length=length,
         )
     if wheel.seat.kind == "sleeve":
-        return ConformingLaw.of_bodies(
+        return ConformingLaw.of_sleeve(
             pin=parts.wheel_pin,
-            bore=parts.sleeve,
+            sleeve=parts.sleeve,
             pin_radius=wheel.seat.pin_radius or 0.0,
             bore_radius=wheel.seat.bore_radius or 0.0,
-            datum_radius=wheel.pin_radius,
+            outer_radius=wheel.pin_radius,
+            datum=wheel.pin_radius,
             length=length,
         )
     return None
