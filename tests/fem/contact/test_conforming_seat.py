@@ -65,6 +65,7 @@ def test_approach_pressure_and_arc(case):
 THIN = (1.5, 1.51, 2.5, 1150.0, STEEL)
 WIDE = (5.0, 5.02, 7.0, 1150.0, BRONZE)
 VERY_THIN = (5.0, 5.02, 6.0, 1000.0, BRONZE)
+WIDE_SLEEVE = (5.0, 5.5, 8.0, 1150.0, STEEL)
 
 
 def sleeve_and_law(case, elements):
@@ -88,7 +89,7 @@ def sleeve_and_law(case, elements):
     return found, expected, float(law.largest_pressure(load, play))
 
 
-@pytest.mark.parametrize("case", [THIN, WIDE, VERY_THIN])
+@pytest.mark.parametrize("case", [THIN, WIDE, VERY_THIN, WIDE_SLEEVE])
 def test_sleeves(case):
     """Twenty-four elements over the arc, eight over the patch outside: 0.1 % of the travel (measured).
 
