@@ -34,6 +34,8 @@ SEATS = (
     (1.5, 1.51, 2.5, 1150.0, STEEL),
     (5.0, 5.02, 8.0, 4000.0, STEEL),
     (5.0, 5.02, 8.0, 4000.0, BRONZE),
+    (4.0, 4.4, 9.0, 1150.0, STEEL),
+    (4.0, 6.0, 9.0, 1150.0, BRONZE),
 )
 # Pin, bore and outer radius, load, sleeve.
 SLEEVES = (

@@ -94,9 +94,10 @@ def press_pin_into_bore(
     """
     place, reach = _refinement(pin_radius, half_angle, elements)
     disc = mesh_circle(CircleShape(name="pin", radius=pin_radius), [place], growth=growth)
-    ring = mesh_ring(
-        RingShape(inner_radius=bore_radius, outer_radius=width * datum_radius, name="bore"), [place], growth=growth
-    )
+    # Its own arc is the pin's, not its angle: the play may be no small part of the radius.
+    facing = Refinement(bore_radius, 0.0, place.size, place.radius)
+    shape = RingShape(inner_radius=bore_radius, outer_radius=width * datum_radius, name="bore")
+    ring = mesh_ring(shape, [facing], growth=growth)
     curve = CircleCurve(name="inner", radius=bore_radius, encloses_body=False)
     zone = PressureZone.on_boundary(ring, curve, complex(bore_radius), reach, thickness=length)
     opposite = OppositeZone.on_circle(disc, "surface", complex(pin_radius), 1.1 * reach)

@@ -18,8 +18,9 @@ They fill the gap ΔR (1 − cos θ) − δ cos θ over the arc |θ| < α: `ltca
 `ltca.laws.seats.series` tabulates it over the load, once for each pair of materials; the first harmonic adds a spring, the
 only part that knows the datum. docs/seats.md has all of it, with figures.
 
-Left out: displacements and play are small against the radius (both circles are taken at :math:`a = \sqrt{r r_s}`, which
-keeps Hertz' curvature exact), friction, and what bounds the body with the bore.
+Both circles are taken at :math:`a = \sqrt{r r_s}`, which keeps Hertz' curvature exact; where the play is wide the arc is
+small, and there the logarithms of both radii count. Left out: displacements small against the radius, friction, and what
+bounds the body with the bore.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ class _Seat:
     breathing: float
     kappa: float
     part: float
-    pin_first: float
+    first: float
 
     @classmethod
     def of_bodies(cls, pin: Material, bore: Material, pin_radius: float, bore_radius: float, length: float) -> _Seat:
@@ -67,6 +68,7 @@ class _Seat:
         pin_kappa, kappa = (3.0 - 4.0 * part.poisson_ratio for part in (pin, bore))
         # E*/4μ of each body
         pin_part, part = (0.5 * modulus * (1.0 + part.poisson_ratio) / part.youngs_modulus for part in (pin, bore))
+        between = (kappa + 1.0) * part - (pin_kappa + 1.0) * pin_part
         return cls(
             modulus=modulus,
             radius=float(np.sqrt(pin_radius * bore_radius)),
@@ -74,7 +76,8 @@ class _Seat:
             breathing=round(max((pin_kappa - 1.0) * pin_part + 2.0 * part, SMALLEST_BREATHING), 12),
             kappa=kappa,
             part=round(part, 12),
-            pin_first=0.5 * (pin_kappa - 1.0) * pin_part,
+            # Near its load each body goes by the logarithm of its own radius, not a: that counts where the play is wide.
+            first=0.5 * ((pin_kappa - 1.0) * pin_part + between * np.log(bore_radius / pin_radius)),
         )
 
 
@@ -134,12 +137,12 @@ class ConformingLaw:
         if not datum_radius >= bore_radius:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
         seat = _Seat.of_bodies(pin, bore, pin_radius, bore_radius, length)
-        yielding = 2.0 * seat.kappa / (seat.kappa + 1.0) * np.log(datum_radius / seat.radius) + 0.5
+        yielding = 2.0 * seat.kappa / (seat.kappa + 1.0) * np.log(datum_radius / bore_radius) + 0.5
         return cls(
             length=length,
             radius=seat.radius,
             contact_modulus=seat.modulus,
-            first_harmonic=float((seat.pin_first + yielding * seat.part) / np.pi),
+            first_harmonic=float((seat.first + yielding * seat.part) / np.pi),
             series=conforming_series(seat.mismatch, seat.breathing),
         )
 
@@ -181,14 +184,14 @@ class ConformingLaw:
                 [f"outer radius {outer_radius:g} mm of a sleeve: must be greater than {bore_radius:g} mm, its bore"]
             )
         seat = _Seat.of_bodies(pin, sleeve, pin_radius, bore_radius, length)
-        kappa, ratio = round(seat.kappa, 12), round(seat.radius / outer_radius, 12)
+        kappa, ratio = round(seat.kappa, 12), round(bore_radius / outer_radius, 12)
         wall = sleeve_wall(kappa, ratio)
         yielding = wall.own[1] - wall.back[1] + (kappa + 1.0) * np.log(outer_radius / datum)
         return cls(
             length=length,
             radius=seat.radius,
             contact_modulus=seat.modulus,
-            first_harmonic=float((seat.pin_first + yielding * seat.part) / np.pi),
+            first_harmonic=float((seat.first + yielding * seat.part) / np.pi),
             series=conforming_series(seat.mismatch, seat.breathing, (kappa, ratio, seat.part)),
         )
 
@@ -229,7 +232,7 @@ class ConformingLaw:
         return np.asarray(unit * (approach - complement))
 
     def half_angle(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
-        """Return half the arc of contact, rad; parameters as for `approach_and_compliance`."""
+        """Return half the arc of contact on the radius a, rad; parameters as for `approach_and_compliance`."""
         _, z = self._place(load, play)
         return np.asarray(2.0 * np.arctan(z * self.series.evaluate(self.series.half_width, z)))
 

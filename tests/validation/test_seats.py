@@ -32,6 +32,7 @@ def test_persson(b):
     np.testing.assert_allclose(persson_pressure(angle, b), arc.pressure(angle), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_picture(tmp_path):
     """It is drawn, and the one in the repository has the same curves and labels (builds of fonts move other things)."""
     draw(tmp_path / "seats.svg")
