@@ -177,7 +177,8 @@ class HalfSpaceCompliance:
         force it would add to the gradient of the energy (about 1e-5 of the load, along the flank) is no contact
         force without friction: the force acts along the common normal.
         """
-        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
+        places, known = (None, None) if start is None else (start.parameter, start.known)
+        flank = self.geometry.flank(crank_angle, pose, places, known)
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
         hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)

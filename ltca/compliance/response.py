@@ -7,7 +7,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.balance`
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
-from ltca.geometry.pairs import BoreMotion, ContactGeometry, FlankMotion, PairMotion
+from ltca.geometry.pairs import BoreMotion, ContactGeometry, FlankMotion, KnownPins, PairMotion
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -151,20 +151,34 @@ class Start:
         Shares of `ltca.compliance.rollers`.
     warm_start : array of object, shape (positions,)
         Of the model, see `Response`.
+    known : KnownPins or None
+        Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
+        where all are asked for.
     """
 
     parameter: FloatArray
     share: FloatArray
     warm_start: NDArray[np.object_]
+    known: KnownPins | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
-        """Return the start that a response gives for the next pose."""
+        """Return the start that a response gives for poses near it, also of other drives and angles."""
         return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
+
+    @classmethod
+    def onward(cls, response: Response) -> Start:
+        """Return the start for other poses of the same positions, open pins left out (`ltca.equilibrium.reducer.complete`)."""
+        return replace(cls.after(response), known=KnownPins.of(response.flank))
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
-        return Start(parameter=self.parameter[rows], share=self.share[rows], warm_start=self.warm_start[rows])
+        return Start(
+            parameter=self.parameter[rows],
+            share=self.share[rows],
+            warm_start=self.warm_start[rows],
+            known=None if self.known is None else self.known.take(rows),
+        )
 
 
 def assemble_response(

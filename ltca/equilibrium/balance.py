@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ltca.compliance.response import ComplianceModel, Response, Start
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
-from ltca.equilibrium.reducer import at_rows, disc_responses, geometries
+from ltca.equilibrium.reducer import at_rows, complete, disc_responses, geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
@@ -144,7 +144,7 @@ def solve_equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(moment),
         pose=search.pose,
-        response=search.contacts()[1],
+        response=complete(model, angle, search.pose, search.contacts()[1]),
         residual=search.residual,
         iterations=search.iterations,
     )

@@ -146,7 +146,7 @@ class Search:
                 break
             self.iterations[active] += 1
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
-            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.after(response))
+            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.onward(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = np.max(np.abs(gradient), axis=1)
@@ -183,7 +183,7 @@ class Search:
                 if np.max(np.abs(wall)) < 0.1 * abs(soft @ gradient[0]):
                     break
                 pose = pose - (modes @ ((modes.T @ wall) / np.where(values == 0.0, 1.0, values)))[None] / lever
-                response = self.evaluate(rows, pose, Start.after(response))
+                response = self.evaluate(rows, pose, Start.onward(response))
             self.iterations[row] += 1
             slope = float(soft @ gradient[0])
             change = (slope - before) / along if along else float(np.min(np.abs(values)))
@@ -191,7 +191,7 @@ class Search:
             most = 4.0 * abs(along) if along else FIRST_ALONG * self.smallest_pin
             along, before, last = float(np.clip(step, -most, most)), slope, soft
             pose = pose + along * soft[None] / lever
-            response = self.evaluate(rows, pose, Start.after(response))
+            response = self.evaluate(rows, pose, Start.onward(response))
         return False
 
     def keep(self, rows: NDArray[np.intp], response: Response, balanced: NDArray[np.bool_]) -> None:
@@ -243,7 +243,7 @@ class Search:
             place = -low_slope[back] / (high_slope[back] - low_slope[back])
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            again = self.evaluate(rows[back], pose[back], Start.after(response).take(back))
+            again = self.evaluate(rows[back], pose[back], Start.onward(response).take(back))
             response = put_positions(response, back, again)
             gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])

@@ -26,7 +26,7 @@ from ltca.compliance.response import (
     bearing_pushes,
 )
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
-from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.pairs import ContactGeometry, KnownPins
 
 FloatArray = NDArray[np.float64]
 
@@ -137,6 +137,29 @@ def disc_responses(response: Response) -> tuple[Response, ...]:
     return response.parts if isinstance(response, ReducerResponse) else (response,)
 
 
+def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
+    """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        What answered.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, coordinates)
+        q.
+    response : Response
+        Contacts there.
+    """
+    parts = tuple(
+        replace(part, flank=disc.geometry.complete_flank(crank_angle, pose[:, model.coordinates.columns(number)], part.flank))
+        for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True))
+    )
+    if not isinstance(response, ReducerResponse):
+        return parts[0]
+    return replace(response, flank=_beside([part.flank for part in parts]), parts=parts)
+
+
 def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:
     """Return the pressures of each of several discs from those of all."""
     if discs == 1:
@@ -201,10 +224,17 @@ def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) 
 
 
 def _split_start(start: Start, count: int) -> list[Start]:
-    columns = zip(
-        np.split(start.parameter, count, axis=1), np.split(start.share, count, axis=1), start.warm_start.T, strict=True
-    )
-    return [Start(parameter=parameter, share=share, warm_start=warm) for parameter, share, warm in columns]
+    def of_each(values: Any) -> list[Any]:
+        return np.split(values, count, axis=1)
+
+    known: list[KnownPins | None] = [None] * count
+    if start.known is not None:
+        pairs = zip(of_each(start.known.approach), of_each(start.known.point), strict=True)
+        known = [KnownPins(approach=approach, point=point) for approach, point in pairs]
+    columns = zip(of_each(start.parameter), of_each(start.share), start.warm_start.T, known, strict=True)
+    return [
+        Start(parameter=parameter, share=share, warm_start=warm, known=pins) for parameter, share, warm, pins in columns
+    ]
 
 
 def _beside(values: Sequence[Any]) -> Any:

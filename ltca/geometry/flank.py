@@ -115,6 +115,15 @@ class FlankProfile:
             picked["deviation"] = self.deviation.take(rows)
         return FlankProfile(**picked)
 
+    @property
+    def is_batch(self) -> bool:
+        """Whether every position has a flank of its own."""
+        return np.ndim(self.offset) > 0
+
+    def of_points(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
+        """Return the flanks of points that belong to these positions: itself for one drive."""
+        return self.take(rows) if self.is_batch else self
+
     @classmethod
     def stack(cls, drives: Sequence[Drive], positions: int) -> FlankProfile:
         """Return the flanks of several drives of equal reduction ratio, see `ltca.geometry.placement.Placement.stack`."""
@@ -288,13 +297,19 @@ class FlankProfile:
             When a point does not settle; the history holds the largest steps.
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
-        direction = unit(theta)
+        found = self._settle(point, theta, limit)
+        return self._nearer_side(point, found) if across_root else found
+
+    def _settle(self, point: ComplexArray, start: FloatArray, limit: int) -> NearestPoint:
+        """Find the foot next to every start; points that have settled are left alone as soon as they are most of them."""
+        flank, theta, direction = self, start, unit(start)
+        every, settled, left = theta, direction, np.arange(theta.size)
         bound = 0.4 * np.pi / self.reduction_ratio
         low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
         last = slope_before = np.zeros(theta.shape)
         history: list[float] = []
         for iteration in range(limit):
-            curve = self.contact_curve(direction)
+            curve = flank.contact_curve(direction)
             away = curve.point - point
             tangent = curve.tangent
             speed = tangent.real**2 + tangent.imag**2
@@ -315,14 +330,24 @@ class FlankProfile:
                 far = np.where(value < 0.0, theta - step > high - margin, theta - step < low + margin)
                 outside = bracketed & far
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
-            theta -= step
+            theta = theta - step
             slope_before, last = slope, step
-            history.append(float(np.max(np.abs(step), initial=0.0)))
+            moved = np.abs(step)
+            history.append(float(np.max(moved, initial=0.0)))
             if history[-1] > THERE:
                 direction = direction * small_turn(-step)
-            if history[-1] <= SETTLED:
-                found = NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
-                return self._nearer_side(point, found) if across_root else found
+            if history[-1] <= SETTLED and theta.size == every.size:
+                return NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
+            going = moved > SETTLED
+            if 2 * np.count_nonzero(going) < going.size:
+                every, settled = _with_places(every, left, theta), _with_places(settled, left, direction)
+                left = left[going.ravel()]
+                if left.size == 0:
+                    return NearestPoint(every, self.contact_curve(settled))
+                flank = flank.of_points(np.nonzero(going)[0])
+                theta, direction, point, low, high, last, slope_before = (
+                    values[going][:, None] for values in (theta, direction, point, low, high, last, slope_before)
+                )
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
     def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
@@ -344,9 +369,8 @@ class FlankProfile:
         if not np.any(doubtful):
             return found
         # The doubtful points alone; of a batch of flanks the positions that have some.
-        single = np.ndim(self.offset) == 0
-        rows = doubtful if single else np.nonzero(np.any(doubtful, axis=1))[0]
-        flank = self if single else self.take(rows)
+        rows = np.nonzero(np.any(doubtful, axis=1))[0] if self.is_batch else doubtful
+        flank = self.of_points(rows)
         point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
         other = flank.nearest_point(point, start, across_root=False)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
@@ -377,3 +401,10 @@ class FlankProfile:
     def tip_radius(self) -> float:
         """Largest radius of the disc as designed, mm (at θ = π/z_C for Δz = 1)."""
         return float(self.generating_radius + self.eccentricity - self.offset)
+
+
+def _with_places(values: NDArray[Any], places: NDArray[np.intp], fresh: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy with some values replaced, which are counted through all axes."""
+    changed = values.copy()
+    changed.ravel()[places] = fresh.ravel()
+    return changed

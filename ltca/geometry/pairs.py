@@ -8,7 +8,7 @@ together.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+MARGIN = 1e-6
+"""Gap below which a pin is never left out, mm: far above round-off of places, far below any play."""
 
 
 def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -89,10 +92,17 @@ class FlankMotion(PairMotion):
         Place θ of the contact on the flank, rad.
     effective_radius : array, shape (positions, z_P)
         ρ of pin and flank there, mm.
+    point : array of complex, shape (positions, z_P)
+        Centre of the pin in the frame of the disc, mm.
+    left_out : array of bool, shape (positions, z_P)
+        Pins that cannot touch and were left out: approach and point are those of another pose, where the pair was open as
+        well, and derivatives are zero.
     """
 
     parameter: FloatArray
     effective_radius: FloatArray
+    point: ComplexArray
+    left_out: NDArray[np.bool_]
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
@@ -104,6 +114,74 @@ class FlankMotion(PairMotion):
         for turn in (DISC_ROTATION, WHEEL_ANGLE):
             total[..., turn, turn] -= slip[..., turn]
         return np.asarray(-total)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownPins:
+    """Approaches of wheel pins and flank at one pose or other, from which those at every pose are bounded.
+
+    Attributes
+    ----------
+    approach : array, shape (positions, z_P)
+        δ, mm.
+    point : array of complex, shape (positions, z_P)
+        Centre of the pin in the frame of the disc there, mm.
+    """
+
+    approach: FloatArray
+    point: ComplexArray
+
+    @classmethod
+    def of(cls, motion: FlankMotion) -> KnownPins:
+        """Return what pairs of pins and flank tell of the pins."""
+        return cls(approach=motion.approach, point=motion.point)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> KnownPins:
+        """Return what is known at some of the positions."""
+        return KnownPins(approach=self.approach[rows], point=self.point[rows])
+
+    def may_touch(self, point: ComplexArray) -> NDArray[np.bool_]:
+        """Tell which pins may touch the flank: a distance changes by no more than the point moves it is measured from.
+
+        Parameters
+        ----------
+        point : array of complex, shape (positions, z_P)
+            Centres of the pins in the frame of the disc, mm.
+        """
+        return np.asarray(self.approach + np.abs(point - self.point) > -MARGIN)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Pins:
+    """Wheel pins as the disc sees them, complex numbers of one shape, mm.
+
+    Attributes
+    ----------
+    centre, arm : array of complex
+        Centre from the axis of the wheel and from the centre of the disc, in the fixed frame.
+    turn : array of complex
+        Unit vector of the disc's rotation.
+    point : array of complex
+        Centre in the frame of the disc.
+    radius : array
+        Of the pin.
+    """
+
+    centre: ComplexArray
+    arm: ComplexArray
+    turn: ComplexArray
+    point: ComplexArray
+    radius: FloatArray
+
+    def take(self, rows: NDArray[np.intp], numbers: NDArray[np.intp]) -> _Pins:
+        """Return some pins, shape (pins, 1)."""
+        return _Pins(
+            centre=self.centre[rows, numbers][:, None],
+            arm=self.arm[rows, numbers][:, None],
+            turn=self.turn[rows],
+            point=self.point[rows, numbers][:, None],
+            radius=np.broadcast_to(self.radius, self.point.shape)[rows, numbers][:, None],
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,7 +300,13 @@ class ContactGeometry:
             pins = pins - np.angle(self.profile.turn)
         return np.asarray(crank_angle)[:, None] / self.placement.reduction_ratio + pins
 
-    def flank(self, crank_angle: FloatArray, pose: FloatArray, start: FloatArray | None = None) -> FlankMotion:
+    def flank(
+        self,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        start: FloatArray | None = None,
+        known: KnownPins | None = None,
+    ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
         Parameters
@@ -233,47 +317,110 @@ class ContactGeometry:
             q.
         start : array, shape (positions, z_P), optional
             First guess of the contact parameters; the nominal ones by default.
+        known : KnownPins, optional
+            Of the same drives: pins that cannot have come as far as the flank are left out, see `complete_flank`.
         """
-        place, coordinates = self.placement, self.coordinates_of(pose)
-        rotation, wheel_angle = pose[:, DISC_ROTATION, None], pose[:, WHEEL_ANGLE, None]
-        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
-        wheel = coordinates.wheel_place
-        if coordinates.wheel:  # a wheel that moves is a disc that moves the other way
-            disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
-        pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
-        arm = place.wheel_axis + pin - disc_centre
-        turn = unit(rotation)
-        point = arm * turn.conjugate()
+        pins = self._pins(crank_angle, pose)
         if start is None:
-            start = self.nominal_parameter(crank_angle) + wheel_angle - rotation
-        parameter, curve = self.profile.nearest_point(point, start)
+            start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
+        if known is None:
+            return self._touching(self.profile, pins, start, self.coordinates_of(pose))
+        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
+
+    def complete_flank(self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion) -> FlankMotion:
+        """Return the pairs of which `flank` left some out as those of all pins.
+
+        Parameters
+        ----------
+        crank_angle, pose : array, array
+            As for `flank`.
+        motion : FlankMotion
+            What it answered.
+        """
+        if not motion.left_out.any():
+            return motion
+        pins = self._pins(crank_angle, pose)
+        others = self._touching_some(
+            pins, motion.parameter, motion.left_out, KnownPins.of(motion), self.coordinates_of(pose)
+        )
+        mixed = {}
+        for item in fields(motion):
+            mine, theirs = getattr(motion, item.name), getattr(others, item.name)
+            chosen = motion.left_out.reshape(*motion.left_out.shape, *(1,) * (mine.ndim - 2))
+            mixed[item.name] = np.where(chosen, theirs, mine)
+        return FlankMotion(**mixed | {"left_out": np.zeros_like(motion.left_out)})
+
+    def _pins(self, crank_angle: FloatArray, pose: FloatArray) -> _Pins:
+        place, coordinates = self.placement, self.coordinates_of(pose)
+        disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
+        if coordinates.wheel:  # a wheel that moves is a disc that moves the other way
+            wheel = coordinates.wheel_place
+            disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
+        turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
+        pin = place.wheel_pin_centres * unit(turned)
+        arm, turn = place.wheel_axis + pin - disc_centre, unit(pose[:, DISC_ROTATION, None])
+        return _Pins(centre=pin, arm=arm, turn=turn, point=arm * turn.conjugate(), radius=place.wheel_pin_radii)
+
+    def _touching_some(
+        self, pins: _Pins, start: FloatArray, near: NDArray[np.bool_], known: KnownPins, coordinates: Coordinates
+    ) -> FlankMotion:
+        """Pairs of the pins that are near, each as a position of its own, among those of which something is known."""
+        rows, numbers = np.nonzero(near)
+        found = self._touching(
+            self.profile.of_points(rows), pins.take(rows, numbers), start[rows, numbers][:, None], coordinates
+        )
+        approach, parameter, point = known.approach.copy(), start.copy(), known.point.copy()
+        bending, effective_radius = np.zeros(near.shape), np.ones(near.shape)
+        gradient, along = (np.zeros((*near.shape, coordinates.size)) for _ in range(2))
+        motion = FlankMotion(
+            approach=approach,
+            gradient=gradient,
+            along=along,
+            bending=bending,
+            parameter=parameter,
+            effective_radius=effective_radius,
+            point=point,
+            left_out=~near,
+        )
+        for item in fields(found):
+            if item.name != "left_out":
+                getattr(motion, item.name)[rows, numbers] = getattr(found, item.name)[:, 0]
+        return motion
+
+    def _touching(
+        self, profile: FlankProfile, pins: _Pins, start: FloatArray, coordinates: Coordinates
+    ) -> FlankMotion:
+        """Pairs of pins and flank, all of the same shape."""
+        point, arm = pins.point, pins.arm
+        parameter, curve = profile.nearest_point(point, start)
         tangent, second = curve.tangent, curve.second
         speed = np.sqrt(tangent.real**2 + tangent.imag**2)
         normal = -1j * tangent / speed
         distance = _dot(normal, point - curve.point)
         curvature = _cross(tangent, second) / speed**3
-        offset = self.profile.contact_offset
-        approach = place.wheel_pin_radii - offset - distance
+        offset = profile.contact_offset
         flank_curvature = curvature / (1.0 - offset * curvature)
-        effective_radius = 1.0 / (1.0 / place.wheel_pin_radii + flank_curvature)
 
         # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
-        outward = normal * turn
-        gradient, along = (np.zeros((*approach.shape, coordinates.size)) for _ in range(2))
+        outward = normal * pins.turn
+        gradient, along = (np.zeros((*point.shape, coordinates.size)) for _ in range(2))
         gradient[..., X], gradient[..., Y] = outward.real, outward.imag
-        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = _cross(arm, outward), -_cross(pin, outward)
+        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = _cross(arm, outward), -_cross(pins.centre, outward)
         along[..., X], along[..., Y] = outward.imag, -outward.real
-        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -_dot(outward, arm), _dot(outward, pin)
+        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -_dot(outward, arm), _dot(outward, pins.centre)
         if coordinates.wheel:
+            wheel = coordinates.wheel_place
             gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
         return FlankMotion(
-            approach=approach,
+            approach=pins.radius - offset - distance,
             gradient=gradient,
             along=along,
             bending=curvature / (1.0 + curvature * distance),
             parameter=parameter,
-            effective_radius=effective_radius,
+            effective_radius=1.0 / (1.0 / pins.radius + flank_curvature),
+            point=point,
+            left_out=np.zeros(point.shape, dtype=bool),
         )
 
     def holes(self, crank_angle: FloatArray, pose: FloatArray) -> PairMotion:
