@@ -147,7 +147,13 @@ class GridCompliance:
         rollers = balance_rollers(
             rays,
             bores.each(bores.displacement, rays.direction.shape[1]),
-            RollerLaws(inner=inner, outer=outer, inner_radius=self.inner_radius, outer_radius=self.outer_radius),
+            RollerLaws(
+                inner=inner,
+                outer=outer,
+                inner_radius=self.inner_radius,
+                outer_radius=self.outer_radius,
+                by_place=True,
+            ),
             None if start is None else start.share,
         )
         warm_start = np.empty(crank_angle.size, dtype=object)

@@ -39,12 +39,15 @@ class RollerLaws(Generic[Law]):
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (rollers,)
         Effective radii of curvature, mm.
+    by_place : bool
+        Whether the laws know their contacts by their places, shape (positions, rollers), as grids do.
     """
 
     inner: Law
     outer: Law
     inner_radius: FloatArray
     outer_radius: FloatArray
+    by_place: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,11 +150,14 @@ def _balance_pressed(
     direction, moved = rays.direction[pressed], each(displacement)
     outermost, bore_play = each(rays.outermost), each(rays.bore_play)
 
+    inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
+
     def loads(law: Law, approach: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        # A law may know its pairs by their places (grids), so it is asked for all; open ones cost it nothing.
-        everywhere = np.zeros(rays.direction.shape)
-        everywhere[pressed] = approach
-        load, stiffness = law.load_and_stiffness(everywhere, radius)
+        if not laws.by_place:
+            return law.load_and_stiffness(approach, radius)
+        everywhere, radii = np.zeros(rays.direction.shape), np.ones(rays.direction.shape)
+        everywhere[pressed], radii[pressed] = approach, radius
+        load, stiffness = law.load_and_stiffness(everywhere, radii)  # open ones cost it nothing
         return load[pressed], stiffness[pressed]
 
     lowest = outermost - total
@@ -167,8 +173,8 @@ def _balance_pressed(
         inner_approach = share * total
         # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
         outer_approach = (1.0 - share) * total * (place + lowest - 2.0 * along) / (length + bore_play)
-        inner_load, inner_stiffness = loads(laws.inner, inner_approach, laws.inner_radius)
-        outer_load, outer_stiffness = loads(laws.outer, outer_approach, laws.outer_radius)
+        inner_load, inner_stiffness = loads(laws.inner, inner_approach, inner_radius)
+        outer_load, outer_stiffness = loads(laws.outer, outer_approach, outer_radius)
         bend = outer_load * (1.0 - cosine**2) / length
         stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
         imbalance = inner_load - outer_load * cosine
