@@ -98,6 +98,7 @@ def solve_equilibrium(
     wheel_moment: FloatArray | float,
     start: FloatArray | Equilibrium | None = None,
     inner: Start | None = None,
+    gaps: bool = True,
 ) -> Equilibrium:
     """Find the pose in which every position of a batch balances.
 
@@ -114,6 +115,8 @@ def solve_equilibrium(
         centres and the wheel turned to first contact.
     inner : Start, optional
         Inner unknowns near the poses to start from.
+    gaps : bool
+        Whether the pairs of pins that do not touch are wanted, which balance does not need (`FlankMotion.left_out`).
 
     Returns
     -------
@@ -140,11 +143,12 @@ def solve_equilibrium(
         left = _follow_down(search, left)
     if left.size:
         raise _failure(search, left)
+    response = search.contacts()[1]
     return Equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(moment),
         pose=search.pose,
-        response=complete(model, angle, search.pose, search.contacts()[1]),
+        response=complete(model, angle, search.pose, response) if gaps else response,
         residual=search.residual,
         iterations=search.iterations,
     )

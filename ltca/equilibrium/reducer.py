@@ -229,8 +229,8 @@ def _split_start(start: Start, count: int) -> list[Start]:
 
     known: list[KnownPins | None] = [None] * count
     if start.known is not None:
-        pairs = zip(of_each(start.known.approach), of_each(start.known.point), strict=True)
-        known = [KnownPins(approach=approach, point=point) for approach, point in pairs]
+        pairs = zip(*(of_each(getattr(start.known, item.name)) for item in fields(KnownPins)), strict=True)
+        known = [KnownPins(approach=values[0], point=values[1], turning=values[2]) for values in pairs]
     columns = zip(of_each(start.parameter), of_each(start.share), start.warm_start.T, known, strict=True)
     return [
         Start(parameter=parameter, share=share, warm_start=warm, known=pins) for parameter, share, warm, pins in columns

@@ -24,6 +24,8 @@ ComplexArray = NDArray[np.complex128]
 
 MARGIN = 1e-6
 """Gap below which a pin is never left out, mm: far above round-off of places, far below any play."""
+FARTHEST = 0.1
+"""Most that a contact is taken along the flank by its slope, as a part of the tooth pitch."""
 
 
 def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -94,6 +96,8 @@ class FlankMotion(PairMotion):
         ρ of pin and flank there, mm.
     point : array of complex, shape (positions, z_P)
         Centre of the pin in the frame of the disc, mm.
+    turning : array of complex, shape (positions, z_P)
+        Change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm.
     left_out : array of bool, shape (positions, z_P)
         Pins that cannot touch and were left out: approach and point are those of another pose, where the pair was open as
         well, and derivatives are zero.
@@ -102,6 +106,7 @@ class FlankMotion(PairMotion):
     parameter: FloatArray
     effective_radius: FloatArray
     point: ComplexArray
+    turning: ComplexArray
     left_out: NDArray[np.bool_]
 
     @staticmethod
@@ -122,23 +127,22 @@ class KnownPins:
 
     Attributes
     ----------
-    approach : array, shape (positions, z_P)
-        δ, mm.
-    point : array of complex, shape (positions, z_P)
-        Centre of the pin in the frame of the disc there, mm.
+    approach, point, turning : array, shape (positions, z_P)
+        Of `FlankMotion` there.
     """
 
     approach: FloatArray
     point: ComplexArray
+    turning: ComplexArray
 
     @classmethod
     def of(cls, motion: FlankMotion) -> KnownPins:
         """Return what pairs of pins and flank tell of the pins."""
-        return cls(approach=motion.approach, point=motion.point)
+        return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> KnownPins:
         """Return what is known at some of the positions."""
-        return KnownPins(approach=self.approach[rows], point=self.point[rows])
+        return KnownPins(approach=self.approach[rows], point=self.point[rows], turning=self.turning[rows])
 
     def may_touch(self, point: ComplexArray) -> NDArray[np.bool_]:
         """Tell which pins may touch the flank: a distance changes by no more than the point moves it is measured from.
@@ -366,10 +370,12 @@ class ContactGeometry:
     ) -> FlankMotion:
         """Pairs of the pins that are near, each as a position of its own, among those of which something is known."""
         rows, numbers = np.nonzero(near)
-        found = self._touching(
-            self.profile.of_points(rows), pins.take(rows, numbers), start[rows, numbers][:, None], coordinates
-        )
-        approach, parameter, point = known.approach.copy(), start.copy(), known.point.copy()
+        chosen = pins.take(rows, numbers)
+        moved = chosen.point[:, 0] - known.point[rows, numbers]
+        turned = _dot(known.turning[rows, numbers], moved).clip(-FARTHEST / self.profile.reduction_ratio, FARTHEST / self.profile.reduction_ratio)
+        near_place = start[rows, numbers] + turned
+        found = self._touching(self.profile.of_points(rows), chosen, near_place[:, None], coordinates)
+        approach, parameter, point, turning = known.approach.copy(), start.copy(), known.point.copy(), known.turning.copy()
         bending, effective_radius = np.zeros(near.shape), np.ones(near.shape)
         gradient, along = (np.zeros((*near.shape, coordinates.size)) for _ in range(2))
         motion = FlankMotion(
@@ -380,6 +386,7 @@ class ContactGeometry:
             parameter=parameter,
             effective_radius=effective_radius,
             point=point,
+            turning=turning,
             left_out=~near,
         )
         for item in fields(found):
@@ -394,10 +401,12 @@ class ContactGeometry:
         point, arm = pins.point, pins.arm
         parameter, curve = profile.nearest_point(point, start)
         tangent, second = curve.tangent, curve.second
-        speed = np.sqrt(tangent.real**2 + tangent.imag**2)
+        square = tangent.real**2 + tangent.imag**2
+        speed = np.sqrt(square)
         normal = -1j * tangent / speed
         distance = _dot(normal, point - curve.point)
-        curvature = _cross(tangent, second) / speed**3
+        curvature = _cross(tangent, second) / (square * speed)
+        spread = 1.0 + curvature * distance
         offset = profile.contact_offset
         flank_curvature = curvature / (1.0 - offset * curvature)
 
@@ -416,10 +425,11 @@ class ContactGeometry:
             approach=pins.radius - offset - distance,
             gradient=gradient,
             along=along,
-            bending=curvature / (1.0 + curvature * distance),
+            bending=curvature / spread,
             parameter=parameter,
             effective_radius=1.0 / (1.0 / pins.radius + flank_curvature),
             point=point,
+            turning=tangent / (square * spread),
             left_out=np.zeros(point.shape, dtype=bool),
         )
 

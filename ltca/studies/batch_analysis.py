@@ -128,10 +128,10 @@ class _Batch:
             return self.prepared.balance(self.angle, torques[0], None if near is None else near.pose)
         loads = np.repeat(torques, self.positions)
         if near is None:
-            return solve_at_output(self.model, self.drives, self.angle, loads)
+            return solve_at_output(self.model, self.drives, self.angle, loads, gaps=False)
         rows = np.arange(self.angle.size) % near.crank_angle.size
         inner = Start.after(near.response).take(rows)
-        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner)
+        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner, gaps=False)
 
 
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
