@@ -54,6 +54,21 @@ class CurvePoints(NamedTuple):
         return np.asarray((self.tangent.conjugate() * self.second).imag / np.abs(self.tangent) ** 3)
 
 
+class CurveFrame(NamedTuple):
+    """The moving frame of a curve over θ, which has the speed |c′| and turns by w dθ."""
+
+    point: ComplexArray
+    """mm."""
+    tangent: ComplexArray
+    """Unit vector."""
+    speed: FloatArray
+    speed_slope: FloatArray
+    """mm/rad and its derivative, mm/rad²."""
+    turning: FloatArray
+    turning_slope: FloatArray
+    """w and its derivative, 1/rad."""
+
+
 class NearestPoint(NamedTuple):
     """Where the normal of the flank passes through a point: θ and the curve of `FlankProfile.contact_curve` there."""
 
@@ -197,20 +212,39 @@ class FlankProfile:
         CurvePoints
             The trochoid; with a deviation the flank itself.
         """
-        c, dc, ddc = self.at(direction)
         if self.deviation is None:
+            c, dc, ddc = self.at(direction)
             return CurvePoints(c + self.centre, dc, ddc)
-        # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
+        return self.deviated(self.frame(direction), direction)
+
+    def frame(self, direction: ComplexArray) -> CurveFrame:
+        """Return the frame of the design trochoid at e^{iθ}, in which deviations are given."""
+        c, dc, ddc = self.at(direction)
         u = self.reduction_ratio
         circle = self.generating_radius * direction * self.turn
         dddc = 1j * (u**3 * (circle - c) - circle)
         back = dc.conjugate()
         square = dc.real**2 + dc.imag**2
         speed = np.sqrt(square)
-        t = dc / speed
+        tangent = dc / speed
         turning = back * ddc
         w, ds = turning.imag / square, turning.real / speed
-        dw = (back * dddc).imag / square - 2.0 * w * ds / speed
+        return CurveFrame(c, tangent, speed, ds, w, (back * dddc).imag / square - 2.0 * w * ds / speed)
+
+    def deviated(self, frame: CurveFrame, direction: ComplexArray) -> CurvePoints:
+        """Return the flank itself, as it deviates from its design.
+
+        Parameters
+        ----------
+        frame : CurveFrame
+            Of the design at e^{iθ}.
+        direction : array of complex
+            e^{iθ}.
+        """
+        if self.deviation is None:
+            raise ValueError("the flank is as designed")
+        # The frame t, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
+        c, t, speed, ds, w, dw = frame
         delta, slope, bend = self.deviation.value_and_derivatives(direction)
         d = self.offset - delta
         along = speed - d * w
