@@ -45,7 +45,8 @@ from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, disc_displacement
-from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
+from ltca.geometry.pair_motion import FlankMotion, PairMotion
+from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.contact_law import ContactLaw, LoadLaw
 from ltca.laws.series import SpringLaw, approach_at_load
 

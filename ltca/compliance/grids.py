@@ -29,7 +29,8 @@ from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import Coordinates
-from ltca.geometry.pairs import ContactGeometry, FlankMotion
+from ltca.geometry.pair_motion import FlankMotion
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 
 FloatArray = NDArray[np.float64]

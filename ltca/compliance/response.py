@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
-from ltca.geometry.pairs import BoreMotion, ContactGeometry, FlankMotion, KnownPins, PairMotion
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -167,9 +168,18 @@ class Start:
         return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
 
     @classmethod
-    def onward(cls, response: Response) -> Start:
-        """Return the start for other poses of the same positions, open pins left out (`ltca.equilibrium.reducer.complete`)."""
-        return replace(cls.after(response), known=KnownPins.of(response.flank))
+    def onward(cls, response: Response, reach_beyond: FloatArray | float = 0.0) -> Start:
+        """Return the start for other poses, open pins left out (`ltca.equilibrium.reducer.complete`).
+
+        Parameters
+        ----------
+        response : Response
+            Contacts near them.
+        reach_beyond : array, shape (positions, pins)
+            Of other drives: `ltca.geometry.pairs.ContactGeometry.reach_beyond`.
+        """
+        known = KnownPins.of(response.flank)
+        return replace(cls.after(response), known=replace(known, approach=known.approach + reach_beyond))
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""

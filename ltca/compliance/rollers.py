@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import RollerRays
+from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import LoadLaw
 
 FloatArray = NDArray[np.float64]

@@ -278,9 +278,7 @@ def _damped_step(
     return step, np.einsum("bi,bi->b", gradient, step)
 
 
-def _stiff_step(
-    tangent: FloatArray, gradient: FloatArray, floor: FloatArray
-) -> tuple[FloatArray, NDArray[np.bool_]]:
+def _stiff_step(tangent: FloatArray, gradient: FloatArray, floor: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Return −(H + μ)⁻¹g by Gauss's elimination of all positions at once, and where H is safely positive definite.
 
     Without damping: what it adds to every pivot must not make a soft mode stiff.

@@ -26,7 +26,8 @@ from ltca.compliance.response import (
     bearing_pushes,
 )
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
-from ltca.geometry.pairs import ContactGeometry, KnownPins
+from ltca.geometry.pair_motion import KnownPins
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 
@@ -137,6 +138,12 @@ def disc_responses(response: Response) -> tuple[Response, ...]:
     return response.parts if isinstance(response, ReducerResponse) else (response,)
 
 
+def reach_beyond(model: ComplianceModel, other: ComplianceModel) -> FloatArray:
+    """Return how much deeper pins may be than those of another drive at the same places, mm, shape (…, pins of all discs)."""
+    pairs = zip(geometries(model), geometries(other), strict=True)
+    return np.concatenate([mine.reach_beyond(theirs) for mine, theirs in pairs], axis=-1)
+
+
 def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
     """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
 
@@ -152,7 +159,10 @@ def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, 
         Contacts there.
     """
     parts = tuple(
-        replace(part, flank=disc.geometry.complete_flank(crank_angle, pose[:, model.coordinates.columns(number)], part.flank))
+        replace(
+            part,
+            flank=disc.geometry.complete_flank(crank_angle, pose[:, model.coordinates.columns(number)], part.flank),
+        )
         for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True))
     )
     if not isinstance(response, ReducerResponse):
