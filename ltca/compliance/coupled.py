@@ -4,11 +4,10 @@ Every approach is the sum of the contact's own law and what the loads on the bod
 
 .. math:: \delta_i(q) = w_i(F_i) + \sum_j C_{ij} F_j ,
 
-with the law of the near field w (`ltca.compliance.near_field`: half-spaces with the lengths and profiles of the parts
-for `hybrid`, plane strain with a datum for `fe`) and the body part C of `ltca.compliance.coefficients`, in which pins
-and race are as thick as the disc and rollers as long as they are. The unknowns at a pose are the near-field
-approaches ε: F = f(ε) is zero where ε is negative, so that no contact has to be switched on or off, and Newton's
-method solves
+with the law of the near field w (`ltca.compliance.near_field`: half-spaces with the lengths and profiles of the parts for
+`hybrid`, plane strain with a datum for `fe`) and the body part C of `ltca.compliance.coefficients`, in which pins and race
+are as thick as the disc and rollers as long as they are. The unknowns at a pose are the near-field approaches ε: F = f(ε) is
+zero where ε is negative, so that no contact has to be switched on or off, and Newton's method solves
 
 .. math:: R(\epsilon) = \epsilon + C f(\epsilon) - \delta(q) = 0 .
 

@@ -279,9 +279,9 @@ def _damped_step(
 
 
 def _stiff_step(tangent: FloatArray, gradient: FloatArray, floor: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return −(H + μ)⁻¹g by Gauss's elimination of all positions at once, and where H is safely positive definite.
+    """Return −(H + μ)⁻¹g by Gauss's elimination of all positions at once, and where H + μ is safely positive definite.
 
-    Without damping: what it adds to every pivot must not make a soft mode stiff.
+    Pivots are measured without μ, which must not make a soft mode stiff; elsewhere the step is of no use.
     """
     size = gradient.shape[1]
     matrix, right = tangent.transpose(1, 2, 0).copy(), -gradient.T
@@ -292,11 +292,12 @@ def _stiff_step(tangent: FloatArray, gradient: FloatArray, floor: FloatArray) ->
     for place in range(size):
         stiff &= matrix[place, place] > least[place] + floor
         pivot = np.where(stiff, matrix[place, place], 1.0)
-        factors = matrix[place + 1 :, place] / pivot
+        factors = np.where(stiff, matrix[place + 1 :, place] / pivot, 0.0)  # soft ones are left as they are
         matrix[place + 1 :, place + 1 :] -= factors[:, None] * matrix[place, place + 1 :]
         right[place + 1 :] -= factors * right[place]
         right[place] /= pivot
         matrix[place, place + 1 :] /= pivot
+    right = np.where(stiff, right, 0.0)
     for place in range(size - 2, -1, -1):
         right[place] -= (matrix[place, place + 1 :] * right[place + 1 :]).sum(axis=0)
     return np.ascontiguousarray(right.T), stiff

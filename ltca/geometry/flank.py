@@ -379,8 +379,8 @@ class FlankProfile:
                 if left.size == 0:
                     return NearestPoint(every, self.contact_curve(settled))
                 flank = flank.of_points(np.nonzero(going)[0])
-                theta, direction, point, low, high, last, slope_before = (
-                    values[going][:, None] for values in (theta, direction, point, low, high, last, slope_before)
+                theta, direction, point, low, high, last, slope_before = _picked(
+                    going, theta, direction, point, low, high, last, slope_before
                 )
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
@@ -435,6 +435,11 @@ class FlankProfile:
     def tip_radius(self) -> float:
         """Largest radius of the disc as designed, mm (at θ = π/z_C for Δz = 1)."""
         return float(self.generating_radius + self.eccentricity - self.offset)
+
+
+def _picked(places: NDArray[np.bool_], *values: Any) -> Any:
+    """Values at some places of arrays, as columns."""
+    return [each[places][:, None] for each in values]
 
 
 def _with_places(values: NDArray[Any], places: NDArray[np.intp], fresh: NDArray[Any]) -> NDArray[Any]:

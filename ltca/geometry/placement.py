@@ -35,7 +35,7 @@ def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
 
 @lru_cache(maxsize=64)
 def _rays(count: int) -> ComplexArray:
-    rays = np.exp(2j * np.pi * np.arange(count) / count)
+    rays: ComplexArray = np.exp(2j * np.pi * np.arange(count) / count)
     rays.setflags(write=False)
     return rays
 
