@@ -168,18 +168,23 @@ class Start:
         return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
 
     @classmethod
-    def onward(cls, response: Response, reach_beyond: FloatArray | float = 0.0) -> Start:
-        """Return the start for other poses, open pins left out (`ltca.equilibrium.reducer.complete`).
+    def onward(cls, response: Response) -> Start:
+        """Return the start for other poses of the same positions: pins that cannot touch may be left out.
+
+        What is left out `ltca.equilibrium.reducer.complete` adds.
+        """
+        return replace(cls.after(response), known=KnownPins.of(response.flank))
+
+    def of_others(self, reach_beyond: FloatArray) -> Start:
+        """Return the start for other drives of which pins may be that much deeper in the flank at the same places.
 
         Parameters
         ----------
-        response : Response
-            Contacts near them.
         reach_beyond : array, shape (positions, pins)
-            Of other drives: `ltca.geometry.pairs.ContactGeometry.reach_beyond`.
+            `ltca.geometry.pairs.ContactGeometry.reach_beyond`, mm.
         """
-        known = KnownPins.of(response.flank)
-        return replace(cls.after(response), known=replace(known, approach=known.approach + reach_beyond))
+        known = self.known
+        return replace(self, known=None if known is None else replace(known, approach=known.approach + reach_beyond))
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""

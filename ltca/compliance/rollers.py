@@ -107,8 +107,7 @@ def balance_rollers(
         When a law gives no number or a roller does not settle.
     """
     direction = rays.direction
-    lowest = rays.touching_distance(displacement)
-    interference = rays.outermost - lowest
+    interference = rays.outermost - rays.touching_distance(displacement)
     share = np.full(direction.shape, 0.5) if start is None else np.array(start)
     # Half of the rollers are free: only those pressed between the races are balanced.
     pressed = np.nonzero(interference > 0.0)
@@ -145,7 +144,8 @@ def _balance_pressed(
     """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last."""
 
     def each(values: NDArray[Any]) -> NDArray[Any]:
-        return np.broadcast_to(values, rays.direction.shape)[pressed]
+        alike = values.shape == rays.direction.shape[1:]  # at all positions
+        return values[pressed[1]] if alike else np.broadcast_to(values, rays.direction.shape)[pressed]
 
     direction, moved = rays.direction[pressed], each(displacement)
     outermost, bore_play = each(rays.outermost), each(rays.bore_play)
@@ -211,12 +211,12 @@ def _eliminated_tangent(
     place_stiffness: FloatArray,
 ) -> FloatArray:
     """Schur complement of the roller's place in the Hessian of U_i + U_o over (d, s)."""
-    sideways = 1j * outward
-    normal = np.stack((outward.real, outward.imag), axis=-1)
-    across = np.stack((sideways.real, sideways.imag), axis=-1)
-    slant = direction.real * sideways.real + direction.imag * sideways.imag
+    slant = direction.imag * outward.real - direction.real * outward.imag
+    normal, across = (outward.real, outward.imag), (-outward.imag, outward.real)
     bend = load / length
-    direct = outer_stiffness[..., None, None] * normal[..., :, None] * normal[..., None, :]
-    direct = direct + bend[..., None, None] * across[..., :, None] * across[..., None, :]
-    mixed = -(outer_stiffness * cosine)[..., None] * normal - (bend * slant)[..., None] * across
-    return np.asarray(direct - mixed[..., :, None] * mixed[..., None, :] / place_stiffness[..., None, None])
+    mixed = [-(outer_stiffness * cosine) * n - (bend * slant) * a for n, a in zip(normal, across, strict=True)]
+    tangent = np.empty((*load.shape, 2, 2))
+    for i, j in ((0, 0), (0, 1), (1, 1)):
+        direct = outer_stiffness * normal[i] * normal[j] + bend * across[i] * across[j]
+        tangent[..., i, j] = tangent[..., j, i] = direct - mixed[i] * mixed[j] / place_stiffness
+    return tangent

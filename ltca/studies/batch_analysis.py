@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
-from ltca.compliance.response import ComplianceModel, Start, take_positions
+from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
@@ -138,8 +138,9 @@ class _Batch:
         if near is None:
             return solve_at_output(self.model, self.drives, self.angle, loads, gaps=False)
         rows = np.arange(self.angle.size) % near.crank_angle.size
-        beyond = 0.0 if nominal is None else reach_beyond(self.model, at_rows(nominal, rows))
-        inner = Start.onward(take_positions(near.response, rows), beyond)
+        inner = Start.onward(near.response).take(rows)
+        if nominal is not None:
+            inner = inner.of_others(reach_beyond(self.model, at_rows(nominal, rows)))
         return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner, gaps=False)
 
 
