@@ -155,10 +155,14 @@ def solve_equilibrium(
 
 
 def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start | None) -> NDArray[np.intp]:
-    """Balance leading positions from their starts, then the others from between them; return what does not balance."""
+    """Balance leading positions from their starts, then the others from between them; return what does not balance.
+
+    Without starts one position leads: what disc and wheel do from first contact on is that of all, seen from the crank.
+    """
     model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
     first = leading_positions(model.discs[0].geometry, angle, moment)
     if start is None:
+        first = first if first.size == angle.size else first[:1]
         pose[first] = _at_first_contact(at_rows(model, first), angle[first], moment[first])
     else:
         pose[:] = start
