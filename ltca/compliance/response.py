@@ -267,7 +267,7 @@ def bearing_bend(rollers: RollerState, bores: BoreMotion) -> FloatArray:
 
 def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
-    stiffness = rollers.tangent.reshape(positions, cranks, -1, 2, 2).sum(axis=2)
+    stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
     moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(rollers, bores)

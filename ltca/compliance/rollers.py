@@ -110,8 +110,8 @@ def balance_rollers(
     interference = rays.outermost - rays.touching_distance(displacement)
     share = np.full(direction.shape, 0.5) if start is None else np.array(start)
     # Half of the rollers are free: only those pressed between the races are balanced.
-    pressed = np.nonzero(interference > 0.0)
-    balanced = _balance_pressed(rays, displacement, laws, pressed, interference[pressed], share[pressed])
+    pressed = np.flatnonzero(interference > 0.0)
+    balanced = _balance_pressed(rays, displacement, laws, pressed, interference.take(pressed), share.take(pressed))
     # A free roller rests on the inner race; its outer gap follows from there.
     arm = rays.outermost * direction - displacement
     length = np.abs(arm)
@@ -121,7 +121,7 @@ def balance_rollers(
     for values, found in zip(
         (share, inner_approach, outer_approach, inner_load, outer_load, outward, tangent), balanced, strict=True
     ):
-        values[pressed] = found
+        values.reshape(direction.size, *values.shape[2:])[pressed] = found
     return RollerState(
         share=share,
         inner_approach=inner_approach,
@@ -137,28 +137,34 @@ def _balance_pressed(
     rays: RollerRays,
     displacement: ComplexArray,
     laws: RollerLaws[Law],
-    pressed: tuple[NDArray[np.intp], ...],
+    pressed: NDArray[np.intp],
     total: FloatArray,
     share: FloatArray,
 ) -> tuple[NDArray[Any], ...]:
-    """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last."""
+    """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last.
+
+    They are counted through all positions.
+    """
+    shape = rays.direction.shape
+    rows, numbers = np.divmod(pressed, shape[1])
 
     def each(values: NDArray[Any]) -> NDArray[Any]:
-        alike = values.shape == rays.direction.shape[1:]  # at all positions
-        return values[pressed[1]] if alike else np.broadcast_to(values, rays.direction.shape)[pressed]
+        if values.shape == shape:
+            return values.take(pressed)
+        return values[numbers] if values.shape == shape[1:] else np.broadcast_to(values, shape)[rows, numbers]
 
-    direction, moved = rays.direction[pressed], each(displacement)
+    direction, moved = each(rays.direction), each(displacement)
     outermost, bore_play = each(rays.outermost), each(rays.bore_play)
-
     inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
 
     def loads(law: Law, approach: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         if not laws.by_place:
             return law.load_and_stiffness(approach, radius)
-        everywhere, radii = np.zeros(rays.direction.shape), np.ones(rays.direction.shape)
+        # Open ones cost it nothing.
+        everywhere, radii = np.zeros(rays.direction.size), np.ones(rays.direction.size)
         everywhere[pressed], radii[pressed] = approach, radius
-        load, stiffness = law.load_and_stiffness(everywhere, radii)  # open ones cost it nothing
-        return load[pressed], stiffness[pressed]
+        load, stiffness = law.load_and_stiffness(everywhere.reshape(shape), radii.reshape(shape))
+        return load.take(pressed), stiffness.take(pressed)
 
     lowest = outermost - total
     along = direction.real * moved.real + direction.imag * moved.imag

@@ -146,7 +146,8 @@ class KnownPins:
         point : array of complex, shape (positions, z_P)
             Centres of the pins in the frame of the disc, mm.
         """
-        return np.asarray(self.approach + np.abs(point - self.point) > -MARGIN)
+        room, moved = -MARGIN - self.approach, point - self.point
+        return np.asarray((room < 0.0) | (moved.real**2 + moved.imag**2 > room * room))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,7 +32,7 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 FARTHEST = 0.1
-"""Most that a contact is taken along the flank by its slope, as a part of the tooth pitch."""
+"""Most that a contact is moved along the flank by its slope, rad times the tooth number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,14 +57,14 @@ class _Pins:
     point: ComplexArray
     radius: FloatArray
 
-    def take(self, rows: NDArray[np.intp], numbers: NDArray[np.intp]) -> _Pins:
-        """Return some pins, shape (pins, 1)."""
+    def take(self, places: NDArray[np.intp], rows: NDArray[np.intp]) -> _Pins:
+        """Return some pins, counted through all positions, and their positions; shape (pins, 1)."""
         return _Pins(
-            centre=self.centre[rows, numbers][:, None],
-            arm=self.arm[rows, numbers][:, None],
+            centre=self.centre.take(places)[:, None],
+            arm=self.arm.take(places)[:, None],
             turn=self.turn[rows],
-            point=self.point[rows, numbers][:, None],
-            radius=np.broadcast_to(self.radius, self.point.shape)[rows, numbers][:, None],
+            point=self.point.take(places)[:, None],
+            radius=np.broadcast_to(self.radius, self.point.shape).take(places)[:, None],
         )
 
 
@@ -210,20 +210,15 @@ class ContactGeometry:
         self, pins: _Pins, start: FloatArray, near: NDArray[np.bool_], known: KnownPins, coordinates: Coordinates
     ) -> FlankMotion:
         """Pairs of the pins that are near, each as a position of its own, among those of which something is known."""
-        rows, numbers = np.nonzero(near)
-        chosen = pins.take(rows, numbers)
-        moved = chosen.point[:, 0] - known.point[rows, numbers]
-        turned = dot(known.turning[rows, numbers], moved).clip(
-            -FARTHEST / self.profile.reduction_ratio, FARTHEST / self.profile.reduction_ratio
+        places = np.flatnonzero(near)
+        rows = places // near.shape[1]
+        chosen, most = pins.take(places, rows), FARTHEST / self.profile.reduction_ratio
+        turned = dot(known.turning.take(places), chosen.point[:, 0] - known.point.take(places)).clip(-most, most)
+        found = self._touching(
+            self.profile.of_points(rows), chosen, (start.take(places) + turned)[:, None], coordinates
         )
-        near_place = start[rows, numbers] + turned
-        found = self._touching(self.profile.of_points(rows), chosen, near_place[:, None], coordinates)
-        approach, parameter, point, turning = (
-            known.approach.copy(),
-            start.copy(),
-            known.point.copy(),
-            known.turning.copy(),
-        )
+        approach, parameter = known.approach.copy(), start.copy()
+        point, turning = known.point.copy(), known.turning.copy()
         bending, effective_radius = np.zeros(near.shape), np.ones(near.shape)
         gradient, along = (np.zeros((*near.shape, coordinates.size)) for _ in range(2))
         motion = FlankMotion(
@@ -239,7 +234,8 @@ class ContactGeometry:
         )
         for item in fields(found):
             if item.name != "left_out":
-                getattr(motion, item.name)[rows, numbers] = getattr(found, item.name)[:, 0]
+                values = getattr(motion, item.name)
+                values.reshape(near.size, *values.shape[2:])[places] = getattr(found, item.name)[:, 0]
         return motion
 
     def _touching(self, profile: FlankProfile, pins: _Pins, start: FloatArray, coordinates: Coordinates) -> FlankMotion:
