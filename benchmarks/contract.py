@@ -35,7 +35,7 @@ from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.reading.writing import drive_text
-from ltca.testing.field_changes import EXCEPTIONS, change_of, leaf_fields, moves
+from ltca.testing.field_changes import EXCEPTIONS, change_of, is_refused_by_name, leaf_fields, moves
 
 FILE = Path(__file__).resolve().parents[1] / "tests" / "contract" / "drive.toml"
 TOLERANCES = """
@@ -143,7 +143,7 @@ def main() -> int:
                 after = answer(with_fields(base, change))
             except CycloError as error:
                 refused += 1
-                if path not in str(error) and path.rpartition(".")[0] not in str(error):
+                if not is_refused_by_name(path, str(error)):
                     ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
                 continue
             key = repr(base)

@@ -65,6 +65,7 @@ def other_reducers(paper: Drive) -> dict[str, Drive]:
         "two discs": replace(paper, disc=replace(paper.disc, number_of_discs=2)),
         "three discs": replace(paper, disc=replace(paper.disc, number_of_discs=3)),
         "wheel held": replace(paper, installation=Installation(held="pin-wheel")),
+        "sleeved": parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"],
         "robot joint": parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"],
         "rv, rigid, shaft held": replace(rigid, installation=held),
         "rv, rigid": rigid,

@@ -29,7 +29,7 @@ from fem.coefficients.bodies import (
 from fem.coefficients.stations import DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
-from ltca.drive.parts import Drive, Materials
+from ltca.drive.parts import Drive, Material, Materials
 from ltca.drive.single_discs import nominal_shape
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.coefficient_laws import project_rigid_motions
@@ -110,6 +110,7 @@ def derive_coefficients(
         shapes=shapes,
         places=places,
         materials=nominal.materials,
+        wheel_pin=nominal.flank_pin,
         thickness=nominal.disc.thickness,
         state=state,
         tell=progress or (lambda step: None),
@@ -167,6 +168,7 @@ class _Bodies:
     shapes: DriveShapes
     places: DiscStations
     materials: Materials
+    wheel_pin: Material
     thickness: float
     state: PlaneState
     tell: Callable[[str], None]
@@ -179,7 +181,7 @@ class _Bodies:
         self.tell(f"pin, roller and race{note}")
         return _Derived(
             disc=disc,
-            pin=derive_pin(shapes.wheel_pins[0], materials.wheel_pin, **same),
+            pin=derive_pin(shapes.wheel_pins[0], self.wheel_pin, **same),
             roller=derive_roller(shapes.rollers[0], materials.roller, **same),
             race=derive_race(shapes.inner_race, materials.inner_race, **same),
         )

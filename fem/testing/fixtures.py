@@ -22,6 +22,8 @@ from fem.mesh.mesh_file import write_msh
 from fem.mesh.quality import measure_quality
 from fem.mesh.triangulation import mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, DriveShapes
+from fem.testing.seated_pin import SleeveOnPin
+from ltca.drive.parts import Material
 from ltca.drive.single_discs import single_discs
 from ltca.output.files import whole_file
 from ltca.reading.changes import with_fields
@@ -38,6 +40,18 @@ REDUCER_PINS = 16
 CYLINDER_RADIUS = 10.0
 CYLINDER_ZONE = 0.5
 CYLINDER_SIZES = {"cylinder_lower": 0.042, "cylinder_upper": 0.037}
+# A thin steel sleeve on its pin, 1150 N over 12 mm between the pin and a patch outside of Hertz' half-width on a flat.
+SLEEVE = SleeveOnPin(
+    pin=Material(),
+    sleeve=Material(),
+    pin_radius=1.5,
+    bore_radius=1.51,
+    outer_radius=2.5,
+    length=12.0,
+    half_angle=0.3,
+    patch_half_width=0.052,
+)
+SLEEVE_ELEMENTS = 12.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +68,8 @@ def make_fixtures() -> list[Fixture]:
     Returns
     -------
     list of Fixture
-        Disc, pin 3, roller 2 and race of the paper's drive (CS-1, 0.5 rad), two cylinders, and a disc with three bores.
+        Disc, pin 3, roller 2 and race of the paper's drive (CS-1, 0.5 rad), two cylinders, a disc with three bores, and a
+        sleeve on its pin.
     """
     drive = load_drive("paper").cases[CASE]
     shapes, contacts = DriveShapes.of_drive(drive), expect_contacts(drive, CRANK_ANGLE)
@@ -91,7 +106,7 @@ def make_fixtures() -> list[Fixture]:
                 f"{'top' if angle > 0.0 else 'bottom'}, growth {GROWTH}",
             )
         )
-    return [*fixtures, _disc_of_several_cranks()]
+    return [*fixtures, _disc_of_several_cranks(), *_sleeve_on_its_pin()]
 
 
 def _disc_of_several_cranks() -> Fixture:
@@ -102,6 +117,14 @@ def _disc_of_several_cranks() -> Fixture:
         body=mesh_disc(shape, coarse_size=8.0, growth=GROWTH),
         parameters=f"rv with {REDUCER_PINS} pins, disc 1, no contacts, growth {GROWTH}, coarse edge 8 mm",
     )
+
+
+def _sleeve_on_its_pin() -> list[Fixture]:
+    parameters = (
+        f"{SLEEVE.pin_radius:g} mm in {SLEEVE.bore_radius:g} mm, outside {SLEEVE.outer_radius:g} mm, "
+        f"{SLEEVE_ELEMENTS:g} elements over the arc of {2.0 * SLEEVE.half_angle:g} rad, growth {GROWTH}"
+    )
+    return [Fixture(body=body, parameters=parameters) for body in SLEEVE.meshes(SLEEVE_ELEMENTS, GROWTH)]
 
 
 def describe_fixtures(fixtures: list[Fixture], hashes: dict[str, str]) -> str:

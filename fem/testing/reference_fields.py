@@ -23,7 +23,8 @@ from fem.contact.coupling import Pose
 from fem.contact.two_bodies import press_together
 from fem.mesh.mesh_file import read_msh
 from fem.shapes import CircleCurve
-from fem.testing.fixtures import CYLINDER_RADIUS
+from fem.testing.fixtures import CYLINDER_RADIUS, SLEEVE
+from fem.testing.seated_pin import squeeze_sleeve
 from ltca.drive.parts import Material
 from ltca.output.files import whole_file
 
@@ -31,6 +32,7 @@ FloatArray = NDArray[np.float64]
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 LINE_LOAD = 2000.0
+SLEEVE_LOAD = 1150.0
 
 
 def body_fields(path: Path, fixed: str | None) -> dict[str, Any]:
@@ -93,11 +95,24 @@ def cylinder_fields(folder: Path) -> dict[str, Any]:
     }
 
 
+def sleeve_fields(folder: Path) -> dict[str, Any]:
+    """Return the sleeve on its pin under 1150 N."""
+    pin, sleeve = read_msh(folder / "sleeved_pin.msh"), read_msh(folder / "sleeve.msh")
+    squeezed = squeeze_sleeve(SLEEVE, pin, sleeve, SLEEVE_LOAD)
+    return {
+        "approach": squeezed.approach,
+        "effective_half_angle": squeezed.effective_half_angle,
+        "largest_pressure": squeezed.largest_pressure,
+    }
+
+
 def collect(folder: Path) -> dict[str, Any]:
     """Return the fields of all fixtures in a folder."""
     fixed = {"disc": None, "pin_3": "core", "roller_2": None, "inner_race": "inner", "reducer_disc": None}
+    fixed |= {"sleeved_pin": None, "sleeve": None}
     fields: dict[str, Any] = {name: body_fields(folder / f"{name}.msh", held) for name, held in fixed.items()}
     fields["two_cylinders"] = cylinder_fields(folder)
+    fields["sleeve_on_its_pin"] = sleeve_fields(folder)
     return fields
 
 

@@ -23,12 +23,13 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_one_bore, require_rigid_members
+from ltca.drive.plane_strain import require_fixed_pins, require_one_bore, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
 from ltca.equilibrium.reducer import reducer_of
+from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
@@ -182,9 +183,11 @@ class HalfSpace:
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
+        if self.method != "tables":
+            require_fixed_pins(drive, f"method {self.method}")
         singles = single_discs(drive)
-        supports = support_stiffness(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
+        supports, pins = support_stiffness(drive), SharedPins.of_drive(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
         model = tables
         if self.contacts == "grids":
             model = reducer_of([GridCompliance.of_drive(single) for single in singles], supports)
@@ -203,8 +206,8 @@ class HalfSpace:
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
         """Return the tables of several drives, each at the same number of positions."""
         discs = zip(*(single_discs(drive) for drive in drives), strict=True)
-        supports = support_stiffnesses(drives, positions)
-        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs], supports)
+        supports, pins = support_stiffnesses(drives, positions), SharedPins.of_drives(drives, positions)
+        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs], supports, pins)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -293,12 +296,14 @@ class _Coupled:
                 for single, own in zip(singles, each, strict=True)
             ],
             support_stiffness(drive),
+            SharedPins.of_drive(drive),
         )
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         singles, supports = single_discs(drive), support_stiffness(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
+        pins = SharedPins.of_drive(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
         return _FromTables(drive=drive, tables=tables, model=self.model(drive))
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:

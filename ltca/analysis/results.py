@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.response import ContactPressures
+from ltca.compliance.response import ContactPressures, split_shifts
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y, disc_displacement
+from ltca.laws.backed import own_flexibility, shaft_pin_beam, shaft_pin_seat, wheel_pin_beam, wheel_pin_seat
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -71,6 +72,21 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "pin_contact_parameter": ("pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"),
     "bearing_radial": ("crank", "N", "bearing force on the disc along the eccentricity"),
     "bearing_tangential": ("crank", "N", "bearing force on the disc, 90° ahead of the eccentricity"),
+    "pin_seat_load": ("pin", "N", "load of the wheel pin in its slot, or of the sleeve on the wheel pin"),
+    "pin_seat_arc": ("pin", "rad", "angle of the arc under pressure there"),
+    "pin_seat_pressure_max": ("pin", "MPa", "largest pressure there"),
+    "pin_deflection": ("pin", "mm", "displacement of the bent wheel pin at the disc, under the forces of all discs"),
+    "hole_seat_load": ("hole", "N", "load of the sleeve on the shaft pin"),
+    "hole_seat_arc": ("hole", "rad", "angle of the arc under pressure there"),
+    "hole_seat_pressure_max": ("hole", "MPa", "largest pressure there"),
+    "shaft_pin_deflection": (
+        "hole",
+        "mm",
+        "displacement of the bent shaft pin at the disc, under the forces of all discs",
+    ),
+    "ring_x": ("drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
+    "ring_y": ("drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
+    "ring_rotation": ("drive", "rad", "rotation of that ring, ccw positive"),
     "crank_torque": ("crankshaft", "N mm", "external moment that holds the crank, its cages included, ccw positive"),
     "crank_deflection_radial": ("crank", "mm", "crank at the disc, along its eccentricity; torsion and tilt left out"),
     "crank_deflection_tangential": ("crank", "mm", "crank at the disc, 90° ahead of its eccentricity"),
@@ -129,6 +145,8 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
     """Displacements of what yields on its supports, where anything does."""
     pose, coordinates = analysis.full.pose, analysis.model.coordinates
     values: dict[str, Any] = {}
+    if coordinates.ring:
+        values["ring_x"], values["ring_y"], values["ring_rotation"] = pose[:, coordinates.ring_place].T
     if coordinates.wheel:
         values["wheel_x"], values["wheel_y"] = pose[:, coordinates.wheel_place].T
     if coordinates.cranks:
@@ -181,6 +199,33 @@ def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
     }
     for walls in analysis.wall_stresses:
         values |= _wall_values(walls, pressures)
+    return values | _seat_values(analysis)
+
+
+def _seat_values(analysis: LoadedAnalysis) -> dict[str, Any]:
+    """What loose pins, sleeves and bent pins of one disc have."""
+    drive, contacts = analysis.drive, analysis.full.response
+    place = analysis.model.discs[0].geometry.placement
+    values: dict[str, Any] = {}
+    for name, seat, load, play in (
+        ("pin", wheel_pin_seat(drive), contacts.pin_load, place.wheel_pin_plays),
+        ("hole", shaft_pin_seat(drive), contacts.hole_load, place.shaft_pin_plays),
+    ):
+        if seat is not None:
+            each = np.broadcast_to(play, load.shape)
+            values[f"{name}_seat_load"] = load
+            values[f"{name}_seat_arc"] = 2.0 * seat.half_angle(load, each)
+            values[f"{name}_seat_pressure_max"] = seat.largest_pressure(load, each)
+    geometry = analysis.model.discs[0].geometry
+    moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(analysis.full.pose)
+    for name, beam, load, motion, others in (
+        ("pin_deflection", wheel_pin_beam(drive), contacts.pin_load, contacts.flank, (moved[0], None)),
+        ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_ring)),
+    ):
+        if beam is not None:
+            # The pin yields to its own disc against the direction in which it would be pressed in.
+            own = own_flexibility(drive, beam) * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
+            values[name] = np.abs(sum((part for part in others if part is not None), own))
     return values
 
 
@@ -324,12 +369,16 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         Dimensions case, disc, crank, position, pin, roller, hole; units and descriptions in the attributes.
     """
     per_case = [_values(analysis) for analysis in analyses.values()]
+    named = {name: value for values in per_case for name, value in values.items()}
     first = next(iter(analyses.values()))
     variables = {}
     for name, (kind, unit, description) in (VARIABLES | WALL_VARIABLES).items():
-        if name not in per_case[0]:
+        if name not in named:
             continue
-        stacked = np.stack([values[name] for values in per_case])
+        # What one case has and another has not, as sleeves, is no number there.
+        stacked = np.stack(
+            [values[name] if name in values else np.full_like(named[name], np.nan) for values in per_case]
+        )
         variables[name] = (("case", *DIMENSIONS[kind]), stacked, {"units": unit, "long_name": description})
     dataset = xr.Dataset(
         variables,

@@ -9,7 +9,9 @@ from pathlib import Path
 
 from ltca.reading.arguments import path_argument
 
-SUMMARY = "write a commented drive file to start from: the paper's drive, a robot joint's or an RV reducer's"
+SUMMARY = (
+    "write a commented drive file to start from: the paper's drive, a robot joint's, an RV reducer's, one of loose pins"
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -17,10 +19,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", type=path_argument("FILE"), help="TOML file to write, e.g. my.toml")
     parser.add_argument(
         "--like",
-        choices=("paper", "robot-joint", "rv"),
+        choices=("paper", "robot-joint", "rv", "sleeved"),
         default="paper",
         help="the paper's drive: one disc, pin shaft held (default); or made up: a robot joint's, two discs, housing held; an RV "
-        "reducer's, two discs on three cranks",
+        "reducer's, two discs on three cranks; wheel pins loose in slots and sleeves on the output pins",
     )
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
 

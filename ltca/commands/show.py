@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ltca.analysis.loaded_analysis import LoadedAnalysis
-    from ltca.drive.parts import Drive
+    from ltca.drive.parts import Drive, PinShaft, PinWheel
     from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "derived geometry, backlash, checks and a picture with contact normals and loads"
@@ -157,7 +157,7 @@ def _installation(drive: Drive) -> list[tuple[str, str]]:
     if crank.number > 1:
         driven = "turned in the carrier" if stage is None else f"driven by a spur stage, z₂/z₁ = {stage:g}"
         rows.append(("cranks", f"{crank.number} on a circle of {crank.circle_radius:g} mm, {driven}"))
-    rows += _supports(drive)
+    rows += _supports(drive) + _pins(drive)
     discs = drive.disc.number_of_discs
     if discs == 1:
         return rows
@@ -188,6 +188,52 @@ def _supports(drive: Drive) -> list[tuple[str, str]]:
     if wheel is not None:
         rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; tilt and the ring's own bending left out"))
     return rows
+
+
+THIN = 0.1
+"""Wall between slots, or of a sleeve, by the radius of its bore: what is thinner yields more than the contacts in it say."""
+
+
+def _pins(drive: Drive) -> list[tuple[str, str]]:
+    """How pins of wheel and shaft sit and bend, where they are not fixed and rigid."""
+    from math import pi, sin
+
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    rows = _seat(wheel, "wheel pins", "the flank")
+    if wheel.seat.kind == "slot":
+        radius = wheel.seat.radius or 0.0
+        wall = 2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - radius)
+        rows.append(("wall between neighbouring slots", _wall(wall, radius)))
+    if wheel.beam is not None:
+        walls = f"{wheel.beam.span:g} mm between the walls, ends {wheel.beam.ends}"
+        rows.append(("wheel pins, as beams", f"⌀ {wheel.beam_diameter:g} mm, {walls}"))
+    if shaft is None:
+        return rows
+    rows += _seat(shaft, "shaft pins", "the holes")
+    if shaft.beam is not None:
+        tips = {"free": "free", "tied-clamped": "clamped in a ring", "tied-pinned": "pinned in a ring"}[shaft.beam.tip]
+        reach = f"{shaft.beam.span:g} mm from the flange at {-0.5 * shaft.beam.span:g} mm, tips {tips}"
+        rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
+    return rows
+
+
+def _seat(part: PinWheel | PinShaft, pins: str, seen_from: str) -> list[tuple[str, str]]:
+    seat = part.seat
+    if seat.kind == "fixed":
+        return []
+    rows = [(f"{pins}, seen from {seen_from}", f"as fixed ones of radius {part.pin_radius - part.seat_play:.4f} mm")]
+    if seat.kind == "sleeve":
+        bore = seat.bore_radius or 0.0
+        told = (
+            f"radius {seat.pin_radius:.4f} mm, under sleeves of bore radius {bore:.4f} mm, play {part.seat_play:.4f} mm"
+        )
+        return [(pins, told), (f"wall of the sleeves on {pins}", _wall(part.pin_radius - bore, bore)), *rows]
+    radius = part.pin_radius + part.seat_play
+    return [(pins, f"loose in slots of radius {radius:.4f} mm, play {part.seat_play:.4f} mm"), *rows]
+
+
+def _wall(wall: float, bore: float) -> str:
+    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN * bore else "")
 
 
 def _of_crank(crank: int, all_of_them: Sequence[object]) -> str:

@@ -91,7 +91,7 @@ class OwnParts:
         steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
         at_pin = (
             float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
-            contact_modulus(parts.disc, parts.wheel_pin),
+            contact_modulus(parts.disc, drive.flank_pin),
         )
         in_bore = (
             effective_radius(bearing.roller_radius, -drive.bore_radius),
@@ -108,7 +108,7 @@ class OwnParts:
         )
         disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
         return cls(
-            pin=remove(disc, parts.disc, *at_pin, thickness) + c.pin + remove(pin, parts.wheel_pin, *at_pin, thickness),
+            pin=remove(disc, parts.disc, *at_pin, thickness) + c.pin + remove(pin, drive.flank_pin, *at_pin, thickness),
             outer=remove(disc, parts.disc, *in_bore, thickness)
             + float(c.roller[1, 1])
             + remove(roller, parts.roller, *in_bore, length),

@@ -344,7 +344,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
     disc = data["disc_approach"].values + np.where(same, disc_logarithm * logarithm, 0.0)
 
     flank, *walls = boundaries_of(boundary)
-    pin_logarithm = logarithm_factor(parts.wheel_pin, thickness, plane)
+    pin_logarithm = logarithm_factor(drive.flank_pin, thickness, plane)
     roller_logarithm = logarithm_factor(parts.roller, thickness, plane)
     race_logarithm = logarithm_factor(parts.inner_race, thickness, plane)
     own = _self_logarithm(data["pin_half_width"].values)

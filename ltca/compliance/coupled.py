@@ -35,18 +35,21 @@ from ltca.compliance.response import (
     Response,
     Start,
     bearing_bend,
+    coupled_slopes,
     join_positions,
     resultant,
+    split_shifts,
     take_positions,
 )
 from ltca.compliance.rollers import RollerState
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, Coordinates, X, Y
 from ltca.geometry.pair_motion import FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.contact_law import ContactLaw, LoadLaw
+from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_spring
+from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw, approach_at_load
 
 FloatArray = NDArray[np.float64]
@@ -71,7 +74,7 @@ class CoupledCompliance:
         Body parts, rollers as long as they are.
     near_field : NearFieldLaws
         Laws of the near fields.
-    hole_law : LoadLaw
+    hole_law : EnergyLaw
         Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
     hole_spring : float
         What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
@@ -88,7 +91,7 @@ class CoupledCompliance:
     geometry: ContactGeometry
     coefficients: InfluenceCoefficients
     near_field: NearFieldLaws
-    hole_law: LoadLaw
+    hole_law: EnergyLaw
     hole_spring: float
     race: FloatArray
     outer_radius: FloatArray
@@ -134,14 +137,17 @@ class CoupledCompliance:
         place = geometry.placement
         laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
+        spring = shaft_pin_spring(drive)
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum)
         race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             geometry=geometry,
             coefficients=body,
             near_field=laws,
-            hole_law=laws.hole if hole_near_field else SpringLaw(stiffness=drive.hole_stiffness),
-            hole_spring=1.0 / drive.hole_stiffness if hole_near_field else 0.0,
+            hole_law=back_shaft_pins(
+                drive, laws.hole if hole_near_field else SpringLaw(stiffness=1.0 / spring), place.shaft_pin_plays
+            ),
+            hole_spring=spring if hole_near_field else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
             outer_radius=place.outer_effective_radii,
             inner_radius=place.inner_effective_radii,
@@ -159,7 +165,9 @@ class CoupledCompliance:
         """What its poses are made of."""
         return self.geometry.coordinates
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
 
         Raises
@@ -167,11 +175,15 @@ class CoupledCompliance:
         ConvergenceError
             When the near-field approaches of a position do not settle.
         """
-        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
-        holes = self.geometry.holes(crank_angle, pose)
+        moved = split_shifts(shifts, self.geometry)
+        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
+        holes = self.geometry.holes(crank_angle, pose, moved[1])
         parts = [
             self._solve(
-                crank_angle[rows], pose[rows], take_positions(flank, rows), take_positions(holes, rows), start, rows
+                _Bodies(self, crank_angle[rows], pose[rows], take_positions(flank, rows), take_positions(holes, rows)),
+                start,
+                rows,
+                None if shifts is None else shifts[rows],
             )
             for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK)))
         ]
@@ -179,15 +191,8 @@ class CoupledCompliance:
         return joined
 
     def _solve(
-        self,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        flank: FlankMotion,
-        holes: PairMotion,
-        start: Start | None,
-        rows: NDArray[np.intp],
+        self, bodies: _Bodies, start: Start | None, rows: NDArray[np.intp], shifts: ComplexArray | None
     ) -> Response:
-        bodies = _Bodies(self, crank_angle, pose, flank, holes)
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
@@ -195,7 +200,7 @@ class CoupledCompliance:
                     guess[row] = warm
         for margin in (MARGIN, np.inf):
             batch = _Batch(bodies, margin)
-            response = batch.response(batch.solve(guess))
+            response = batch.response(batch.solve(guess), shifts)
             if response is not None:
                 return response
         raise AssertionError("all contacts are taken, none is left out")
@@ -223,21 +228,14 @@ class _Bodies:
     """Some positions at given poses, undeformed: where their contacts are and how far they overlap."""
 
     def __init__(
-        self,
-        model: CoupledCompliance,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        flank: FlankMotion,
-        holes: PairMotion,
+        self, model: CoupledCompliance, angle: FloatArray, pose: FloatArray, flank: FlankMotion, holes: PairMotion
     ) -> None:
         self.model, self.flank, self.holes = model, flank, holes
-        place = model.geometry.placement
-        self.bores, self.rays = model.geometry.bores(crank_angle, pose), model.geometry.rollers(crank_angle)
+        self.bores, self.rays = model.geometry.bores(angle, pose), model.geometry.rollers(angle)
         bores, each = self.bores, self.rays.bore_play.size
         self.displacement, self.moved = bores.each(bores.displacement, each), bores.each(bores.gradient, each)
         turn = pose[:, 2, None]
-        play = place.shaft_pin_centres - (place.race_centre(crank_angle) + disc_displacement(pose))[:, None]
-        play = play - place.hole_centres * np.exp(1j * turn)
+        play = -(holes.gradient[..., X] + 1j * holes.gradient[..., Y])
         length, outward, _ = self.rollers_at(0.0)
         self.bore_places, self.hole_places = np.angle(outward) - turn, np.angle(play) - turn
         self.geometric = np.concatenate([flank.approach, length - self.rays.bore_play, holes.approach], axis=1)
@@ -290,6 +288,7 @@ class _Batch:
         self.effective_radius = np.take_along_axis(flank.effective_radius, on_flank, axis=1)
         self.outer_radius, self.inner_radius = model.outer_radius[in_bore], model.inner_radius[in_bore]
         self.hole_radius = model.hole_radius[in_holes]
+        self.pin_law, self.hole_law = of_pairs(model.near_field.pin, on_flank), of_pairs(model.hole_law, in_holes)
         self.inner_near = self.inner_compliance = self.inner_load = np.zeros(in_bore.shape)
         self.placed = False
         self.place_rollers(np.zeros((rows.size, rollers)))
@@ -321,9 +320,9 @@ class _Batch:
         """Return loads and stiffnesses of the near fields."""
         m, outer = self.model, self.outer
         parts = (
-            m.near_field.pin.load_and_stiffness(near[:, : outer.start], self.effective_radius),
+            self.pin_law.load_and_stiffness(near[:, : outer.start], self.effective_radius),
             m.near_field.outer.load_and_stiffness(near[:, outer], self.outer_radius),
-            m.hole_law.load_and_stiffness(near[:, outer.stop :], self.hole_radius),
+            self.hole_law.load_and_stiffness(near[:, outer.stop :], self.hole_radius),
         )
         load, stiffness = (np.concatenate(columns, axis=1) for columns in zip(*parts, strict=True))
         return load, stiffness
@@ -382,7 +381,7 @@ class _Batch:
                 return near, matrix  # round-off of radii of 100 mm
         raise ConvergenceError("near-field approaches do not settle; largest residual in mm", history)
 
-    def response(self, solution: tuple[FloatArray, FloatArray]) -> Response | None:
+    def response(self, solution: tuple[FloatArray, FloatArray], shifts: ComplexArray | None) -> Response | None:
         """Return forces and tangent at the solution; None where a contact that was left out is pressed together."""
         near, matrix = solution
         bodies, (on_flank, in_bore, in_holes), outer = self.bodies, self.loaded, self.outer
@@ -408,7 +407,8 @@ class _Batch:
         gradient[:, outer] = -(outward.conjugate()[..., None] * moved).real
         gradient[:, outer.stop :] = np.take_along_axis(bodies.holes.gradient, in_holes[..., None], axis=1)
         gradient *= root[..., None]
-        tangent = np.matmul(gradient.swapaxes(1, 2), np.linalg.solve(inside, gradient))
+        changed = np.linalg.solve(inside, gradient)
+        tangent = np.matmul(gradient.swapaxes(1, 2), changed)
         load = self.of_all(self.load, self.chosen, contacts)
         pin_load, outer_load, hole_load = np.split(load, (pins, pins + rollers), axis=1)
         tangent += bodies.flank.bend(pin_load) + bodies.holes.bend(hole_load)
@@ -437,6 +437,7 @@ class _Batch:
         holes = replace(bodies.holes, approach=approach[:, pins + rollers :])
         warm_start = np.empty(near.shape[0], dtype=object)
         warm_start[:] = list(everywhere)
+        kept = np.r_[:pins, pins + rollers : contacts]
         return Response(
             force=resultant(flank, pin_load, holes, hole_load, state, bodies.bores),
             tangent=tangent,
@@ -446,4 +447,6 @@ class _Batch:
             pin_load=pin_load,
             hole_load=hole_load,
             warm_start=warm_start,
+            shifts=shifts,
+            slopes=None if shifts is None else coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
         )

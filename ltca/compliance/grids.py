@@ -28,12 +28,14 @@ from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
+from ltca.errors import DriveError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 PLACES = 4096
 """Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
@@ -135,8 +137,18 @@ class GridCompliance:
         """What its poses are made of."""
         return self.geometry.coordinates
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`."""
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
+
+        Raises
+        ------
+        DriveError
+            For displacements of the pins: grids know pins that stand still.
+        """
+        if shifts is not None:
+            raise DriveError(["pin_wheel.beam, pin_shaft.beam: must be left out for grids, whose pins stand still"])
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter)
         pins, inner, outer = self._laws(
             flank, self._known(crank_angle.size, None if start is None else start.warm_start)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from ltca.compliance.response import (
     Response,
     Start,
     assemble_response,
-    spring_load_and_stiffness,
+    split_shifts,
 )
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
@@ -22,8 +23,10 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.contact_law import ContactLaw
+from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_spring, tip_share
+from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.generator_law import law_for_profile
+from ltca.laws.series import SpringLaw
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -44,8 +47,8 @@ class HalfSpaceCompliance:
         Law of wheel pin and flank.
     roller_laws : RollerLaws
         Laws of the rollers.
-    hole_stiffness : float
-        k_PS, N/mm.
+    hole_law : EnergyLaw
+        Law of shaft pins and holes: springs k_PS, with what is before them.
     kinds : ContactKinds
         The contacts as grids see them, for what no table holds.
     """
@@ -53,20 +56,20 @@ class HalfSpaceCompliance:
     geometry: ContactGeometry
     pin_law: ContactLaw
     roller_laws: RollerLaws[ContactLaw]
-    hole_stiffness: float | FloatArray
+    hole_law: EnergyLaw
     kinds: ContactKinds
 
     @classmethod
     def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
         """Return the half-space model of a drive."""
-        geometry = ContactGeometry.of_drive(drive)
+        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         pin_radii = np.ones(1)
         if not drive.pin_wheel.pin_profile.is_cylinder:
             # A flank without deviations has the same radii on every lobe.
             lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
             turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
             pin_radii = _effective_radii(geometry.profile, geometry.placement.wheel_pin_radii, turn)
-        return cls._of_geometry(geometry, drive, pin_radii, drive.hole_stiffness)
+        return cls._of_geometry(geometry, drive, pin_radii, 1.0 / shaft_pin_spring(drive))
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
@@ -79,8 +82,9 @@ class HalfSpaceCompliance:
         positions : int
             Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
         """
-        geometry = ContactGeometry.of_drives(drives, positions)
-        stiffness = np.repeat([[drive.hole_stiffness] for drive in drives], positions, axis=0)
+        tips = np.repeat([[[tip_share(drive)]] for drive in drives], positions, axis=0)
+        geometry = replace(ContactGeometry.of_drives(drives, positions), tip_share=tips)
+        stiffness = np.repeat([[1.0 / shaft_pin_spring(drive)] for drive in drives], positions, axis=0)
         each = geometry.take(np.arange(len(drives)) * positions)
         pin_radii = np.ones(1)
         if not drives[0].pin_wheel.pin_profile.is_cylinder:
@@ -107,22 +111,23 @@ class HalfSpaceCompliance:
                 effective_radii=rungs(effective_radii),
             )
 
+        on_flank = law_for_profile(
+            drive.pin_wheel.pin_profile,
+            length=drive.disc.thickness,
+            radius=drive.pin_wheel.pin_radius,
+            contact_modulus=contact_modulus(parts.disc, drive.flank_pin),
+            effective_radii=rungs(pin_radii),
+        )
         return cls(
             geometry=geometry,
-            pin_law=law_for_profile(
-                drive.pin_wheel.pin_profile,
-                length=drive.disc.thickness,
-                radius=drive.pin_wheel.pin_radius,
-                contact_modulus=contact_modulus(parts.disc, parts.wheel_pin),
-                effective_radii=rungs(pin_radii),
-            ),
+            pin_law=back_wheel_pins(drive, on_flank, place.wheel_pin_plays),
             roller_laws=RollerLaws(
                 inner=roller_law(parts.inner_race, inner_radius),
                 outer=roller_law(parts.disc, outer_radius),
                 inner_radius=inner_radius,
                 outer_radius=outer_radius,
             ),
-            hole_stiffness=hole_stiffness,
+            hole_law=back_shaft_pins(drive, SpringLaw(stiffness=hole_stiffness), place.shaft_pin_plays),
             kinds=ContactKinds.of_drive(drive),
         )
 
@@ -133,14 +138,14 @@ class HalfSpaceCompliance:
         laws = self.roller_laws
         return HalfSpaceCompliance(
             geometry=self.geometry.take(rows),
-            pin_law=self.pin_law,
+            pin_law=cast(ContactLaw, law_at(self.pin_law, rows)),
             roller_laws=RollerLaws(
                 inner=laws.inner,
                 outer=laws.outer,
                 inner_radius=laws.inner_radius[rows],
                 outer_radius=laws.outer_radius[rows],
             ),
-            hole_stiffness=np.asarray(self.hole_stiffness)[rows],
+            hole_law=law_at(self.hole_law, rows),
             kinds=self.kinds,
         )
 
@@ -154,7 +159,9 @@ class HalfSpaceCompliance:
         """What its poses are made of."""
         return self.geometry.coordinates
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
         """Return the contact forces at the poses of a batch of positions.
 
         Parameters
@@ -165,6 +172,8 @@ class HalfSpaceCompliance:
             q of `ltca.geometry.coordinates`.
         start : Start, optional
             Inner unknowns of a neighbouring pose.
+        shifts : array of complex, shape (positions, z_P + z_PS), optional
+            Displacements of the pins in the fixed frame, mm.
 
         Returns
         -------
@@ -177,11 +186,14 @@ class HalfSpaceCompliance:
         force it would add to the gradient of the energy (about 1e-5 of the load, along the flank) is no contact
         force without friction: the force acts along the common normal.
         """
+        moved = split_shifts(shifts, self.geometry)
         places, known = (None, None) if start is None else (start.parameter, start.known)
-        flank = self.geometry.flank(crank_angle, pose, places, known)
+        flank = self.geometry.flank(crank_angle, pose, places, moved[0], known)
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
-        holes = self.geometry.holes(crank_angle, pose)
-        hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
+        holes = self.geometry.holes(crank_angle, pose, moved[1])
+        hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
+            holes.approach, self.geometry.placement.hole_effective_radii
+        )
         bores, rays = self.geometry.bores(crank_angle, pose), self.geometry.rollers(crank_angle)
         rollers = balance_rollers(
             rays,
@@ -189,7 +201,17 @@ class HalfSpaceCompliance:
             self.roller_laws,
             None if start is None else start.share,
         )
-        return assemble_response(flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, bores)
+        return assemble_response(
+            flank,
+            pin_load,
+            pin_stiffness,
+            holes,
+            hole_load,
+            hole_stiffness,
+            rollers,
+            bores,
+            shifts=shifts,
+        )
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures from the laws."""

@@ -10,6 +10,8 @@ from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import DriveError
+from ltca.geometry.placement import Placement
+from ltca.laws.backed import back_wheel_pins
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import PlaneContactLaw
@@ -69,7 +71,7 @@ class NearFieldLaws:
             raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
         parts, thickness = drive.materials, drive.disc.thickness
         wall = 1.0 / parts.disc.plane_strain_compliance
-        at_hole = wall if rigid_shaft_pins else contact_modulus(parts.disc, parts.shaft_pin)
+        at_hole = wall if rigid_shaft_pins else contact_modulus(parts.disc, drive.hole_pin)
         # Only its logarithm enters, and cancels where the body part is in plane strain, too.
         datum = max(thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
         if kind == "half-space":
@@ -85,13 +87,14 @@ class NearFieldLaws:
                 kinds=half_space.kinds,
             )
         require_plane_strain(drive, "compliance fe")
+        plays = Placement.of_drive(drive).wheel_pin_plays
 
         def law(modulus: float) -> PlaneContactLaw:
             return PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
 
         return cls(
             kind=kind,
-            pin=law(contact_modulus(parts.disc, parts.wheel_pin)),
+            pin=back_wheel_pins(drive, law(contact_modulus(parts.disc, drive.flank_pin)), plays),
             outer=law(contact_modulus(parts.disc, parts.roller)),
             inner=law(contact_modulus(parts.inner_race, parts.roller)),
             hole=law(at_hole),

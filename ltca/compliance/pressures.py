@@ -18,6 +18,7 @@ from ltca.compliance.response import KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind
 from ltca.geometry.placement import Placement
+from ltca.laws.backed import BackedLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.series import approach_at_load
@@ -37,10 +38,12 @@ def pressures_of_law(
     ends : ContactKind or None
         What pressures at the ends are read from; None in plane strain, which has no ends.
     approach : array, shape (positions, pairs)
-        Of the contacts themselves, mm.
+        Of the contacts with what is behind them, mm.
     effective_radius : array
         mm; broadcast to that shape.
     """
+    if isinstance(law, BackedLaw):
+        approach, law = law.contact_approach(approach, effective_radius), law.known_contact
     closed = approach > 0.0
     mid, half_width, largest = (np.zeros(closed.shape) for _ in range(3))
     pressed, radius = approach[closed], np.broadcast_to(effective_radius, closed.shape)[closed]

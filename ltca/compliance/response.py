@@ -23,6 +23,22 @@ ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PairSlopes:
+    """How the loads on pins and holes follow their approaches and the pose, the pins held where they are.
+
+    Attributes
+    ----------
+    by_approach : array, shape (positions, pairs) or (positions, pairs, pairs)
+        ∂F/∂δ of wheel pins and shaft pins, N/mm; a matrix where the contacts of a disc feel each other.
+    by_pose : array, shape (positions, pairs, coordinates)
+        ∂F/∂q, N/mm and N.
+    """
+
+    by_approach: FloatArray
+    by_pose: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
     """Contacts of a batch of positions at given poses.
 
@@ -43,6 +59,11 @@ class Response:
     warm_start : array of object, shape (positions,)
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
         wants nothing. It saves work and alters no answer. Of several discs shape (positions, discs).
+    shifts : array of complex, shape (positions, pairs), or None
+        Displacements of wheel pins and shaft pins that were given, mm: what the forces of other discs make them yield.
+        Of several discs shape (positions, discs, pairs).
+    slopes : PairSlopes or None
+        Where they were given.
     """
 
     force: FloatArray
@@ -53,6 +74,8 @@ class Response:
     pin_load: FloatArray
     hole_load: FloatArray
     warm_start: NDArray[np.object_]
+    shifts: ComplexArray | None = None
+    slopes: PairSlopes | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,8 +137,10 @@ class ComplianceModel(Protocol):
         """The compliance of each disc."""
         ...
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
-        """Return the contact forces at the poses of a batch of positions."""
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
+        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any."""
         ...
 
     def pressures(self, response: Response) -> ContactPressures:
@@ -155,17 +180,25 @@ class Start:
     known : KnownPins or None
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
+    shifts : array of complex, shape (positions, discs, pairs), or None
+        Displacements of pins that several discs bend, mm.
     """
 
     parameter: FloatArray
     share: FloatArray
     warm_start: NDArray[np.object_]
     known: KnownPins | None = None
+    shifts: ComplexArray | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
         """Return the start that a response gives for poses near it, also of other drives and angles."""
-        return cls(parameter=response.flank.parameter, share=response.rollers.share, warm_start=response.warm_start)
+        return cls(
+            parameter=response.flank.parameter,
+            share=response.rollers.share,
+            warm_start=response.warm_start,
+            shifts=response.shifts,
+        )
 
     @classmethod
     def onward(cls, response: Response) -> Start:
@@ -193,6 +226,7 @@ class Start:
             share=self.share[rows],
             warm_start=self.warm_start[rows],
             known=None if self.known is None else self.known.take(rows),
+            shifts=None if self.shifts is None else self.shifts[rows],
         )
 
 
@@ -206,6 +240,7 @@ def assemble_response(
     rollers: RollerState,
     bores: BoreMotion,
     warm_start: NDArray[np.object_] | None = None,
+    shifts: ComplexArray | None = None,
 ) -> Response:
     """Put the loads of uncoupled pairs together: generalised force and tangent.
 
@@ -217,6 +252,8 @@ def assemble_response(
         N and N/mm.
     warm_start : array of object, shape (positions,), optional
         See `Response`.
+    shifts : array of complex, shape (positions, pairs), optional
+        See `Response`; slopes are wanted with them.
     """
     force = resultant(flank, pin_load, holes, hole_load, rollers, bores)
     tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
@@ -230,7 +267,55 @@ def assemble_response(
         pin_load=pin_load,
         hole_load=hole_load,
         warm_start=np.full(force.shape[0], None, dtype=object) if warm_start is None else warm_start,
+        shifts=shifts,
+        slopes=None if shifts is None else _slopes(flank, pin_stiffness, holes, hole_stiffness),
     )
+
+
+def _slopes(flank: FlankMotion, pin: FloatArray, holes: PairMotion, hole: FloatArray) -> PairSlopes:
+    by_approach = np.concatenate((pin, hole), axis=1)
+    gradient = np.concatenate((flank.gradient, holes.gradient), axis=1)
+    return PairSlopes(by_approach=by_approach, by_pose=by_approach[..., None] * gradient)
+
+
+def coupled_slopes(
+    root: FloatArray, inside: FloatArray, changed: FloatArray, chosen: NDArray[np.intp], kept: NDArray[np.intp]
+) -> PairSlopes:
+    """Return how the loads follow approaches and pose where contacts feel each other: dF = r (1 + r C r)⁻¹ r dδ.
+
+    Parameters
+    ----------
+    root : array, shape (positions, chosen)
+        r, square root of the stiffness of each contact that may carry.
+    inside : array, shape (positions, chosen, chosen)
+        1 + r C r.
+    changed : array, shape (positions, chosen, coordinates)
+        (1 + r C r)⁻¹ r ∂δ/∂q.
+    chosen : array of int, shape (positions, chosen)
+        Which of all contacts they are.
+    kept : array of int
+        Numbers of wheel pins and shaft pins among all contacts, the last of which is the last of these.
+    """
+    positions, contacts, rows = (
+        root.shape[0],
+        max(int(kept[-1]), int(chosen.max())) + 1,
+        np.arange(root.shape[0])[:, None],
+    )
+    by_pose, by_approach = np.zeros((positions, contacts, changed.shape[2])), np.zeros((positions, contacts, contacts))
+    by_pose[rows, chosen] = root[..., None] * changed
+    between = root[..., None] * np.linalg.solve(inside, root[..., None] * np.eye(root.shape[1]))
+    by_approach[rows[..., None], chosen[:, :, None], chosen[:, None, :]] = between
+    return PairSlopes(by_approach=by_approach[:, kept[:, None], kept], by_pose=by_pose[:, kept])
+
+
+def split_shifts(
+    shifts: ComplexArray | None, geometry: ContactGeometry
+) -> tuple[ComplexArray | None, ComplexArray | None]:
+    """Return the displacements of wheel pins and of shaft pins, shape (positions, pairs); None for none."""
+    if shifts is None:
+        return None, None
+    pins = geometry.placement.wheel_pin_radii.shape[-1]
+    return shifts[:, :pins], shifts[:, pins:]
 
 
 def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -305,6 +390,8 @@ def join_positions(parts: Sequence[Any]) -> Any:
 
 def _of_arrays(function: Callable[..., NDArray[Any]], *parts: Any) -> Any:
     first = parts[0]
+    if first is None:
+        return None
     if isinstance(first, np.ndarray):
         return function(*parts)
     if isinstance(first, tuple):

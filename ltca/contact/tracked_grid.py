@@ -110,7 +110,7 @@ class ContactKinds:
         return cls(
             pins=ContactKind(
                 length=drive.disc.thickness,
-                contact_modulus=contact_modulus(parts.disc, parts.wheel_pin),
+                contact_modulus=contact_modulus(parts.disc, drive.flank_pin),
                 generator=generator_profile(wheel.pin_profile, drive.disc.thickness, wheel.pin_radius),
                 symmetric=False,
                 cells=cells,
@@ -131,7 +131,7 @@ class ContactKinds:
             ),
             holes=ContactKind(
                 length=drive.disc.thickness,
-                contact_modulus=contact_modulus(parts.disc, parts.shaft_pin),
+                contact_modulus=contact_modulus(parts.disc, drive.hole_pin),
                 generator=None,
                 symmetric=True,
                 cells=cells,

@@ -12,7 +12,8 @@ members        Parts that take a page of their own: crankshafts, and the pins of
 fingerprints   Hashes of definitions: what is at its default is left out, so that a field that later versions add changes none
 parts          The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)
 single_discs   A drive of several discs as drives of one disc each, and how far each flank is turned against its holes
-plane_strain   What some models cannot say about a drive: what varies along its rollers and pins, several cranks, supports
+plane_strain   What some models cannot say about a drive: what varies along rollers and pins, several cranks, supports, loose
+               pins
 unit_mistakes  Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never
                before
 fields         Fields of a drive by dotted path: read, count, unit

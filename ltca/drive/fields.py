@@ -165,8 +165,14 @@ def element_count(drive: Drive, path: str) -> int | None:
 
 
 def missing_part(drive: Drive, path: str) -> str | None:
-    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks."""
-    for part, held in (("pin_shaft", drive.pin_shaft), ("crank.support", drive.crank.support)):
+    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks, beams."""
+    shaft = drive.pin_shaft
+    for part, held in (
+        ("pin_shaft", shaft),
+        ("pin_shaft.beam", None if shaft is None else shaft.beam),
+        ("pin_wheel.beam", drive.pin_wheel.beam),
+        ("crank.support", drive.crank.support),
+    ):
         if held is None and path.startswith(f"{part}."):
             return part
     if drive.pin_shaft is None and (path.startswith("disc.hole_errors") or ".hole_errors." in path):
@@ -213,8 +219,27 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
     return single.crank.eccentricity_error if value is None else value
 
 
-MAY_BE_LEFT_OUT = ("crank.circle_radius", "pin_wheel.support_stiffness", "installation.first_stage_ratio")
+MAY_BE_LEFT_OUT = (
+    "crank.circle_radius",
+    "installation.first_stage_ratio",
+    "pin_shaft.seat.bore_radius",
+    "pin_shaft.seat.pin_radius",
+    "pin_shaft.stiffness",
+    "pin_wheel.seat.bore_radius",
+    "pin_wheel.seat.pin_radius",
+    "pin_wheel.seat.radius",
+    "pin_wheel.support_stiffness",
+)
 """Single fields that a drive may have not; a study may give them all the same."""
+
+
+_FOLLOWS = {
+    "disc.phases": "disc.disc_phases",
+    "disc.planes": "disc.disc_planes",
+    "pin_shaft.beam.diameter": "pin_shaft.beam_diameter",
+    "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",
+}
+"""What follows from other fields where it is left out, and where it is read."""
 
 
 def is_element(name: str) -> bool:
@@ -247,10 +272,8 @@ def read_field(drive: Drive, path: str) -> Any:
     drive, path = _of_disc(drive, path)
     if (place := numbered(path)) is not None:
         return _own_value(drive, place[1], place[2], count)
-    if path in ("disc.phases", "disc.planes"):
-        return getattr(drive.disc, path.replace("disc.", "disc_"))
     value: Any = drive
-    for name in path.split("."):
+    for name in (_FOLLOWS.get(path) or path).split("."):
         value = getattr(value, name)
     if value is None and path in MAY_BE_LEFT_OUT:
         raise DriveError([f"{path}: is left out in this drive"])

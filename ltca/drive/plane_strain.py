@@ -1,8 +1,10 @@
-"""What some models cannot say about a drive: what varies along its rollers and pins, several cranks, supports."""
+"""What some models cannot say about a drive: what varies along rollers and pins, several cranks, supports, loose pins."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
+from typing import Any
 
 from ltca.drive.parts import Drive, LengthProfile
 from ltca.errors import DriveError
@@ -77,6 +79,41 @@ def require_rigid_members(drive: Drive, model: str) -> None:
         )
     if problems:
         raise DriveError(problems)
+
+
+def require_fixed_pins(drive: Drive, model: str) -> None:
+    """Refuse a drive of pins that lie loose, carry sleeves or bend.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    model : str
+        What it is refused by, for the message.
+
+    Raises
+    ------
+    DriveError
+        One sentence for each seat and each beam, with its fields.
+    """
+    problems = []
+    for path, pins in (("pin_wheel", drive.pin_wheel), ("pin_shaft", drive.pin_shaft)):
+        if pins is None:
+            continue
+        if pins.seat.kind != "fixed":
+            problems.append(f"{_told(f'{path}.seat', pins.seat)}: must be left out for {model}, where pins are fixed")
+        if pins.beam is not None:
+            instead = "" if path == "pin_wheel" else " (give pin_shaft.stiffness)"
+            problems.append(
+                f"{_told(f'{path}.beam', pins.beam)}: must be left out for {model}, where pins do not bend{instead}"
+            )
+    if problems:
+        raise DriveError(problems)
+
+
+def _told(path: str, part: Any) -> str:
+    """A part with all that it may hold."""
+    return f"{path} ({', '.join(f'{path}.{item.name}' for item in fields(part))})"
 
 
 def _find_problems(drive: Drive, model: str) -> Iterator[str]:

@@ -14,7 +14,7 @@ from dataclasses import fields
 from math import pi, sqrt
 from typing import ParamSpec, TypeVar
 
-from ltca.drive.parts import Drive, Materials, contact_modulus
+from ltca.drive.parts import Drive, Material, Materials, contact_modulus
 from ltca.errors import ConvergenceError, CycloError, DriveError
 
 P = ParamSpec("P")
@@ -26,9 +26,15 @@ DIAMOND, STIFF = 1.2e6, 2e6
 """Young's modulus of diamond, and one that nothing has, MPa."""
 METALS = 40e3, 700e3
 """Young's moduli of magnesium and of cemented carbide, MPa."""
-PARTS = tuple(item.name for item in fields(Materials) if item.name != "crankshaft")
 BORNE = 10_000.0
 """Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
+
+
+def _parts(drive: Drive) -> list[str]:
+    """Parts whose material is pressed; crankshafts, and slots and sleeves where there are none, are of no account."""
+    seats = {drive.pin_wheel.seat.kind} | (set() if drive.pin_shaft is None else {drive.pin_shaft.seat.kind})
+    counts = {"crankshaft": False, "wheel_seat": "slot" in seats, "sleeve": "sleeve" in seats}
+    return [item.name for item in fields(Materials) if counts.get(item.name, True)]
 
 
 def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]:
@@ -56,12 +62,27 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
                 f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m and would press the wheel pins with some "
                 f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
             ]
-    shaft = drive.pin_shaft
-    if shaft is None or shaft.stiffness is None:
+    return _yielding(drive, share)
+
+
+def _yielding(drive: Drive, share: float) -> list[str]:
+    """Pins so soft, or so long, that they would leave their place."""
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    if wheel.beam is not None:
+        bending = 48.0 * _bending_stiffness(drive.materials.wheel_pin, wheel.beam_diameter) / wheel.beam.span**3
+        load = _pin_load(drive, share)
+        if load / bending > 0.5 * wheel.pin_radius:
+            return [_too_long("pin_wheel.beam", wheel.beam.span, wheel.beam_diameter, load / bending)]
+    if shaft is None:
         return []
     # Some third of the pins carry, on a lever of about two thirds of their circle.
     load = share / (0.2 * shaft.number_of_pins * shaft.pin_circle_radius)
-    if load / shaft.stiffness > 0.5 * shaft.hole_radius:
+    if shaft.beam is not None:
+        # In the middle of the span, half of it from the flange.
+        bending = 24.0 * _bending_stiffness(drive.materials.shaft_pin, shaft.beam_diameter) / shaft.beam.span**3
+        if load / bending > 0.5 * shaft.hole_radius:
+            return [_too_long("pin_shaft.beam", shaft.beam.span, shaft.beam_diameter, load / bending)]
+    if shaft.stiffness is not None and load / shaft.stiffness > 0.5 * shaft.hole_radius:
         return [
             f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: a shaft pin would yield by {load / shaft.stiffness:.3g} mm "
             'under its load; a plain number is N/mm, a thousand newtons a micrometre are 1e6 or "1000 N/µm"'
@@ -69,9 +90,21 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     return []
 
 
+def _bending_stiffness(material: Material, diameter: float) -> float:
+    """E I of a round bar, N·mm²."""
+    return material.youngs_modulus * pi * diameter**4 / 64.0
+
+
+def _too_long(path: str, span: float, diameter: float, bent: float) -> str:
+    return (
+        f"{path}.span = {span:g} mm: a pin of {diameter:g} mm would bend by {bent:.3g} mm under its load; a plain number is mm, "
+        'micrometres are written "16000 µm"'
+    )
+
+
 def _modulus(drive: Drive) -> list[str]:
     values: dict[float, list[str]] = {}
-    for part in PARTS:
+    for part in _parts(drive):
         values.setdefault(getattr(drive.materials, part).youngs_modulus, []).append(part)
     return [
         f"materials.{', '.join(names)}: youngs_modulus = {value:g} MPa is softer than any rigid plastic (some {SOFT:g} MPa) "
@@ -81,11 +114,16 @@ def _modulus(drive: Drive) -> list[str]:
     ]
 
 
-def _pressure(drive: Drive, share: float) -> float:
-    """Hertz pressure of a wheel pin under its part of the torque, a third of the pins carrying, MPa."""
+def _pin_load(drive: Drive, share: float) -> float:
+    """Load of a wheel pin under its part of the torque, a third of the pins carrying, N."""
     lever = drive.crank.eccentricity * drive.reduction_ratio
-    load = share / (lever * drive.pin_wheel.number_of_pins / 3.0)
-    modulus = contact_modulus(drive.materials.disc, drive.materials.wheel_pin)
+    return share / (lever * drive.pin_wheel.number_of_pins / 3.0)
+
+
+def _pressure(drive: Drive, share: float) -> float:
+    """Hertz pressure of such a pin, MPa."""
+    load = _pin_load(drive, share)
+    modulus = contact_modulus(drive.materials.disc, drive.flank_pin)
     return sqrt(load * modulus / (pi * drive.disc.thickness * drive.pin_wheel.pin_radius))
 
 
@@ -151,15 +189,16 @@ def stiffness_warning(drive: Drive) -> str | None:
     drive : Drive
         The drive.
     """
-    for part in PARTS:
+    parts = _parts(drive)
+    for part in parts:
         modulus = getattr(drive.materials, part).youngs_modulus
         if modulus > STIFF:
             return (
                 f"materials.{part}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
                 "number is MPa, not Pa"
             )
-    stiffest = max(getattr(drive.materials, part).youngs_modulus for part in PARTS)
-    for part in PARTS:
+    stiffest = max(getattr(drive.materials, part).youngs_modulus for part in parts)
+    for part in parts:
         modulus = getattr(drive.materials, part).youngs_modulus
         if METALS[0] <= 1000.0 * modulus <= METALS[1] and stiffest >= 100.0 * modulus:
             return (

@@ -89,6 +89,9 @@ def lever_arms(model: ComplianceModel) -> FloatArray:
         wheel = e * geometry.placement.reduction_ratio
         arms[..., place] = (wheel - e)[..., 0]
     arms[..., WHEEL_ANGLE] = wheel[..., 0]
+    if coordinates.ring:
+        places = geometries(model)[0].placement.shaft_pin_centres
+        arms[..., coordinates.ring_place.stop - 1] = np.abs(places).mean(axis=-1)
     return arms
 
 

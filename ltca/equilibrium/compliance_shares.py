@@ -57,9 +57,10 @@ def compliance_shares(model: ComplianceModel, found: Equilibrium) -> dict[str, F
         push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
         work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
     if isinstance(model, Reducer) and model.supports is not None:
-        wheel = np.zeros(size, dtype=bool)
+        wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = True
-        for part, columns in (("cranks", ~wheel), ("wheel_bearing", wheel)):
+        ring[model.coordinates.ring_place] = True
+        for part, columns in (("cranks", ~(wheel | ring)), ("wheel_bearing", wheel), ("shaft_pins", ring)):
             held = np.where(columns, moved, 0.0)
             work[part] += np.matmul(held[:, None, :], np.matmul(model.supports, held[..., None]))[:, 0, 0]
     total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE]

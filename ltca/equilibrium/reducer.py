@@ -24,12 +24,15 @@ from ltca.compliance.response import (
     Response,
     Start,
     bearing_pushes,
+    split_shifts,
 )
+from ltca.equilibrium.shared_pins import SharedPins
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +58,13 @@ class Reducer:
         How the contacts of each disc yield, all by the same model.
     supports : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates), or None
         Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
+    pins : SharedPins or None
+        Pins that several discs bend.
     """
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = None
+    pins: SharedPins | None = None
 
     @property
     def coordinates(self) -> Coordinates:
@@ -70,9 +76,12 @@ class Reducer:
         supports = self.supports
         if supports is not None and supports.ndim > 2:
             supports = supports[rows]
-        return Reducer(discs=tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs), supports=supports)
+        discs = tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs)
+        return Reducer(discs=discs, supports=supports, pins=None if self.pins is None else self.pins.take(rows))
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> ReducerResponse:
         """Return the contact forces of all discs.
 
         Parameters
@@ -83,19 +92,34 @@ class Reducer:
             q of `ltca.geometry.coordinates`.
         start : Start, optional
             Inner unknowns of a neighbouring pose.
+        shifts : array of complex, shape (positions, discs, pairs), optional
+            Displacements of the pins to start from, mm; those of `start` by default.
         """
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
-        parts = tuple(
-            disc.respond(crank_angle, pose[:, own], begin)
-            for own, disc, begin in zip(places, self.discs, starts, strict=True)
-        )
-        size = coordinates.size
+
+        def respond(moved: ComplexArray | None) -> tuple[Response, ...]:
+            each = [None] * count if moved is None else list(moved.swapaxes(0, 1))
+            return tuple(
+                disc.respond(crank_angle, pose[:, own], begin, own_shifts)
+                for own, disc, begin, own_shifts in zip(places, self.discs, starts, each, strict=True)
+            )
+
+        settled, size = None, coordinates.size
+        if self.pins is None:
+            parts = respond(None)
+        else:
+            shifts = start.shifts if shifts is None and start is not None else shifts
+            if shifts is None:
+                shifts = np.zeros((crank_angle.size, count, self.pins.flexibility.shape[-3]), dtype=complex)
+            parts, shifts, settled = self.pins.settle(respond, coordinates, shifts)
         force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
         for own, part in zip(places, parts, strict=True):
             force[:, own] += part.force
             tangent[:, own[:, None], own] += part.tangent
+        if settled is not None:
+            tangent += settled.correction()
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
@@ -109,6 +133,7 @@ class Reducer:
             hole_load=_beside([part.hole_load for part in parts]),
             warm_start=np.stack([part.warm_start for part in parts], axis=1),
             parts=parts,
+            shifts=shifts,
         )
 
     def pressures(self, response: Response) -> ContactPressures:
@@ -120,17 +145,21 @@ class Reducer:
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
 
 
-def reducer_of(discs: Sequence[DiscModel], supports: FloatArray | None = None) -> ComplianceModel:
+def reducer_of(
+    discs: Sequence[DiscModel], supports: FloatArray | None = None, pins: SharedPins | None = None
+) -> ComplianceModel:
     """Return the model of a drive from those of its discs: of one disc on members that do not yield its own.
 
     Parameters
     ----------
     discs : sequence of DiscModel
         One for each disc.
-    supports : array, optional
-        Stiffness of the supports, see `Reducer`.
+    supports, pins : optional
+        Stiffness of the supports, and pins that several discs bend, see `Reducer`.
     """
-    return discs[0] if len(discs) == 1 and supports is None else Reducer(discs=tuple(discs), supports=supports)
+    if len(discs) == 1 and supports is None:
+        return discs[0]
+    return Reducer(discs=tuple(discs), supports=supports, pins=pins)
 
 
 def disc_responses(response: Response) -> tuple[Response, ...]:
@@ -158,16 +187,14 @@ def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, 
     response : Response
         Contacts there.
     """
-    parts = tuple(
-        replace(
-            part,
-            flank=disc.geometry.complete_flank(crank_angle, pose[:, model.coordinates.columns(number)], part.flank),
-        )
-        for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True))
-    )
+    parts = []
+    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+        geometry, own = disc.geometry, model.coordinates.columns(number)
+        moved, _ = split_shifts(part.shifts, geometry)
+        parts.append(replace(part, flank=geometry.complete_flank(crank_angle, pose[:, own], part.flank, moved)))
     if not isinstance(response, ReducerResponse):
         return parts[0]
-    return replace(response, flank=_beside([part.flank for part in parts]), parts=parts)
+    return replace(response, flank=_beside([part.flank for part in parts]), parts=tuple(parts))
 
 
 def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:

@@ -1,7 +1,8 @@
 """Springs on coordinates: crankshafts on their bearings, and the wheel on its own.
 
 Every crank is a beam on two bearings (`ltca.laws.beam`); its stiffness ties x and y of the crank in the planes of the discs,
-alike in every direction. The wheel's main bearing holds its x and y.
+alike in every direction. The wheel's main bearing holds its x and y. A ring that ties the tips of the shaft pins is held by
+what the pins resist when it moves all tips.
 """
 
 from __future__ import annotations
@@ -12,7 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.geometry.coordinates import Coordinates
+from ltca.geometry.pairs import ContactGeometry
+from ltca.laws.backed import shaft_pin_beam
 from ltca.laws.beam import shaft_flexibility
 
 FloatArray = NDArray[np.float64]
@@ -48,7 +52,7 @@ def support_stiffness(drive: Drive) -> FloatArray | None:
     """
     coordinates = Coordinates.of_drive(drive)
     shaft, wheel = crank_stiffness(drive), drive.pin_wheel.support_stiffness
-    if shaft is None and wheel is None:
+    if shaft is None and wheel is None and not coordinates.ring:
         return None
     matrix = np.zeros((coordinates.size, coordinates.size))
     if shaft is not None:
@@ -60,7 +64,18 @@ def support_stiffness(drive: Drive) -> FloatArray | None:
     if wheel is not None:
         places = np.arange(coordinates.size)[coordinates.wheel_place]
         matrix[places, places] += wheel
+    if coordinates.ring:
+        matrix[coordinates.ring_place, coordinates.ring_place] += _ring_stiffness(drive)
     return matrix
+
+
+def _ring_stiffness(drive: Drive) -> FloatArray:
+    """Forces on the ring by its x, y and rotation, shape (3, 3): Σ k vᵀ v over the tips it moves by v."""
+    beam = shaft_pin_beam(drive)
+    if beam is None:
+        raise AssertionError("a ring ties beams")
+    tips = ContactGeometry.of_drive(single_discs(drive)[0]).tips_by_ring
+    return np.asarray(beam.tip_stiffness * (tips.conjugate().T @ tips).real)
 
 
 def support_stiffnesses(drives: Sequence[Drive], positions: int) -> FloatArray | None:

@@ -2,7 +2,8 @@
 
 A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
 the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
-them stand x and y of each crank in the plane of the disc, where cranks yield, and x and y of the wheel, where that does. Of
+them stand x and y of each crank in the plane of the disc, where cranks yield, x and y of the wheel, where that does, and x, y
+and rotation of the ring that ties the tips of the shaft pins, where there is one. Of
 several discs the poses follow each other, with one wheel.
 """
 
@@ -49,18 +50,23 @@ class Coordinates:
         Cranks that yield; none where they are rigid.
     wheel : bool
         Whether the wheel's bearing yields.
+    ring : bool
+        Whether a floating ring ties the tips of the shaft pins.
     """
 
     discs: int = 1
     cranks: int = 0
     wheel: bool = False
+    ring: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Coordinates:
         """Return what the poses of a drive of any number of discs are made of."""
         cranks = 0 if drive.crank.support is None else drive.crank.number
         wheel = drive.pin_wheel.support_stiffness is not None
-        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel)
+        beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
+        ring = beam is not None and beam.tip != "free"
+        return cls(discs=drive.disc.number_of_discs, cranks=cranks, wheel=wheel, ring=ring)
 
     @property
     def own(self) -> int:
@@ -69,8 +75,8 @@ class Coordinates:
 
     @property
     def shared(self) -> int:
-        """Coordinates of the wheel."""
-        return 3 if self.wheel else 1
+        """Coordinates of wheel and ring."""
+        return 1 + 2 * self.wheel + 3 * self.ring
 
     @property
     def size(self) -> int:
@@ -95,7 +101,13 @@ class Coordinates:
     @property
     def wheel_place(self) -> slice:
         """x and y of the wheel; empty where its bearing does not yield."""
-        return slice(self.size - self.shared, self.size - 1)
+        first = self.size - self.shared
+        return slice(first, first + 2 * self.wheel)
+
+    @property
+    def ring_place(self) -> slice:
+        """x, y and rotation of the ring; empty where there is none."""
+        return slice(self.size - 1 - 3 * self.ring, self.size - 1)
 
     @property
     def rotations(self) -> Columns:
@@ -106,11 +118,13 @@ class Coordinates:
         >>> Coordinates(discs=2, cranks=1).rotations.tolist()
         [2, 7, 10]
         """
-        return np.append(DISC_ROTATION + self.own * np.arange(self.discs), self.size - 1)
+        shared = [self.size - 2, self.size - 1] if self.ring else [self.size - 1]
+        return np.append(DISC_ROTATION + self.own * np.arange(self.discs), shared)
 
     @property
     def displacements(self) -> Columns:
         """Places of every x that is followed by its y: discs, cranks, wheel."""
         one = np.r_[X, DISC_ROTATION + 1 : self.own : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
-        return np.append(each, self.size - 3) if self.wheel else each
+        shared = [self.size - self.shared] if self.wheel else []
+        return np.append(each, [*shared, self.ring_place.start] if self.ring else shared).astype(np.intp)

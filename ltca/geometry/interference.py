@@ -52,9 +52,11 @@ def drawn_interference(drive: Drive) -> Interference:
     radius = wheel.pin_circle_radius + disc.shifting_offset
     steepest = sqrt(max(0.0, 1.0 - (drive.crank.eccentricity * drive.reduction_ratio / radius) ** 2))
     return Interference(
-        pins=max(disc.shifting_offset, disc.shifting_offset * steepest) - disc.equidistant_offset,
+        pins=max(disc.shifting_offset, disc.shifting_offset * steepest) - disc.equidistant_offset - wheel.seat_play,
         rollers=bearing.inner_race_radius + 2.0 * bearing.roller_radius - drive.bore_radius,
-        holes=-inf if shaft is None else drive.crank.eccentricity + shaft.pin_radius - drive.hole_radius,
+        holes=-inf
+        if shaft is None
+        else drive.crank.eccentricity + shaft.pin_radius - shaft.seat_play - drive.hole_radius,
     )
 
 

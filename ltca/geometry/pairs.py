@@ -47,8 +47,8 @@ class _Pins:
         Unit vector of the disc's rotation.
     point : array of complex
         Centre in the frame of the disc.
-    radius : array
-        Of the pin.
+    radius, reach : array
+        Of the pin, and less its play.
     """
 
     centre: ComplexArray
@@ -56,6 +56,7 @@ class _Pins:
     turn: ComplexArray
     point: ComplexArray
     radius: FloatArray
+    reach: FloatArray
 
     def take(self, places: NDArray[np.intp], rows: NDArray[np.intp]) -> _Pins:
         """Return some pins, counted through all positions, and their positions; shape (pins, 1)."""
@@ -65,6 +66,7 @@ class _Pins:
             turn=self.turn[rows],
             point=self.point.take(places)[:, None],
             radius=np.broadcast_to(self.radius, self.point.shape).take(places)[:, None],
+            reach=np.broadcast_to(self.reach, self.point.shape).take(places)[:, None],
         )
 
 
@@ -78,11 +80,14 @@ class ContactGeometry:
         Where the parts stand, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
+    tip_share : float or array, shape (positions, 1, 1)
+        Displacement of a shaft pin at the disc by that of its tip, where a ring ties the tips.
     """
 
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
+    tip_share: float | FloatArray = 0.0
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
@@ -101,7 +106,22 @@ class ContactGeometry:
         """Return the geometry of some positions: itself for one drive, these rows of a batch."""
         if not self.placement.is_batch:
             return self
-        return replace(self, placement=self.placement.take(rows), profile=self.profile.take(rows))
+        tips = self.tip_share[rows] if isinstance(self.tip_share, np.ndarray) else self.tip_share
+        return replace(self, placement=self.placement.take(rows), profile=self.profile.take(rows), tip_share=tips)
+
+    @property
+    def tips_by_ring(self) -> ComplexArray:
+        """Displacement of the tips of the shaft pins by x, y and rotation of the ring that ties them, shape (…, z_PS, 3)."""
+        places = self.placement.shaft_pin_centres
+        return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
+
+    def moved_by_ring(self, pose: FloatArray) -> ComplexArray | None:
+        """Return how far the ring moves the shaft pins at the disc, shape (positions, z_PS), mm; None without ring."""
+        coordinates = self.coordinates_of(pose)
+        if not coordinates.ring:
+            return None
+        by_ring = self.tip_share * self.tips_by_ring
+        return np.asarray(np.matmul(pose[:, None, coordinates.ring_place], by_ring.swapaxes(-1, -2))[:, 0])
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates that a pose has: those of rigid members where it has no more than four."""
@@ -125,6 +145,7 @@ class ContactGeometry:
         crank_angle: FloatArray,
         pose: FloatArray,
         start: FloatArray | None = None,
+        shifts: ComplexArray | None = None,
         known: KnownPins | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
@@ -137,17 +158,21 @@ class ContactGeometry:
             q.
         start : array, shape (positions, z_P), optional
             First guess of the contact parameters; the nominal ones by default.
+        shifts : array of complex, shape (positions, z_P), optional
+            Displacements of the pins in the fixed frame, mm.
         known : KnownPins, optional
             Of the same drives: pins that cannot have come as far as the flank are left out, see `complete_flank`.
         """
-        pins = self._pins(crank_angle, pose)
+        pins = self._pins(crank_angle, pose, shifts)
         if start is None:
             start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         if known is None:
             return self._touching(self.profile, pins, start, self.coordinates_of(pose))
         return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
 
-    def complete_flank(self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion) -> FlankMotion:
+    def complete_flank(
+        self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
+    ) -> FlankMotion:
         """Return the pairs of which `flank` left some out as those of all pins.
 
         Parameters
@@ -156,10 +181,12 @@ class ContactGeometry:
             As for `flank`.
         motion : FlankMotion
             What it answered.
+        shifts : array of complex, shape (positions, z_P), optional
+            As for `flank`.
         """
         if not motion.left_out.any():
             return motion
-        pins = self._pins(crank_angle, pose)
+        pins = self._pins(crank_angle, pose, shifts)
         others = self._touching_some(
             pins, motion.parameter, motion.left_out, KnownPins.of(motion), self.coordinates_of(pose)
         )
@@ -193,9 +220,14 @@ class ContactGeometry:
         for deviation in (mine.deviation, theirs.deviation):
             if deviation is not None:
                 apart = apart + deviation.bound
-        return np.asarray(self.placement.wheel_pin_radii - other.placement.wheel_pin_radii + apart)
+        return np.asarray(self._pin_reaches - other._pin_reaches + apart)
 
-    def _pins(self, crank_angle: FloatArray, pose: FloatArray) -> _Pins:
+    @property
+    def _pin_reaches(self) -> FloatArray:
+        """From the nominal centre of a wheel pin to where it touches: its radius less the play in its seat."""
+        return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
+
+    def _pins(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None) -> _Pins:
         place, coordinates = self.placement, self.coordinates_of(pose)
         disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
         if coordinates.wheel:  # a wheel that moves is a disc that moves the other way
@@ -204,7 +236,16 @@ class ContactGeometry:
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
         pin = place.wheel_pin_centres * unit(turned)
         arm, turn = place.wheel_axis + pin - disc_centre, unit(pose[:, DISC_ROTATION, None])
-        return _Pins(centre=pin, arm=arm, turn=turn, point=arm * turn.conjugate(), radius=place.wheel_pin_radii)
+        if shifts is not None:
+            arm = arm + shifts
+        return _Pins(
+            centre=pin,
+            arm=arm,
+            turn=turn,
+            point=arm * turn.conjugate(),
+            radius=place.wheel_pin_radii,
+            reach=self._pin_reaches,
+        )
 
     def _touching_some(
         self, pins: _Pins, start: FloatArray, near: NDArray[np.bool_], known: KnownPins, coordinates: Coordinates
@@ -264,7 +305,7 @@ class ContactGeometry:
             wheel = coordinates.wheel_place
             gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
         return FlankMotion(
-            approach=pins.radius - offset - distance,
+            approach=pins.reach - offset - distance,
             gradient=gradient,
             along=along,
             bending=curvature / spread,
@@ -275,20 +316,29 @@ class ContactGeometry:
             left_out=np.zeros(point.shape, dtype=bool),
         )
 
-    def holes(self, crank_angle: FloatArray, pose: FloatArray) -> PairMotion:
+    def holes(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 59, 78–81); arguments as for `flank`."""
         place = self.placement
         disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
         arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
         play = place.shaft_pin_centres - disc_centre - arm
+        coordinates = self.coordinates_of(pose)
+        ring, tips = self.tip_share * self.tips_by_ring, self.moved_by_ring(pose)
+        if tips is not None:
+            play = play + tips
+        if shifts is not None:
+            play = play + shifts
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
-        gradient, along = (np.zeros((*distance.shape, self.coordinates_of(pose).size)) for _ in range(2))
+        gradient, along = (np.zeros((*distance.shape, coordinates.size)) for _ in range(2))
         gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
         gradient[..., DISC_ROTATION] = -cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
         along[..., DISC_ROTATION] = dot(direction, arm)
-        approach = distance - (place.hole_radii - place.shaft_pin_radii)
+        if tips is not None:
+            gradient[..., coordinates.ring_place] = dot(direction[..., None], ring)
+            along[..., coordinates.ring_place] = cross(ring, direction[..., None])
+        approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray) -> BoreMotion:

@@ -46,14 +46,23 @@ def _of_shaft(drive: Drive) -> dict[str, Any]:
     if shaft is None:
         nowhere, nothing = np.zeros(0, dtype=complex), np.zeros(0)
         return {
-            "hole_centres": nowhere, "hole_radii": nothing, "shaft_pin_centres": nowhere, "shaft_pin_radii": nothing
+            "hole_centres": nowhere, "hole_radii": nothing, "shaft_pin_centres": nowhere, "shaft_pin_radii": nothing,
+            "shaft_pin_plays": nothing,
         }  # fmt: skip
     return {
         "hole_centres": _circle(shaft.pin_circle_radius, count, drive.disc.hole_errors),
         "hole_radii": drive.hole_radius + 0.5 * _filled(drive.disc.hole_errors.diameter, count),
         "shaft_pin_centres": _circle(shaft.pin_circle_radius, count, shaft.pin_errors),
         "shaft_pin_radii": shaft.pin_radius + 0.5 * _filled(shaft.pin_errors.diameter, count),
+        "shaft_pin_plays": np.full(count, shaft.seat_play),
     }
+
+
+def _wheel_pin_plays(drive: Drive) -> FloatArray:
+    """Play of each wheel pin in its slot, which its own diameter changes, or of each sleeve on its pin."""
+    wheel, count = drive.pin_wheel, drive.pin_wheel.number_of_pins
+    own = 0.5 * _filled(wheel.pin_errors.diameter, count) if wheel.seat.kind == "slot" else np.zeros(count)
+    return np.asarray(wheel.seat_play - own)
 
 
 def _bore_centres(drive: Drive) -> ComplexArray:
@@ -77,7 +86,10 @@ class Placement:
     wheel_pin_centres : array of complex, shape (z_P,)
         In the wheel frame, from the wheel's axis, mm.
     wheel_pin_radii : array of float, shape (z_P,)
-        mm.
+        Of what the flank touches, pins or sleeves, mm.
+    wheel_pin_plays : array of float, shape (z_P,)
+        Of loose pins in their slots, of sleeves on their pins, in radius, mm. Without friction the forces on a free pin are
+        collinear: seen from the flank, a pin of radius r in a slot of radius r_s is a fixed one of radius r − (r_s − r).
     hole_centres : array of complex, shape (z_PS,)
         In the disc frame, mm.
     hole_radii : array of float, shape (z_PS,)
@@ -86,6 +98,8 @@ class Placement:
         In the fixed frame, mm.
     shaft_pin_radii : array of float, shape (z_PS,)
         mm.
+    shaft_pin_plays : array of float, shape (z_PS,)
+        Of sleeves on their pins, in radius, mm.
     roller_cage_angles : array of float, shape (cranks · n_BR,)
         Angle of each roller in its cage, crank after crank, rad.
     roller_radii : array of float, shape (cranks · n_BR,)
@@ -110,10 +124,12 @@ class Placement:
 
     wheel_pin_centres: ComplexArray
     wheel_pin_radii: FloatArray
+    wheel_pin_plays: FloatArray
     hole_centres: ComplexArray
     hole_radii: FloatArray
     shaft_pin_centres: ComplexArray
     shaft_pin_radii: FloatArray
+    shaft_pin_plays: FloatArray
     roller_cage_angles: FloatArray
     roller_radii: FloatArray
     inner_race_radius: BatchScalar
@@ -140,6 +156,7 @@ class Placement:
         return cls(
             wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors),
             wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
+            wheel_pin_plays=_wheel_pin_plays(drive),
             **_of_shaft(drive),
             roller_cage_angles=np.tile(cage_angles, crank.number),
             roller_radii=np.tile(roller_radii, crank.number),

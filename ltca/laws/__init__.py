@@ -12,8 +12,12 @@ shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
 generator_law          The tabulated law of a roller or pin with the generator that the drive gives it
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
-beam                   A round shaft as a beam on two elastic supports: how far it yields at some planes under forces at
-                       these planes
+sleeve_wall            What a sleeve has beyond an infinite body: harmonics of a ring pressed from within and outside
+conforming             A pin in a bore that is hardly larger: arc, pressure and approach, with a datum; a sleeve
+                       on its pin
+beam                   Round shafts and pins as beams: how far they yield at some planes under the forces of discs at these
+                       planes
 series                 Springs, and the approach at a given load
+backed                 A contact backed by what carries its part: the seat of a loose pin or sleeve, and the bending of the pin
 =====================  ============================================================
 """

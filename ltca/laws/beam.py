@@ -1,20 +1,28 @@
-r"""A round shaft as a beam on two elastic supports: how far it yields at some planes under forces at these planes.
+r"""Round shafts and pins as beams: how far they yield at some planes under the forces of discs at these planes.
 
-Bending alone (Euler–Bernoulli; shear and torsion are left out). The deflection at z under a unit force at s on a beam whose
-supports at 0 and L stand still is the fundamental solution :math:`|z-s|^3/12EI`, the same of the two reactions, and the
-rigid motion that brings the supports back to zero; elastic supports add their yielding along the straight line between them.
-Overhanging ends are in it.
+A crankshaft on two elastic supports: bending alone (Euler–Bernoulli; shear and torsion are left out). The deflection at z under
+a unit force at s on a beam whose supports at 0 and L stand still is the fundamental solution :math:`|z-s|^3/12EI`, the same of
+the two reactions, and the rigid motion that brings the supports back to zero; elastic supports add their yielding along the
+straight line between them. Overhanging ends are in it.
+
+A pin between two ends (Timoshenko's beam, shear coefficient of a round section by Cowper 1966): each disc presses evenly along
+its thickness, and what counts is the mean deflection along it, so that forces and deflections belong to each other (Maxwell).
+The deflection is the sum of fundamental solutions of forces :math:`|x|^3/12EI - |x|/2\kappa GA` and couples
+:math:`x|x|/4EI`, and a rigid motion; forces and couples at the ends follow from equilibrium and from how the ends are held.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import pi
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+End = Literal["free", "supported", "clamped"]
 
 
 def shaft_flexibility(
@@ -68,3 +76,171 @@ def shaft_flexibility(
     bent /= 12.0 * youngs_modulus * pi * diameter**4 / 64.0
     yielding = np.einsum("ez,es,e->zs", parts, parts, 1.0 / np.asarray(stiffness, dtype=float))
     return np.asarray(0.5 * (bent + bent.T) + yielding)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PinBeam:
+    """A round pin as a beam from 0 to its span.
+
+    Attributes
+    ----------
+    span : float
+        mm.
+    ends : tuple of {"free", "supported", "clamped"}
+        How each end is held: not at all, free to turn, not even that.
+    diameter : float
+        mm.
+    youngs_modulus : float
+        MPa.
+    poisson_ratio : float or None
+        None for a beam that bends only, without shear.
+    """
+
+    span: float
+    ends: tuple[End, End]
+    diameter: float
+    youngs_modulus: float
+    poisson_ratio: float | None = None
+
+    def flexibility(self, planes: Sequence[float], width: float) -> FloatArray:
+        """Return mean deflections along each disc under unit forces of the discs, mm/N.
+
+        Parameters
+        ----------
+        planes : sequence of float
+            Middle of each disc from the start of the pin, mm.
+        width : float
+            Thickness of each disc, mm.
+
+        Returns
+        -------
+        array, shape (discs, discs)
+            Symmetric.
+
+        Examples
+        --------
+        Mid-span of a supported pin yields by L³/48EI under a force on a very thin disc:
+
+        >>> pin = PinBeam(span=20.0, ends=("supported", "supported"), diameter=10.0, youngs_modulus=2e5)
+        >>> found = pin.flexibility([10.0], 1e-3)[0, 0]
+        >>> bool(np.isclose(found, 20.0**3 / (48.0 * 2e5 * pi * 10.0**4 / 64.0)))
+        True
+        """
+        middle = np.asarray(planes, dtype=float)
+        held = self._held(middle, width)
+        apart = middle[:, None] - middle
+        own = sum(sign * self._integral(apart + shift, 2) for sign, shift in ((1, width), (-2, 0.0), (1, -width)))
+        found = own / width**2 + self._bent(held, middle, width)
+        return np.asarray(0.5 * (found + found.T))
+
+    def deflection(self, at: float, middle: float, width: float) -> float:
+        """Return the deflection at one place under a unit force spread evenly about another, mm/N.
+
+        Parameters
+        ----------
+        at, middle : float
+            From the start of the pin, mm.
+        width : float
+            Length the force is spread over, mm.
+        """
+        held = self._held(np.array([middle]), width)
+        own = self._mean(np.array([at - middle]), width)
+        return float((own + self._point(np.array([at]))[:, :6] @ held)[0, 0])
+
+    def tip_shape(self, planes: Sequence[float], width: float) -> FloatArray:
+        """Return how far the pin moves along each disc, in the mean, where its far end is moved by one.
+
+        Parameters
+        ----------
+        planes, width
+            As for `flexibility`.
+
+        Returns
+        -------
+        array, shape (discs,)
+            By reciprocity also the part of each disc's force that the far end carries.
+        """
+        return np.asarray(-self._held(np.asarray(planes, dtype=float), width)[2])
+
+    @property
+    def tip_stiffness(self) -> float:
+        """Force that moves the far end by one where no disc presses, N/mm."""
+        matrix, moved = self._conditions(), np.zeros(6)
+        moved[4] = 1.0
+        return float(np.linalg.solve(matrix, moved)[2])
+
+    @property
+    def _rigidity(self) -> tuple[float, float]:
+        """EI, N·mm², and κGA, N; infinite without shear."""
+        bending = self.youngs_modulus * pi * self.diameter**4 / 64.0
+        if self.poisson_ratio is None:
+            return bending, np.inf
+        factor = 6.0 * (1.0 + self.poisson_ratio) / (7.0 + 6.0 * self.poisson_ratio)
+        return bending, factor * self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio)) * pi * self.diameter**2 / 4.0
+
+    def _integral(self, x: FloatArray, times: int) -> FloatArray:
+        """Fundamental solution of a unit force, integrated so many times by x."""
+        bending, shear = self._rigidity
+        cubic, line = ((3, 1), (4, 2), (5, 3))[times]
+        over, under = ((12.0, 2.0), (48.0, 4.0), (240.0, 12.0))[times]
+        size, sign = np.abs(x), np.sign(x) ** times
+        return np.asarray(sign * (size**cubic / (over * bending) - size**line / (under * shear)))
+
+    def _mean(self, x: FloatArray, width: float) -> FloatArray:
+        """Fundamental solution at x of a unit force spread evenly over a width, as a column."""
+        spread = self._integral(x + 0.5 * width, 1) - self._integral(x - 0.5 * width, 1)
+        return np.asarray(spread[:, None] / width)
+
+    def _turn(self, x: FloatArray) -> FloatArray:
+        """Rotation of the section at x by a unit force."""
+        return np.asarray(x * np.abs(x) / (4.0 * self._rigidity[0]))
+
+    def _point(self, at: FloatArray) -> FloatArray:
+        """Deflection at places by (force, couple) at the start, the same at the far end, and a + b z."""
+        columns = [column for end in (0.0, self.span) for column in (self._integral(at - end, 0), self._turn(at - end))]
+        return np.stack([*columns, np.ones_like(at), at], axis=1)
+
+    def _bent(self, held: FloatArray, middle: FloatArray, width: float) -> FloatArray:
+        """Mean deflection along each disc by what the ends do."""
+        low, high = middle - 0.5 * width, middle + 0.5 * width
+        columns = []
+        for end in (0.0, self.span):
+            columns.append((self._integral(high - end, 1) - self._integral(low - end, 1)) / width)
+            bend = np.abs(high - end) ** 3 - np.abs(low - end) ** 3
+            columns.append(bend / (12.0 * self._rigidity[0] * width))
+        return np.asarray(np.stack([*columns, np.ones_like(middle), middle], axis=1) @ held)
+
+    def _conditions(self) -> FloatArray:
+        """Equations of the ends' forces and couples and of the rigid motion: balance, then two for each end."""
+        ends = np.array([0.0, self.span])
+        matrix = np.zeros((6, 6))
+        matrix[0, [0, 2]] = 1.0
+        matrix[1] = [0.0, -1.0, self.span, -1.0, 0.0, 0.0]
+        deflection = self._point(ends)
+        rotation = np.zeros((2, 6))
+        for number, end in enumerate(ends):
+            rotation[:, 2 * number] = self._turn(ends - end)
+            rotation[:, 2 * number + 1] = np.abs(ends - end) / (2.0 * self._rigidity[0])
+        rotation[:, 5] = 1.0
+        for number, kind in enumerate(self.ends):
+            row = 2 + 2 * number
+            matrix[row : row + 2] = deflection[number], rotation[number]
+            if kind == "free":
+                matrix[row] = np.eye(6)[2 * number]
+            if kind != "clamped":
+                matrix[row + 1] = np.eye(6)[2 * number + 1]
+        return matrix
+
+    def _held(self, middle: FloatArray, width: float) -> FloatArray:
+        """Forces and couples of the ends and the rigid motion under a unit force on each disc, shape (6, discs)."""
+        right = np.zeros((6, middle.size))
+        right[0], right[1] = -1.0, -middle
+        for number, kind in enumerate(self.ends):
+            end = self.span * number
+            if kind != "free":
+                right[2 + 2 * number] = -self._mean(end - middle, width)[:, 0]
+            if kind == "clamped":
+                low, high = end - middle - 0.5 * width, end - middle + 0.5 * width
+                turned = (np.abs(high) ** 3 - np.abs(low) ** 3) / (12.0 * self._rigidity[0] * width)
+                right[3 + 2 * number] = -turned
+        return np.asarray(np.linalg.solve(self._conditions(), right))

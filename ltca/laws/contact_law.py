@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,12 +18,17 @@ class LoadLaw(Protocol):
         ...
 
 
-class ContactLaw(LoadLaw, Protocol):
-    """A law that knows its energy and its pressure at mid-width as well."""
+class EnergyLaw(LoadLaw, Protocol):
+    """A law that knows its energy."""
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return ∫ F dδ, N·mm."""
         ...
+
+
+@runtime_checkable
+class ContactLaw(EnergyLaw, Protocol):
+    """A law that knows its pressure at mid-width as well."""
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the largest pressure at mid-width, MPa."""

@@ -16,14 +16,18 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpringLaw:
-    """Unilateral linear spring; `stiffness` in N/mm."""
+    """Unilateral linear spring; `stiffness` in N/mm, of a batch of drives an array of shape (positions, 1)."""
 
-    stiffness: float
+    stiffness: float | FloatArray
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the load at an approach and its derivative, N and N/mm."""
         delta = np.asarray(approach, dtype=float)
         return self.stiffness * np.maximum(delta, 0.0), np.where(delta > 0.0, self.stiffness, 0.0)
+
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return ∫ F dδ, N·mm."""
+        return np.asarray(0.5 * self.stiffness * np.maximum(np.asarray(approach, dtype=float), 0.0) ** 2)
 
 
 def approach_at_load(

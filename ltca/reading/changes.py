@@ -80,7 +80,9 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
 
 
 _NEEDED = {
-    "pin_shaft": ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius", "stiffness"),
+    "pin_shaft": ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius"),
+    "pin_shaft.beam": ("span", "tip"),
+    "pin_wheel.beam": ("span", "ends"),
     "crank.support": ("diameter", "positions", "stiffness"),
 }
 """What a part that may be left out is made of."""

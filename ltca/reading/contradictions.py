@@ -9,8 +9,9 @@ from functools import partial
 from math import exp, log
 from typing import Any
 
-from ltca.drive.fields import missing_part, read_field
+from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
+from ltca.errors import DriveError
 from ltca.reading.physical_checks import is_sound
 
 CAUSES = (
@@ -18,7 +19,8 @@ CAUSES = (
     "disc.equidistant_offset", "disc.shifting_offset", "crank_bearing.inner_race_radius",
     "crank_bearing.outer_race_radius", "crank_bearing.roller_radius", "crank_bearing.roller_length",
     "crank.circle_radius", "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius", "pin_shaft.hole_radius", "clearance.bearing",
-    "clearance.pin_hole",
+    "clearance.pin_hole", "pin_wheel.seat.radius", "pin_wheel.seat.pin_radius", "pin_wheel.seat.bore_radius",
+    "pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius",
 )  # fmt: skip
 # Two fields of a part that are mistaken for each other, the smaller first.
 SWAPPED = (("crank_bearing", "inner_race_radius", "outer_race_radius"), ("pin_shaft", "pin_radius", "hole_radius"))
@@ -188,9 +190,12 @@ def _causes(drive: Drive) -> Iterator[Cause]:
 
 
 def _has(drive: Drive, path: str) -> bool:
-    """Tell whether a drive has a field: one without pin shaft, or with one crank, has not all of them."""
-    left_out = path == "crank.circle_radius" and drive.crank.circle_radius is None
-    return missing_part(drive, path) is None and not left_out
+    """Tell whether a drive has a field: one without pin shaft, with one crank or with fixed pins has not all of them."""
+    try:
+        read_field(drive, path)
+    except DriveError:
+        return False
+    return True
 
 
 def _fitting(drive: Drive, path: str) -> float:
@@ -216,12 +221,16 @@ def _nearest(drive: Drive, path: str, value: float, size: float) -> float:
 
 
 def _sound_with(drive: Drive, path: str, value: float) -> bool:
-    part, name = path.split(".")
     try:
-        changed: Any = replace(getattr(drive, part), **{name: value})
-        return is_sound(replace(drive, **{part: changed}))
+        return is_sound(_with(drive, path.split("."), value))
     except (ValueError, ArithmeticError):
         return False
+
+
+def _with(part: Any, names: list[str], value: float) -> Any:
+    """A definition with one field of it, or of what it is made of, replaced."""
+    name, *below = names
+    return replace(part, **{name: _with(getattr(part, name), below, value) if below else value})
 
 
 def _consequence(problem: str, cause: str) -> str:

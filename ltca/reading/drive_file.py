@@ -106,7 +106,7 @@ def load_drive(source: str | Path) -> DriveFile:
     if str(source) == "paper":
         return parse_drive(shipped_drive(), "paper")
     path = Path(source)
-    own = f"{path.name}.toml --like {path.name}" if path.name in ("robot-joint", "rv") else path.name
+    own = f"{path.name}.toml --like {path.name}" if path.name in ("robot-joint", "rv", "sleeved") else path.name
     hint = f"no such file; give a TOML file or 'paper' ('cyclo init {own}' writes a drive to start from)"
     return parse_drive(read_text(path, hint), str(source))
 

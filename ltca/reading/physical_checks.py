@@ -9,6 +9,7 @@ from math import pi, sin
 
 import numpy as np
 
+from ltca.drive.members.pin_checks import find_pin_problems
 from ltca.drive.parts import Drive, LengthProfile, Material
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.geometry.flank import FlankProfile
@@ -108,6 +109,7 @@ def _installation(drive: Drive) -> Iterator[str]:
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
     yield from _crank_support(drive)
+    yield from find_pin_problems(drive)
 
 
 def _crank_support(drive: Drive) -> Iterator[str]:
@@ -255,9 +257,10 @@ def _holes(drive: Drive) -> Iterator[str]:
     if shaft is None:
         return
     play = shaft.hole_radius - shaft.pin_radius
-    # Pins in tight holes push the disc along the eccentricity: by half of it they would lead it no more.
+    # Seen from the hole, a sleeve with play is a smaller fixed pin. Pins in tight holes push the disc along the
+    # eccentricity: by half of it they would lead it no more.
     most = min(deviation_bound(drive), 0.5 * e)
-    smallest = shaft.pin_radius + e - drive.clearance.pin_hole - most
+    smallest = shaft.pin_radius - shaft.seat_play + e - drive.clearance.pin_hole - most
     if shaft.hole_radius < smallest - ROUNDING:
         yield (
             f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at least {smallest:g} mm, or it overlaps its pin by more "
@@ -275,11 +278,11 @@ def _holes(drive: Drive) -> Iterator[str]:
         )
     radius, circle = drive.hole_radius, shaft.pin_circle_radius
     # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
-    fitting = shaft.pin_radius + e
+    fitting = shaft.pin_radius - shaft.seat_play + e
 
     def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> str:
         bound = shaft.hole_radius - excess
-        if bound > fitting or play < e - ROUNDING:
+        if bound > fitting or play + shaft.seat_play < e - ROUNDING:
             return f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: {trouble}; must be less than {max(bound, 0.0):.6g} mm"
         return f"pin_shaft.pin_circle_radius = {circle:g} mm: {trouble}; must be {circle_bound}"
 

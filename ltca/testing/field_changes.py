@@ -31,6 +31,11 @@ _CLOSE = {
     "pin_shaft.hole_radius": 1.001,
     "pin_shaft.pin_circle_radius": 1.002,
     "pin_wheel.pin_radius": 0.9995,
+    "pin_wheel.seat.radius": 1.001,
+    "pin_wheel.seat.pin_radius": 0.999,
+    "pin_wheel.seat.bore_radius": 1.001,
+    "pin_shaft.seat.pin_radius": 0.999,
+    "pin_shaft.seat.bore_radius": 1.001,
 }
 _COUNTS = {
     "pin_wheel.number_of_pins": 1,
@@ -40,25 +45,27 @@ _COUNTS = {
     "crank_bearing.number_of_rollers": -1,
     "pin_shaft.number_of_pins": 1,
 }
-_TOGETHER: Mapping[str, Mapping[str, Any]] = {
-    "crank.support": {
-        "crank.support.diameter": 8.0,
-        "crank.support.positions": (-10.0, 12.0),
-        "crank.support.stiffness": (2e5, 3e5),
-    },
-    "materials.crankshaft": {
-        "crank.support.diameter": 8.0,
-        "crank.support.positions": (-10.0, 12.0),
-        "crank.support.stiffness": (2e5, 3e5),
-    },
+_SUPPORT = {
+    "crank.support.diameter": 8.0,
+    "crank.support.positions": (-10.0, 12.0),
+    "crank.support.stiffness": (2e5, 3e5),
 }
-"""What a field needs beside it to count."""
+GOES_WITH = {
+    "materials.crankshaft": "crank.support",
+    "materials.sleeve": "pin_wheel.seat",
+    "materials.wheel_seat": "pin_wheel.seat",
+}
+"""Materials of what a drive may have not: with what they are refused."""
 _LEFT_OUT = {"pin_wheel.support_stiffness": 5e5, "installation.first_stage_ratio": 2.0, "crank.circle_radius": 6.0}
 """What may be left out, and a value that a person could give."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _OTHER_WORD = {
     "load.direction": {"ccw": "cw", "cw": "ccw"},
     "installation.held": {"pin-shaft": "pin-wheel", "pin-wheel": "pin-shaft"},
+    "pin_wheel.beam.ends": {"supported": "clamped", "clamped": "supported"},
+    "pin_shaft.beam.tip": {"free": "tied-clamped", "tied-clamped": "tied-pinned", "tied-pinned": "free"},
+    "pin_shaft.seat.kind": {"fixed": "sleeve", "sleeve": "fixed"},
+    "pin_wheel.seat.kind": {"fixed": "slot", "slot": "sleeve", "sleeve": "fixed"},
 }
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
 ROUND_OFF = 1e-6
@@ -165,6 +172,47 @@ def _is_left_out(drive: Drive, path: str) -> bool:
     return False
 
 
+def _seat(drive: Drive, path: str, kind: str) -> dict[str, Any]:
+    """All fields of a seat of a kind, with a play that a person could have meant."""
+    radius = float(read_field(drive, f"{path}.pin_radius"))
+    radii = {
+        "fixed": {},
+        "slot": {"radius": 1.002 * radius},
+        "sleeve": {"pin_radius": 0.7 * radius, "bore_radius": 0.702 * radius},
+    }[kind]
+    names = [field for field in field_kinds() if field.startswith(f"{path}.seat.")]
+    return {name: radii.get(name.rpartition(".")[2]) for name in names} | {f"{path}.seat.kind": kind}
+
+
+def _beside(drive: Drive, path: str) -> dict[str, Any]:
+    """What a field needs beside it to count, where the drive has it not."""
+    span = 3.0 * (2.0 * max(map(abs, drive.disc.disc_planes)) + drive.disc.thickness)
+    wheel, shaft, name = drive.pin_wheel, drive.pin_shaft, path.rpartition(".")[2]
+    if path.startswith(("crank.support.", "materials.crankshaft.")) and drive.crank.support is None:
+        return _SUPPORT
+    kinds = {
+        "pin_wheel.seat.radius": "slot",
+        "pin_wheel.seat.pin_radius": "sleeve",
+        "pin_wheel.seat.bore_radius": "sleeve",
+    }
+    kinds |= {f"materials.{part}.{name}": kind for part, kind in (("wheel_seat", "slot"), ("sleeve", "sleeve"))}
+    if path in kinds and wheel.seat.kind != kinds[path]:
+        return _seat(drive, "pin_wheel", kinds[path])
+    if path in ("pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius") and shaft and shaft.seat.kind == "fixed":
+        return _seat(drive, "pin_shaft", "sleeve")
+    if path.startswith("pin_wheel.beam.") and wheel.beam is None:
+        return {"pin_wheel.beam.span": span, "pin_wheel.beam.ends": "supported"}
+    if path.startswith("pin_shaft.beam.") and shaft and shaft.beam is None:
+        return {"pin_shaft.stiffness": None, "pin_shaft.beam.span": span, "pin_shaft.beam.tip": "free"}
+    return {}
+
+
+def is_refused_by_name(path: str, told: str) -> bool:
+    """Tell whether a refusal names a field, its table, or what a material goes with."""
+    table = path.rpartition(".")[0]
+    return path in told or table in told or GOES_WITH.get(table, path) in told
+
+
 def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     """Return a drive in which a field counts, and its change.
 
@@ -189,13 +237,14 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
     if parent.endswith(("pin_profile", "roller_profile")):
         # Tables of profiled parts are dear where radii differ: diameters are as drawn.
         drive = with_fields(drive, dict.fromkeys(DIAMETERS, ()))
-    for part, needed in _TOGETHER.items():
-        if path.startswith(f"{part}."):
-            drive = with_fields(drive, {name: value for name, value in needed.items() if _is_left_out(drive, name)})
+    if needed := _beside(drive, path):
+        drive = with_fields(drive, needed)
+    if path.endswith(".seat.kind"):
+        return drive, _seat(drive, parent.removesuffix(".seat"), sensible_change(drive, path))
     if path in _LEFT_OUT and _is_left_out(drive, path):
         return drive, {path: _LEFT_OUT[path]}
     if name in _RELIEF:
-        other = next(field for field in _RELIEF if field != name)
+        other = next(relief for relief in _RELIEF if relief != name)
         return with_fields(drive, {f"{parent}.{other}": _RELIEF[other]}), {path: _RELIEF[name]}
     if path == "disc.thickness":  # rollers no longer than the disc; in plane strain as long as it is
         return drive, {path: 1.1 * read_field(drive, path)} | (

@@ -15,7 +15,7 @@ def stored_energy(model, response):
     """ΣU of all contacts, N·mm."""
     laws = model.roller_laws
     total = model.pin_law.energy(response.flank.approach, response.flank.effective_radius).sum(axis=1)
-    total = total + 0.5 * model.hole_stiffness * (np.maximum(response.holes.approach, 0.0) ** 2).sum(axis=1)
+    total = total + model.hole_law.energy(response.holes.approach, 1.0).sum(axis=1)
     total = total + laws.inner.energy(response.rollers.inner_approach, laws.inner_radius).sum(axis=1)
     return total + laws.outer.energy(response.rollers.outer_approach, laws.outer_radius).sum(axis=1)
 

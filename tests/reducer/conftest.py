@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
+from ltca.equilibrium.balance import lever_arms
+from ltca.equilibrium.output_torque import crank_moments, solve_at_output
 from ltca.equilibrium.reducer import Reducer, disc_responses
+from ltca.equilibrium.shared_pins import SharedTangent
+from ltca.geometry.coordinates import WHEEL_ANGLE
 
 
 @pytest.fixture
@@ -20,7 +27,9 @@ def stored_energy(model, response, pose):
     for disc, part in zip(model.discs, disc_responses(response), strict=True):
         laws, flank = disc.roller_laws, part.flank
         total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
-        total = total + 0.5 * disc.hole_stiffness * (np.maximum(part.holes.approach, 0.0) ** 2).sum(axis=1)
+        total = total + disc.hole_law.energy(part.holes.approach, disc.geometry.placement.hole_effective_radii).sum(
+            axis=1
+        )
         total = total + laws.inner.energy(part.rollers.inner_approach, laws.inner_radius).sum(axis=1)
         total = total + laws.outer.energy(part.rollers.outer_approach, laws.outer_radius).sum(axis=1)
         step = 1e-4 * flank.effective_radius
@@ -28,4 +37,71 @@ def stored_energy(model, response, pose):
         slopes.append((ends[0] - ends[1]) / (2.0 * step))
     if isinstance(model, Reducer) and model.supports is not None:
         total = total + 0.5 * np.einsum("bi,ij,bj->b", pose, model.supports, pose)
+    if isinstance(model, Reducer) and model.pins is not None:
+        shared = SharedTangent(model.pins.flexibility, disc_responses(response), model.coordinates)
+        force = shared.load.swapaxes(1, 2)[..., None] * shared.normal
+        total = total + 0.5 * np.einsum("bpdi,pde,bpei->b", force, model.pins.flexibility, force)
     return total, np.concatenate(slopes, axis=1)
+
+
+@pytest.fixture
+def unbalanced_work():
+    """The function that tells by how much virtual work does not close."""
+    return work_left_over
+
+
+def work_left_over(drive, angle):
+    """T_C + T_W (1/u + w′) − U′ + Σ ∂U/∂ρ ρ′ by the torque; T_C of all cranks with their cages, U with the supports' energy."""
+    model = HalfSpace().prepare(drive).model
+    centre = solve_at_output(model, drive, angle, drive.load.torque)
+    crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
+    slope = stored_energy(model, centre.response, centre.pose)[1]
+
+    def left(step):
+        ends = []
+        for side in (1.0, -1.0):
+            found = solve_at_output(model, drive, angle + side * step, drive.load.torque, centre.pose)
+            energy = stored_energy(model, found.response, found.pose)[0]
+            ends.append((energy, found.pose[:, WHEEL_ANGLE], found.response.flank.effective_radius))
+        (up, wheel_up, radius_up), (down, wheel_down, radius_down) = ends
+        turn = (wheel_up - wheel_down) / (2.0 * step)
+        work = (up - down) / (2.0 * step) - (slope * (radius_up - radius_down) / (2.0 * step)).sum(axis=1)
+        return crank + centre.wheel_moment * (1.0 / drive.reduction_ratio + turn) - work
+
+    # differences of second order, taken to fourth by two of them (Richardson)
+    return (4.0 * left(1e-4) - left(2e-4)) / 3.0 / drive.load.torque
+
+
+@dataclass(frozen=True)
+class HeldRadius:
+    """The law at held ρ: its dependence on the place is no force."""
+
+    law: object
+    radius: np.ndarray
+
+    def load_and_stiffness(self, approach, effective_radius):
+        return self.law.load_and_stiffness(approach, self.radius)
+
+
+@pytest.fixture
+def tangent_and_slope():
+    """The function that tells the tangent and the slope of the force by differences."""
+    return scaled_tangent_and_slope
+
+
+def scaled_tangent_and_slope(drive, angle, step=1e-7):
+    """Tangent at one balanced position and the differences of the force over ±step mm, both by the lever arms."""
+    model = HalfSpace().prepare(drive).model
+    balanced = solve_at_output(model, drive, angle, drive.load.torque)
+    parts = zip(model.discs, disc_responses(balanced.response), strict=True)
+    held = tuple(replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts)
+    several = isinstance(model, Reducer)
+    fixed = Reducer(discs=held, supports=model.supports if several else None, pins=model.pins if several else None)
+    lever = lever_arms(model)
+    scaled = balanced.response.tangent[0] / np.outer(lever, lever)
+    slope = np.empty_like(scaled)
+    for column in range(lever.size):
+        moved = [balanced.pose + side * step * (np.arange(lever.size) == column) / lever[column] for side in (1, -1)]
+        up, down = (fixed.respond(angle, each).force[0] / lever for each in moved)
+        slope[:, column] = (up - down) / (2.0 * step)
+    return scaled, slope

@@ -13,9 +13,8 @@ from ltca.compliance import half_space
 from ltca.compliance.rollers import RollerState
 from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import equal_parts
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_responses
+from ltca.equilibrium.reducer import bearing_forces, disc_responses
 from ltca.equilibrium.supports import crank_stiffness, support_stiffness
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
@@ -123,59 +122,15 @@ def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_virtual_work_at_every_position(rv, name, stored):
-    """T_C + T_W (1/u + w′) = U′ − Σ ∂U/∂ρ ρ′, T_C of all cranks with their cages, the supports' energy in U."""
-    drive = kind(rv, name)
-    model = HalfSpace().prepare(drive).model
-    angle = ANGLES + 0.05
-    centre = solve_at_output(model, drive, angle, drive.load.torque)
-    crank = crank_moments(model, angle, centre.pose, centre.response).sum(axis=1)
-    slope = stored(model, centre.response, centre.pose)[1]
-
-    def left(step):
-        ends = []
-        for side in (1.0, -1.0):
-            found = solve_at_output(model, drive, angle + side * step, drive.load.torque, centre.pose)
-            energy = stored(model, found.response, found.pose)[0]
-            ends.append((energy, found.pose[:, WHEEL_ANGLE], found.response.flank.effective_radius))
-        (up, wheel_up, radius_up), (down, wheel_down, radius_down) = ends
-        turn = (wheel_up - wheel_down) / (2.0 * step)
-        work = (up - down) / (2.0 * step) - (slope * (radius_up - radius_down) / (2.0 * step)).sum(axis=1)
-        return crank + centre.wheel_moment * (1.0 / drive.reduction_ratio + turn) - work
-
-    # differences of second order, taken to fourth by two of them (Richardson)
-    closed = (4.0 * left(1e-4) - left(2e-4)) / 3.0
-    np.testing.assert_allclose(closed / drive.load.torque, 0.0, atol=1e-7)
-
-
-@dataclass(frozen=True)
-class HeldRadius:
-    """The law at held ρ: its dependence on the place is no force."""
-
-    law: object
-    radius: np.ndarray
-
-    def load_and_stiffness(self, approach, effective_radius):
-        return self.law.load_and_stiffness(approach, self.radius)
+def test_virtual_work_at_every_position(rv, name, unbalanced_work):
+    np.testing.assert_allclose(unbalanced_work(kind(rv, name), ANGLES + 0.05), 0.0, atol=1e-7)
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_tangent_is_the_slope_of_the_force(rv, name):
-    drive = kind(rv, name)
-    model = HalfSpace().prepare(drive).model
-    balanced = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
-    parts = zip(model.discs, disc_responses(balanced.response), strict=True)
-    held = tuple(replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts)
-    fixed, tangent = Reducer(discs=held, supports=support_stiffness(drive)), balanced.response.tangent[0]
-    lever, step = lever_arms(model), 1e-7
-    scaled = tangent / np.outer(lever, lever)
-    for column in range(lever.size):
-        moved = [balanced.pose + side * step * (np.arange(lever.size) == column) / lever[column] for side in (1, -1)]
-        up, down = (fixed.respond(ANGLES[:1], each).force[0] / lever for each in moved)
-        # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
-        np.testing.assert_allclose(
-            (up - down) / (2 * step), scaled[:, column], rtol=0.0, atol=2e-6 * np.abs(scaled).max()
-        )
+def test_tangent_is_the_slope_of_the_force(rv, name, tangent_and_slope):
+    scaled, slope = tangent_and_slope(kind(rv, name), ANGLES[:1])
+    # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
+    np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
 @pytest.mark.parametrize("name", ["cranks", "holes"])

@@ -2,8 +2,9 @@
 
 Modules in the order data passes:
 
-=====  ============================================================
-crank  Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
-pins   Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
-=====  ============================================================
+==========  ============================================================
+crank       Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
+pins        Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
+pin_checks  What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of bounds
+==========  ============================================================
 """

@@ -17,6 +17,7 @@ from fem.testing.fixtures import make_fixtures
 
 FOLDER = Path(__file__).parents[3] / "meshes"
 NAMES = ("disc", "pin_3", "roller_2", "inner_race", "cylinder_lower", "cylinder_upper", "reducer_disc")
+NAMES += ("sleeved_pin", "sleeve")
 
 
 @pytest.fixture(scope="module")

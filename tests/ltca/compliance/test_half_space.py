@@ -38,7 +38,7 @@ def energy_of(model, response):
     """Return ΣU of all contacts at every position."""
     laws = model.roller_laws
     total = model.pin_law.energy(response.flank.approach, response.flank.effective_radius).sum(axis=1)
-    total = total + 0.5 * model.hole_stiffness * (np.maximum(response.holes.approach, 0.0) ** 2).sum(axis=1)
+    total = total + model.hole_law.energy(response.holes.approach, 1.0).sum(axis=1)
     total = total + laws.inner.energy(response.rollers.inner_approach, laws.inner_radius).sum(axis=1)
     return total + laws.outer.energy(response.rollers.outer_approach, laws.outer_radius).sum(axis=1)
 

@@ -8,6 +8,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning
 from ltca.errors import ConvergenceError, CycloError, DriveError
+from ltca.reading.changes import with_fields
 
 ANGLE = np.array([0.5])
 
@@ -62,6 +63,18 @@ def test_what_is_in_order_is_not_explained(vary):
     assert explain_failure(lost, drive) is lost
     other = CycloError("a file is missing")
     assert explain_failure(other, vary(materials=all_of(206.0))) is other
+
+
+@pytest.mark.parametrize(
+    ("pins", "beam"), [("pin_wheel", {"ends": "clamped"}), ("pin_shaft", {"tip": "free", "diameter": 4.0})]
+)
+def test_pins_that_bend_out_of_their_place(pins, beam, vary):
+    """A span typed in micrometres makes a pin that bends by metres."""
+    changes = {f"{pins}.beam.span": 24_000.0} | {f"{pins}.beam.{name}": value for name, value in beam.items()}
+    changes |= {"pin_shaft.stiffness": None} if pins == "pin_shaft" else {}
+    (told,) = likely_unit_mistakes(with_fields(vary(), changes))
+    assert told.startswith(f"{pins}.beam.span = 24000 mm: a pin of")
+    assert not likely_unit_mistakes(with_fields(vary(), changes | {f"{pins}.beam.span": 24.0}))
 
 
 def test_pascals_are_warned_about(vary):

@@ -12,6 +12,7 @@ from ltca.equilibrium.balance import lever_arms, solve_equilibrium
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.first_contact import unloaded_transmission_error
+from ltca.laws.series import SpringLaw
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive
 
@@ -116,7 +117,7 @@ def test_moment_of_every_position_is_its_own(models):
 
 
 def test_loads_that_are_no_numbers_do_not_pass_for_balanced(models):
-    broken = replace(models["CS-1"], hole_stiffness=float("nan"))
+    broken = replace(models["CS-1"], hole_law=SpringLaw(stiffness=float("nan")))
     with pytest.raises(ConvergenceError):
         solve_equilibrium(broken, np.array([0.1]), -1e5)
 

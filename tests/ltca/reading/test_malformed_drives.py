@@ -140,7 +140,7 @@ def test_several_mistakes_come_together():
         ("eccentricity = 4.0", "eccentricity = -4.0"),
         ("thickness = 11.8", 'thickness = "11.8 N"'),
         ("number_of_rollers = 11", "number_of_rollers = 0"),
-        ("stiffness = 1.0e6", "stifness = 1.0e6"),
+        ("hole_radius = ", "hole_radus = "),
         ("bearing = 0.0", "bearing = nan"),
     ):
         text = text.replace(old, new, 1)
@@ -151,8 +151,8 @@ def test_several_mistakes_come_together():
         "-4.0",
         "'11.8 N'",
         "number_of_rollers = 0",
-        "stifness",
-        "`stiffness`, which is missing",
+        "hole_radus",
+        "`hole_radius`, which is missing",
         "bearing = nan",
     ):
         assert part in told

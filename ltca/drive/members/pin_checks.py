@@ -1,0 +1,135 @@
+"""What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi, sin
+
+from ltca.drive.materials import Material
+from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBeam
+from ltca.drive.parts import Drive
+
+ROUNDING = 1e-9
+"""Lengths that differ by less are one length, mm: round-off of a sum, and less play than any part has."""
+BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
+"""Fields of a seat, and the kind that has them."""
+
+
+def find_pin_problems(drive: Drive) -> Iterator[str]:
+    """Yield what is wrong with seats and beams of pins, and with what they are made of, one sentence each.
+
+    Parameters
+    ----------
+    drive : Drive
+        The whole drive; its single numbers are valid.
+    """
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    yield from _seat(wheel, "pin_wheel", 1.0, drive.crank.eccentricity)
+    yield from _slots(wheel)
+    if wheel.beam is not None:
+        yield from _beam(drive, wheel, wheel.beam, "pin_wheel")
+    if shaft is not None:
+        yield from _seat(shaft, "pin_shaft", 0.5, drive.crank.eccentricity)
+        if shaft.beam is not None:
+            yield from _beam(drive, shaft, shaft.beam, "pin_shaft")
+        yield from _one_compliance(shaft)
+    kinds = {wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
+    if "slot" not in kinds and drive.materials.wheel_seat != Material():
+        yield 'materials.wheel_seat: must be left out without slots (pin_wheel.seat.kind = "slot")'
+    if "sleeve" not in kinds and drive.materials.sleeve != Material():
+        yield 'materials.sleeve: must be left out without sleeves (pin_wheel.seat, pin_shaft.seat: kind = "sleeve")'
+
+
+def _one_compliance(shaft: PinShaft) -> Iterator[str]:
+    if shaft.beam is None and shaft.stiffness is None:
+        yield "pin_shaft.stiffness: is missing; pins of the shaft need it, or pin_shaft.beam in its place"
+    elif shaft.beam is not None and shaft.stiffness is not None:
+        yield (
+            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which says how the pins "
+            "bend"
+        )
+
+
+def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float) -> Iterator[str]:
+    """Fields and radii of a seat, its play at most a part of the eccentricity."""
+    kind = part.seat.kind
+    given = {name: getattr(part.seat, name, None) for name in BELONGS}
+    said = f'{path}.seat.kind = "{kind}"' + (" (the default)" if kind == "fixed" else "")
+    sound = True
+    for name, value in given.items():
+        if value is not None and BELONGS[name] != kind:
+            sound = False
+            yield f'{path}.seat.{name} = {value:g} mm: must be left out with {said}; it belongs to "{BELONGS[name]}"'
+        elif value is None and BELONGS[name] == kind:
+            sound = False
+            yield f"{path}.seat.{name}: must be given with {said}"
+    if kind == "fixed" or not sound:
+        return
+    errors = part.pin_errors.diameter
+    growth, shrinkage = max((*errors, 0.0)), -min((*errors, 0.0))
+    play, largest, outer = part.seat_play, most * eccentricity, part.pin_radius
+    inner, pin, bore, hole = (
+        (outer, f"{path}.pin_radius", given["radius"] or 0.0, "radius")
+        if kind == "slot"
+        else (given["pin_radius"] or 0.0, f"{path}.seat.pin_radius", given["bore_radius"] or 0.0, "bore_radius")
+    )
+    what = "slot" if kind == "slot" else "sleeve"
+    named = f"{path}.seat.{hole} = {bore:g} mm"
+    if play <= ROUNDING:
+        yield f"{named}: must be greater than {inner:g} mm ({pin}), or the pin has no play in its {what}"
+    elif kind == "slot" and bore >= 2.0 * outer - ROUNDING:
+        yield (
+            f"{named}: must be less than {2.0 * outer:g} mm, twice {pin}, or the pin is no guide any more (its effective "
+            f"radius {2.0 * outer - bore:g} mm is none)"
+        )
+    elif kind == "sleeve" and bore >= outer - ROUNDING:
+        yield f"{named}: must be less than {outer:g} mm ({path}.pin_radius), or the sleeve has no wall"
+    elif play > largest + ROUNDING:
+        part_of = "the eccentricity" if most == 1.0 else "half the eccentricity"
+        yield (
+            f"{named}: must be at most {inner + largest:g} mm, {pin} and {part_of}, or the pins cannot lead the disc "
+            f"(play {play:g} mm)"
+        )
+    elif kind == "slot" and 0.5 * growth >= play - ROUNDING:
+        yield (
+            f"{path}.pin_errors.diameter holds {growth:g} mm: must be less than {2.0 * play:.6g} mm, twice the play of "
+            f"{path}.seat.radius, or the pin does not fit its slot"
+        )
+    elif kind == "slot" and bore >= 2.0 * outer - shrinkage - ROUNDING:
+        yield (
+            f"{path}.pin_errors.diameter holds {-shrinkage:g} mm: must be greater than {bore - 2.0 * outer:.6g} mm, or the "
+            f"slot ({path}.seat.radius) is twice as wide as the pin"
+        )
+    elif kind == "sleeve" and outer - 0.5 * shrinkage <= bore + ROUNDING:
+        yield (
+            f"{path}.pin_errors.diameter holds {-shrinkage:g} mm: must be greater than {2.0 * (bore - outer):.6g} mm, or the "
+            f"sleeve ({path}.seat.bore_radius) has no wall"
+        )
+
+
+def _slots(wheel: PinWheel) -> Iterator[str]:
+    room, radius = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins), wheel.seat.radius or 0.0
+    # Where the pins overlap themselves, or have no hold in their slots, that is told.
+    if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
+        yield (
+            f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
+        )
+
+
+def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[str]:
+    half, thickness, planes = 0.5 * beam.span, drive.disc.thickness, drive.disc.disc_planes
+    disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
+    reach = abs(planes[disc]) + 0.5 * thickness
+    if half < reach - ROUNDING * max(reach, 1.0):
+        which = "the disc" if len(planes) == 1 else f"disc {disc}"
+        low, high = planes[disc] - 0.5 * thickness, planes[disc] + 0.5 * thickness
+        held = "walls" if isinstance(beam, WheelPinBeam) else "flange and tip"
+        yield (
+            f"{path}.beam.span = {beam.span:g} mm: must be at least {2.0 * reach:.6g} mm, or {which} from {low:.6g} to "
+            f"{high:.6g} mm (disc.planes, disc.thickness) is not between the {held} at ±{half:g} mm"
+        )
+    sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
+    widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)
+    of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"the pin's own ({path}.pin_radius)"
+    if beam.diameter is not None and beam.diameter > widest + ROUNDING:
+        yield f"{path}.beam.diameter = {beam.diameter:g} mm: must be at most {widest:g} mm, {of}"

@@ -1,0 +1,248 @@
+r"""Pins that bend under several discs: each disc finds the pins where the forces of the others have moved them.
+
+A pin is one beam under the forces of all discs (`ltca.laws.beam`). What a disc's own force makes the pin yield lies along the
+common normal, in series with the contact, and is part of its law (`ltca.laws.backed`); what the others' forces make it yield
+moves the pin against that disc, in whatever direction they press:
+
+.. math:: u_{d} = -\sum_{d' \ne d} c_{dd'} F_{d'} e_{d'}, \qquad e = \partial \delta / \partial u .
+
+Loads and displacements are found together at every pose, pin by pin or, where the contacts of a disc feel each other, for
+all at once, by Newton's method; the tangent is that of the whole, e turning with pose and pin included.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import PairSlopes, Response
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates
+from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
+from ltca.laws.beam import PinBeam
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+ITERATIONS = 60
+SETTLED = 1e-14
+"""Displacement of a pin that counts as none, mm: round-off of places at 100 mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SharedPins:
+    """Pins that several discs bend.
+
+    Attributes
+    ----------
+    flexibility : array, shape (pairs, discs, discs) or (positions, pairs, discs, discs)
+        c_dd' of each pin, wheel pins before shaft pins, mm/N; zero for d = d', and for pins that do not bend.
+    """
+
+    flexibility: FloatArray
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> SharedPins | None:
+        """Return the pins that the discs of a drive share; None where one disc is alone or none bends."""
+        found = _flexibility(drive)
+        return None if found is None else cls(flexibility=found)
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive], positions: int) -> SharedPins | None:
+        """Return those of a batch of drives, one for each position, drive by drive."""
+        each = [found for drive in drives if (found := _flexibility(drive)) is not None]
+        return cls(flexibility=np.repeat(np.stack(each), positions, axis=0)) if each else None
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> SharedPins:
+        """Return the pins of some positions of a batch."""
+        return SharedPins(flexibility=self.flexibility[rows]) if self.flexibility.ndim > 3 else self
+
+    def settle(
+        self, respond: Any, coordinates: Coordinates, shifts: ComplexArray
+    ) -> tuple[tuple[Response, ...], ComplexArray, SharedTangent]:
+        """Return the contacts of all discs with the pins where all forces hold them.
+
+        Parameters
+        ----------
+        respond : callable
+            Contacts of all discs for displacements of the pins.
+        coordinates : Coordinates
+            Of the whole.
+        shifts : array of complex, shape (positions, discs, pairs)
+            Displacements to start from, mm.
+
+        Returns
+        -------
+        responses, shifts, tangent
+            Contacts of every disc, displacements, and how all follow the pose.
+
+        Raises
+        ------
+        ConvergenceError
+            When the displacements do not settle.
+        """
+        history: list[float] = []
+        parts = respond(shifts)
+        system = SharedTangent(self.flexibility, parts, coordinates)
+        left = system.left_over(shifts)
+        size = np.max(np.abs(left), axis=(1, 2), initial=0.0)
+        for _ in range(ITERATIONS):
+            history.append(float(np.max(size, initial=0.0)))
+            most = float(np.max(np.abs(shifts), initial=0.0))
+            if history[-1] <= SETTLED + 1e-13 * most:
+                return parts, shifts, system
+            step, fraction = system.step(left), np.ones(size.shape)
+            for _ in range(10):
+                trial = shifts + fraction[:, None, None] * step
+                parts = respond(trial)
+                system = SharedTangent(self.flexibility, parts, coordinates)
+                left = system.left_over(trial)
+                found = np.max(np.abs(left), axis=(1, 2), initial=0.0)
+                worse = (found > size) & (found > SETTLED + 1e-11 * most)
+                if not worse.any():
+                    break
+                fraction = np.where(worse, 0.5 * fraction, fraction)
+            shifts, size = trial, found
+            if len(history) > 6 and history[-1] < 1e-11 * (1.0 + most) and float(np.max(size)) >= 0.5 * history[-1]:
+                return parts, shifts, system  # round-off
+        raise ConvergenceError("the displacements of shared pins do not settle; largest change in mm", history)
+
+
+class SharedTangent:
+    """How loads on shared pins and their displacements follow each other and the pose.
+
+    Parameters
+    ----------
+    flexibility : array
+        Of `SharedPins`.
+    parts : tuple of Response
+        Contacts of each disc, with their slopes.
+    coordinates : Coordinates
+        Of the whole.
+    """
+
+    def __init__(self, flexibility: FloatArray, parts: tuple[Response, ...], coordinates: Coordinates) -> None:
+        self.parts, self.coordinates, self.flexibility = parts, coordinates, flexibility
+        self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
+        gradient = np.stack([_pairs(part, "gradient")[..., DISC_PLACE] for part in parts], axis=1)
+        along = np.stack([_pairs(part, "along")[..., DISC_PLACE] for part in parts], axis=1)
+        self.load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
+        pins = parts[0].pin_load.shape[1]
+        sense = np.ones(self.load.shape[-1])
+        sense[:pins] = -1.0
+        bending = np.stack([_pairs(part, "bending") for part in parts], axis=1)
+        # A pin moves against a disc as the disc moves the other way against it; shape (positions, pairs, discs, 2).
+        self.normal = -gradient.swapaxes(1, 2)
+        self.slip = -along.swapaxes(1, 2)
+        self.bend = (self.load * sense * bending).swapaxes(1, 2)
+        self.on_flank = (self.load * (sense < 0.0)).swapaxes(1, 2)
+        positions, pairs, discs = self.bend.shape
+        spread = np.zeros((positions, pairs, discs, 2, discs, 2))
+        for disc in range(discs):
+            slip = self.slip[:, :, disc]
+            spread[:, :, disc, :, disc, :] = self.bend[:, :, disc, None, None] * slip[..., :, None] * slip[..., None, :]
+        held = np.zeros((*np.broadcast_shapes(flexibility.shape[:-3], (positions,)), pairs, discs, 2, discs, 2))
+        for axis in (0, 1):
+            held[..., axis, :, axis] = flexibility
+        shape = (positions, pairs, 2 * discs, 2 * discs)
+        by_force: FloatArray = held.reshape(shape)
+        # What a change of forces, and one of their directions, moves.
+        self.yielding = np.eye(2 * discs) + np.matmul(by_force, spread.reshape(shape))
+        self.held = np.linalg.solve(self.yielding, by_force)
+        directions = np.zeros((positions, pairs, discs, discs, 2))
+        for disc in range(discs):
+            directions[:, :, disc, disc] = self.normal[:, :, disc]
+        self.directions: FloatArray = directions.reshape(positions, pairs, discs, 2 * discs)
+        self.along_normals = np.matmul(self.directions, np.matmul(self.held, self.directions.swapaxes(2, 3)))
+
+    def left_over(self, shifts: ComplexArray) -> ComplexArray:
+        """Return displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
+        force = (self.load.swapaxes(1, 2)[..., None] * self.normal).view(complex)[..., 0]
+        moved = np.matmul(self.flexibility.astype(complex), force[..., None])[..., 0]
+        return np.asarray(shifts + moved.swapaxes(1, 2))
+
+    def step(self, left: ComplexArray) -> ComplexArray:
+        """Return Newton's step of the displacements."""
+        flat = np.stack((left.real, left.imag), axis=-1).swapaxes(1, 2)
+        positions, pairs, discs, _ = flat.shape
+        alone = np.linalg.solve(self.yielding, flat.reshape(positions, pairs, 2 * discs, 1))
+        onto = np.matmul(self.directions, alone)[..., 0]
+        change = self._loads(-self._times_slope(onto[..., None]))
+        moved = -alone[..., 0] - np.matmul(self.held, np.matmul(self.directions.swapaxes(2, 3), change))[..., 0]
+        moved = moved.reshape(positions, pairs, discs, 2)
+        return np.asarray((moved[..., 0] + 1j * moved[..., 1]).swapaxes(1, 2))
+
+    def correction(self) -> FloatArray:
+        """Return what shared pins add to the tangent of discs whose pins stand still."""
+        positions, pairs, discs = self.bend.shape
+        size = self.coordinates.size
+        loads, turned = np.zeros((positions, pairs, discs, size)), np.zeros((positions, pairs, discs, 2, size))
+        for disc, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
+            own = self.coordinates.columns(disc)
+            loads[:, :, disc, own] = slopes.by_pose
+            # F ∂²δ/∂u∂q: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ as well.
+            slip = self.slip[:, :, disc, :, None]
+            block = self.bend[:, :, disc, None, None] * slip * _pairs(part, "along")[:, :, None, :]
+            block[..., DISC_ROTATION] -= self.on_flank[:, :, disc, None] * slip[..., 0]
+            turned[:, :, disc][..., own] = block
+        directions: FloatArray = turned.reshape(positions, pairs, 2 * discs, size)
+        alone = np.matmul(self.held, directions)
+        by_pose = self._loads(loads - self._times_slope(np.matmul(self.directions, alone)))
+        moved = -alone - np.matmul(self.held, np.matmul(self.directions.swapaxes(2, 3), by_pose))
+        onto = np.matmul(self.directions, moved)
+        found = np.einsum("bpdi,bpdj->bij", loads, onto) + np.einsum("bpui,bpuj->bij", directions, moved)
+        return np.asarray(0.5 * (found + found.swapaxes(1, 2)))
+
+    def _times_slope(self, values: FloatArray) -> FloatArray:
+        """∂F/∂δ of each disc times values, shape (positions, pairs, discs, …)."""
+        found = np.empty_like(values)
+        for disc, slopes in enumerate(self.slopes):
+            own = values[:, :, disc]
+            if slopes.by_approach.ndim == 2:
+                found[:, :, disc] = slopes.by_approach[..., None] * own
+            else:
+                found[:, :, disc] = np.matmul(slopes.by_approach, own)
+        return found
+
+    def _loads(self, right: FloatArray) -> FloatArray:
+        """Loads that change by `right` with the pins held, shape (positions, pairs, discs, …), as the pins yield."""
+        positions, pairs, discs, columns = right.shape
+        if self.slopes[0].by_approach.ndim == 2:
+            slope = np.stack([slopes.by_approach for slopes in self.slopes], axis=2)
+            matrix = np.eye(discs) + slope[..., None] * self.along_normals
+            return np.asarray(np.linalg.solve(matrix, right))
+        # Shape (positions, discs, pairs, discs, pairs): the slope of disc d, then what its pins share with disc d'.
+        matrix = np.empty((positions, discs, pairs, discs, pairs))
+        for disc, slopes in enumerate(self.slopes):
+            shared = self.along_normals[:, :, disc].swapaxes(1, 2)  # (positions, discs, pairs)
+            matrix[:, disc] = (slopes.by_approach[:, :, None, :] * shared[:, None]).reshape(
+                positions, pairs, discs, pairs
+            )
+        flat = matrix.reshape(positions, discs * pairs, discs * pairs) + np.eye(discs * pairs)
+        found = np.linalg.solve(flat, right.swapaxes(1, 2).reshape(positions, discs * pairs, columns))
+        return np.asarray(found.reshape(positions, discs, pairs, columns).swapaxes(1, 2))
+
+
+def _pairs(part: Response, name: str) -> FloatArray:
+    """What wheel pins and shaft pins of one disc have, side by side."""
+    return np.concatenate((getattr(part.flank, name), getattr(part.holes, name)), axis=1)
+
+
+def _flexibility(drive: Drive) -> FloatArray | None:
+    discs, thickness = drive.disc.number_of_discs, drive.disc.thickness
+    wheel, shaft = wheel_pin_beam(drive), shaft_pin_beam(drive)
+    if discs == 1 or (wheel is None and shaft is None):
+        return None
+
+    def of(beam: PinBeam | None, pins: int) -> FloatArray:
+        if beam is None:
+            return np.zeros((pins, discs, discs))
+        found = beam.flexibility(from_start(beam, drive).tolist(), thickness)
+        return np.broadcast_to(found - np.diag(np.diag(found)), (pins, discs, discs))
+
+    return np.concatenate((of(wheel, drive.pin_wheel.number_of_pins), of(shaft, drive.number_of_holes)))

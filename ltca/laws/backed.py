@@ -1,0 +1,298 @@
+r"""A contact backed by what carries its part: the seat of a loose pin or sleeve, and the bending of the pin.
+
+Contact, seat and beam carry the same load F in series,
+
+.. math:: \delta = \epsilon + s(F) + c F, \qquad F = f(\epsilon),
+
+with the contact's own law f, the approach s of the seat and the flexibility c of the pin. A pin that yields along the common
+normal leaves the place of the contact where it is, so this is exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ltca.drive.parts import Drive
+from ltca.errors import ConvergenceError
+from ltca.laws.beam import End, PinBeam
+from ltca.laws.conforming import ConformingLaw
+from ltca.laws.contact_law import ContactLaw, EnergyLaw
+from ltca.laws.series import SpringLaw
+
+FloatArray = NDArray[np.float64]
+
+SLOT_DATUM = 3.0
+"""Radius, in radii of the slot, of the circle in the wheel against which a slot's yielding is measured."""
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+class SeatLaw(Protocol):
+    """Law of a round part in a bore that is a little wider."""
+
+    def approach_and_compliance(self, load: FloatArray, play: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the approach at a load and its derivative, mm and mm/N, for bores wider by `play` in radius, mm."""
+        ...
+
+    def half_angle(self, load: FloatArray, play: FloatArray) -> FloatArray:
+        """Return half the angle of the arc under pressure, rad."""
+        ...
+
+    def largest_pressure(self, load: FloatArray, play: FloatArray) -> FloatArray:
+        """Return the largest pressure, MPa."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BackedLaw:
+    """Contacts of one kind with what is behind each.
+
+    Attributes
+    ----------
+    contact : EnergyLaw
+        Of the contact itself.
+    seat : SeatLaw or None
+        What the seats yield.
+    play : array
+        Play of each seat, shape (pairs,) or (positions, pairs), mm.
+    flexibility : float or array, shape (positions, 1)
+        c, mm/N.
+    """
+
+    contact: EnergyLaw
+    seat: SeatLaw | None
+    play: FloatArray
+    flexibility: float | FloatArray = 0.0
+
+    def behind(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return s + c F and its derivative, mm and mm/N."""
+        given, slope = self.flexibility * load, np.zeros_like(load) + self.flexibility
+        if self.seat is not None:
+            approach, compliance = self.seat.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))
+            given, slope = given + approach, slope + compliance
+        return given, slope
+
+    def contact_approach(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return the approach ε of the contacts themselves; that of open ones is the whole, mm.
+
+        Raises
+        ------
+        ConvergenceError
+            When Newton's method does not settle.
+        """
+        return self._solve(np.asarray(approach, dtype=float), effective_radius)[0]
+
+    def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Return the load at an approach and its derivative, N and N/mm; zero where open."""
+        _, load, stiffness, slope = self._solve(np.asarray(approach, dtype=float), effective_radius)
+        return load, stiffness / (1.0 + stiffness * slope)
+
+    def _solve(
+        self, delta: FloatArray, effective_radius: ArrayLike
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Contact approach, load, stiffness of the contact, and slope of what is behind."""
+        closed = delta > 0.0
+        near = np.where(closed, 0.5 * delta, delta)
+        history: list[float] = []
+        # The approach lies between these two, and every evaluation moves one of them.
+        low, high = np.zeros_like(delta), np.where(closed, delta, 0.0)
+        for _ in range(80):
+            load, stiffness = self.contact.load_and_stiffness(near, effective_radius)
+            given, slope = self.behind(load)
+            left = np.where(closed, near + given - delta, 0.0)
+            if np.all(np.abs(left) <= 1e-15 + 4e-16 * np.abs(delta)):
+                break
+            high, low = np.where(left > 0.0, near, high), np.where(left < 0.0, near, low)
+            following = near - left / (1.0 + stiffness * slope)
+            outside = (following <= low) | (following >= high)
+            following = np.where(closed & outside, 0.5 * (low + high), following)
+            history.append(float(np.max(np.abs(following - near) / np.maximum(np.abs(delta), 1e-300), initial=0.0)))
+            near = np.where(closed, following, near)
+            if history[-1] < 1e-13:
+                load, stiffness = self.contact.load_and_stiffness(near, effective_radius)
+                _, slope = self.behind(load)
+                break
+        else:
+            raise ConvergenceError("contact and seat in series do not settle; relative change", history)
+        return near, load, stiffness, slope
+
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return ∫ F dδ of contact, seat and beam, N·mm."""
+        near, load, _, _ = self._solve(np.asarray(approach, dtype=float), effective_radius)
+        held = 0.5 * self.flexibility * load**2
+        if self.seat is not None:
+            # ∫ F ds = F s − ∫ s dF; s behaves as F ln F at no load, which F = F₁ t³ smooths.
+            given, _ = self.seat.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))
+            held = held + load * given
+            for point, weight in zip(0.5 * (1.0 + GAUSS_POINTS), 0.5 * GAUSS_WEIGHTS, strict=True):
+                part, _ = self.seat.approach_and_compliance(load * point**3, np.broadcast_to(self.play, load.shape))
+                held = held - weight * 3.0 * point**2 * load * part
+        return np.asarray(self.contact.energy(near, effective_radius) + held)
+
+    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return the largest pressure of the contacts at mid-width, MPa."""
+        return self.known_contact.mid_pressure(self.contact_approach(approach, effective_radius), effective_radius)
+
+    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return the contact half-width at mid-width, mm."""
+        return self.known_contact.half_width(self.contact_approach(approach, effective_radius), effective_radius)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> BackedLaw:
+        """Return the law of some positions of a batch."""
+        held = self.flexibility
+        return replace(
+            self,
+            contact=law_at(self.contact, rows),
+            play=self.play[rows],
+            flexibility=held[rows] if isinstance(held, np.ndarray) else held,
+        )
+
+    @property
+    def known_contact(self) -> ContactLaw:
+        """The law of the contact itself, that knows its pressures; TypeError where it knows loads alone."""
+        if not isinstance(self.contact, ContactLaw):
+            raise TypeError("the law of the contacts knows loads alone, no pressures")
+        return self.contact
+
+
+def law_at(law: EnergyLaw, rows: NDArray[np.intp] | NDArray[np.bool_]) -> EnergyLaw:
+    """Return the law of some positions of a batch: what each of its drives has of its own at these."""
+    if isinstance(law, BackedLaw):
+        return law.take(rows)
+    if isinstance(law, SpringLaw) and isinstance(law.stiffness, np.ndarray):
+        return SpringLaw(stiffness=law.stiffness[rows])
+    return law
+
+
+def of_pairs(law: EnergyLaw, chosen: NDArray[np.intp]) -> EnergyLaw:
+    """Return the law of some pairs of one drive, shape (positions, chosen)."""
+    return replace(law, play=law.play[chosen]) if isinstance(law, BackedLaw) else law
+
+
+def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray) -> ContactLaw:
+    """Return the law of the wheel pins of a drive of one disc with what is behind them.
+
+    Parameters
+    ----------
+    drive : Drive
+        Of one disc, at its own plane (`ltca.drive.single_discs`).
+    contact : ContactLaw
+        Of pins, or their sleeves, and flank.
+    play : array, shape (z_P,) or (positions, z_P)
+        Of each in its seat, mm.
+
+    Returns
+    -------
+    ContactLaw
+        That of the contact itself for fixed pins that do not bend.
+    """
+    beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
+    if beam is None and seat is None:
+        return contact
+    return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam))
+
+
+def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray) -> EnergyLaw:
+    """Return the law of shaft pins and holes with the sleeves behind it; arguments as for `back_wheel_pins`."""
+    seat = shaft_pin_seat(drive)
+    return contact if seat is None else BackedLaw(contact=contact, seat=seat, play=play)
+
+
+def shaft_pin_spring(drive: Drive) -> float:
+    """Return what a shaft pin yields behind one disc by that disc alone, mm/N: as a spring, or as a beam at its plane."""
+    beam = shaft_pin_beam(drive)
+    return 1.0 / drive.hole_stiffness if beam is None else own_flexibility(drive, beam)
+
+
+def wheel_pin_beam(drive: Drive) -> PinBeam | None:
+    """Return a wheel pin as a beam, its middle at the zero of the planes; None where it does not bend."""
+    wheel = drive.pin_wheel
+    if wheel.beam is None:
+        return None
+    material = drive.materials.wheel_pin
+    return PinBeam(
+        span=wheel.beam.span,
+        ends=(wheel.beam.ends, wheel.beam.ends),
+        diameter=wheel.beam_diameter,
+        youngs_modulus=material.youngs_modulus,
+        poisson_ratio=material.poisson_ratio,
+    )
+
+
+def shaft_pin_beam(drive: Drive) -> PinBeam | None:
+    """Return a shaft pin as a beam, its middle at the zero of the planes; None where it is a spring or there is none."""
+    shaft = drive.pin_shaft
+    if shaft is None or shaft.beam is None:
+        return None
+    tips: dict[str, End] = {"free": "free", "tied-clamped": "clamped", "tied-pinned": "supported"}
+    material = drive.materials.shaft_pin
+    return PinBeam(
+        span=shaft.beam.span,
+        ends=("clamped", tips[shaft.beam.tip]),
+        diameter=shaft.beam_diameter,
+        youngs_modulus=material.youngs_modulus,
+        poisson_ratio=material.poisson_ratio,
+    )
+
+
+def tip_share(drive: Drive) -> float:
+    """Return how far a shaft pin moves at the disc of a drive of one disc where a ring moves its tip by one; 0 without ring."""
+    beam = shaft_pin_beam(drive)
+    if beam is None or beam.ends[1] == "free":
+        return 0.0
+    return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness)[0])
+
+
+def from_start(beam: PinBeam, drive: Drive) -> FloatArray:
+    """Return the planes of the discs from the start of a beam whose middle is at their zero, mm."""
+    return np.asarray(drive.disc.disc_planes) + 0.5 * beam.span
+
+
+def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
+    """Return what the pin of a drive of one disc yields by that disc alone, mm/N; 0 for no beam."""
+    if beam is None:
+        return 0.0
+    return float(beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)[0, 0])
+
+
+def shaft_pin_seat(drive: Drive) -> ConformingLaw | None:
+    """Return the law of the sleeves on the shaft pins of a drive of one disc; None without sleeves."""
+    shaft, parts = drive.pin_shaft, drive.materials
+    if shaft is None or shaft.seat.kind == "fixed":
+        return None
+    return ConformingLaw.of_bodies(
+        pin=parts.shaft_pin,
+        bore=parts.sleeve,
+        pin_radius=shaft.seat.pin_radius or 0.0,
+        bore_radius=shaft.seat.bore_radius or 0.0,
+        datum_radius=shaft.pin_radius,
+        length=drive.disc.thickness,
+    )
+
+
+def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
+    """Return the law of the wheel pins in their slots, or of the sleeves on them, of a drive of one disc; None for fixed pins."""
+    wheel, parts, length = drive.pin_wheel, drive.materials, drive.disc.thickness
+    if wheel.seat.kind == "slot":
+        radius = wheel.seat.radius or 0.0
+        return ConformingLaw.of_bodies(
+            pin=parts.wheel_pin,
+            bore=parts.wheel_seat,
+            pin_radius=wheel.pin_radius,
+            bore_radius=radius,
+            datum_radius=SLOT_DATUM * radius,
+            length=length,
+        )
+    if wheel.seat.kind == "sleeve":
+        return ConformingLaw.of_bodies(
+            pin=parts.wheel_pin,
+            bore=parts.sleeve,
+            pin_radius=wheel.seat.pin_radius or 0.0,
+            bore_radius=wheel.seat.bore_radius or 0.0,
+            datum_radius=wheel.pin_radius,
+            length=length,
+        )
+    return None

@@ -1,0 +1,349 @@
+"""Loose pins, sleeves and pins that bend: brute force with the free parts' own unknowns, closed forms, work, invariances."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.loaded_analysis import analyse
+from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
+from ltca.drive.single_discs import single_discs
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import disc_responses
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.flank import FlankProfile
+from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam, wheel_pin_seat
+from ltca.laws.beam import PinBeam
+from ltca.laws.line_contact import LineContactLaw
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
+
+ANGLES = np.array([0.31, 1.7, 4.4])
+LOAD = 1e-4
+"""Loads of equal drives solved from different sides, N: the balance closes to 1e-9 of some 10 kN, and stiffness adds a digit."""
+SLOT = WheelPinSeat(kind="slot", radius=2.504)
+SLEEVE = WheelPinSeat(kind="sleeve", pin_radius=1.5, bore_radius=1.51)
+WALLS = WheelPinBeam(span=30.0, ends="supported")
+
+
+@pytest.fixture(scope="module")
+def joint():
+    return parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
+
+
+def tips(kind):
+    """Shaft pins under sleeves as beams."""
+    seat = ShaftPinSeat(kind="sleeve", pin_radius=4.0, bore_radius=4.02)
+    return {"stiffness": None, "seat": seat, "beam": ShaftPinBeam(span=30.0, tip=kind)}
+
+
+def kind(joint, name):
+    """The made-up robot joint, two discs, with pins in different makes."""
+
+    def wheel(**words):
+        return replace(joint, pin_wheel=replace(joint.pin_wheel, **words))
+
+    if name == "slots":
+        return wheel(seat=SLOT)
+    if name == "sleeves":
+        return wheel(seat=SLEEVE)
+    if name == "bent wheel pins":
+        return wheel(beam=WALLS)
+    if name == "three discs on bent sleeved pins":
+        three = wheel(seat=SLEEVE, beam=replace(WALLS, span=40.0, ends="clamped", diameter=4.0))
+        return replace(three, disc=replace(joint.disc, number_of_discs=3, phases=(), planes=()))
+    if name in ("free", "tied-clamped", "tied-pinned"):
+        return replace(joint, pin_shaft=replace(joint.pin_shaft, **tips(name)))
+    assert name == "everything"
+    support = CrankSupport(diameter=20.0, positions=(-22.0, 22.0), stiffness=(3e5, 4e5))
+    drive = wheel(seat=SLOT, beam=WALLS, support_stiffness=5e5)
+    shaft = replace(joint.pin_shaft, **tips("tied-clamped"))
+    return replace(drive, pin_shaft=shaft, crank=replace(joint.crank, support=support))
+
+
+BENT = ["bent wheel pins", "three discs on bent sleeved pins", "free", "tied-clamped", "tied-pinned", "everything"]
+KINDS = ["slots", "sleeves", *BENT]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_virtual_work_at_every_position(joint, name, unbalanced_work):
+    np.testing.assert_allclose(unbalanced_work(kind(joint, name), ANGLES + 0.05), 0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_tangent_is_the_slope_of_the_force(joint, name, tangent_and_slope):
+    scaled, slope = tangent_and_slope(kind(joint, name), ANGLES[:1])
+    # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
+    np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=4e-6 * np.abs(scaled).max())
+
+
+@pytest.mark.parametrize("name", ["slots", "sleeves"])
+def test_a_free_pin_by_its_own_two_unknowns(joint, name):
+    """Pin (or sleeve) between flank and seat, both contacts and its place found by brute force: load and approach of the pair."""
+    drive = single_discs(kind(joint, name))[0]
+    model = HalfSpace().prepare(drive).model
+    found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
+    pose, part = found.pose[0], found.response
+    profile, wheel, place = FlankProfile.of_drive(drive), drive.pin_wheel, model.geometry.placement
+    seat, contact = wheel_pin_seat(drive), LineContactLaw(drive.disc.thickness, 206e3 / (2.0 * (1.0 - 0.09)))
+    play = np.array([wheel.seat_play])
+    centre = complex(place.race_centre(ANGLES[:1])[0]) + pose[X] + 1j * pose[Y]
+    turn = np.exp(1j * pose[DISC_ROTATION])
+    loaded = np.flatnonzero(part.pin_load[0] > 0.05 * part.pin_load[0].max())
+    assert loaded.size > 5
+    for pin in loaded[:: loaded.size // 4]:
+        wheel_turn = place.wheel_rotation(ANGLES[:1])[0] + pose[WHEEL_ANGLE]
+        home = place.wheel_pin_centres[pin] * np.exp(1j * wheel_turn)
+
+        def forces(moved, home=home, pin=pin):
+            """Sum of both forces on the free part, N, at its displacement from the seat's centre, µm."""
+            at = home + 1e-3 * complex(*moved)
+            in_disc = (at - centre) / turn
+            theta = profile.nearest_parameter(np.array([in_disc]), part.flank.parameter[0, [pin]])
+            gap = profile.distance(np.array([in_disc]), theta)[0] - wheel.pin_radius
+            radius = profile.effective_radius(theta, np.array([wheel.pin_radius]))[0]
+            flank = float(contact.load_and_stiffness(-gap, radius)[0]) * profile.normal(theta)[0] * turn
+            pressed = abs(at - home) - play[0]
+            held = load_of(seat, pressed, play)
+            total = flank - held * (at - home) / abs(at - home)
+            return [total.real, total.imag]
+
+        outward = part.flank.gradient[0, pin, X] + 1j * part.flank.gradient[0, pin, Y]
+        guess = 1e3 * (play[0] + 1e-3) * outward
+        solved = root(forces, [guess.real, guess.imag], tol=1e-13)
+        assert np.abs(forces(solved.x)).max() < 1e-7 * part.pin_load[0, pin]
+        at = 1e-3 * complex(*solved.x)
+        held = load_of(seat, abs(at) - play[0], play)
+        assert held == pytest.approx(part.pin_load[0, pin], rel=1e-6)
+        # Collinear: the free part lies from the seat's centre along the normal that the closed form took.
+        assert abs(at - abs(at) * outward) < 1e-9
+
+
+def load_of(seat, approach, play):
+    """Load of a seat at an approach by bisection and Newton's method, N."""
+    if approach <= 0.0:
+        return 0.0
+    low, high = 0.0, 1e6
+    load = 100.0
+    for _ in range(200):
+        given, slope = (float(value[0]) for value in seat.approach_and_compliance(np.array([load]), play))
+        low, high = (load, high) if given < approach else (low, load)
+        step = load - (given - approach) / slope
+        following = step if low < step < high else 0.5 * (low + high)
+        if abs(following - load) < 1e-14 * load:
+            break
+        load = following
+    return load
+
+
+def unmodified(drive):
+    """Without offsets and clearance: the loaded arc is half the wheel and more, discs share pins."""
+    return with_fields(
+        drive,
+        {
+            "disc.equidistant_offset": 0.0,
+            "disc.shifting_offset": 0.0,
+            "clearance.bearing": 0.0,
+            "clearance.pin_hole": 0.0,
+        },
+    )
+
+
+@pytest.mark.parametrize("name", ["bent wheel pins", "three discs on bent sleeved pins", "free", "everything"])
+def test_pins_that_discs_share_by_a_dense_reference(joint, name):
+    """Every loaded pin alone, all its discs' forces and its place at each disc as unknowns, exact gaps of the moved pin."""
+    drive = unmodified(kind(joint, name))
+    model = HalfSpace().prepare(drive).model
+    found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
+    parts, singles = disc_responses(found.response), single_discs(drive)
+    on_wheel = drive.pin_wheel.beam is not None
+    beam = wheel_pin_beam(drive) if on_wheel else shaft_pin_beam(drive)
+    flexibility = beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)
+    loads = np.stack([(part.pin_load if on_wheel else part.hole_load)[0] for part in parts])
+    together = np.count_nonzero(loads > 0.0, axis=0)
+    assert together.max() > 1 or len(parts) == 2  # two unmodified discs half a turn apart share every pin by turns
+    pins = np.flatnonzero(together == together.max())[:3]
+    for pin in pins:
+        forces = []
+        for number, (part, single) in enumerate(zip(parts, singles, strict=True)):
+            forces.append(force_of(model.discs[number], single, part, found, number, pin, on_wheel, model.coordinates))
+
+        def left(moved, forces=forces):
+            places = moved[::2] + 1j * moved[1::2]
+            pushed = np.array([force(at) for force, at in zip(forces, places, strict=True)])
+            rest = places - flexibility @ pushed
+            return np.ravel(np.column_stack((rest.real, rest.imag)))
+
+        start = np.zeros(2 * len(parts))
+        for _ in range(3):
+            solved = root(left, start, tol=1e-15, options={"xtol": 1e-13})
+            start = solved.x
+        assert np.abs(left(solved.x)).max() < 1e-10
+        places = solved.x[::2] + 1j * solved.x[1::2]
+        expected = [abs(force(at)) for force, at in zip(forces, places, strict=True)]
+        # 1e-10 mm of a pin's place by 1e6 N/mm
+        np.testing.assert_allclose(loads[:, pin], expected, rtol=1e-6, atol=1e-3)
+
+
+def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
+    """The function that tells the force of one disc on a pin displaced by something, from exact gaps and the contact alone."""
+    place, pose = model.geometry.placement, found.pose[0, coordinates.columns(number)]
+    own = model.geometry.coordinates
+    centre = complex(place.race_centre(ANGLES[:1])[0]) + pose[X] + 1j * pose[Y]
+    turn = np.exp(1j * pose[DISC_ROTATION])
+    if on_wheel:
+        profile, law = model.geometry.profile, model.pin_law
+        stiff = replace(law, flexibility=0.0)  # contact and seat, without the beam
+        rotation = place.wheel_rotation(ANGLES[:1])[0] + pose[WHEEL_ANGLE]
+        moved = complex(*pose[own.wheel_place]) if own.wheel else 0.0
+        home = place.wheel_axis + moved + place.wheel_pin_centres[pin] * np.exp(1j * rotation)
+
+        def on_pin(shift):
+            at = np.array([(home + shift - centre) / turn])
+            theta = profile.nearest_parameter(at, part.flank.parameter[0, [pin]])
+            gap = profile.distance(at, theta) - (place.wheel_pin_radii - place.wheel_pin_plays)[pin]
+            one = replace(stiff, play=stiff.play[[pin]])
+            radius = profile.effective_radius(theta, place.wheel_pin_radii[[pin]])
+            return complex(one.load_and_stiffness(-gap, radius)[0][0] * profile.normal(theta)[0] * turn)
+
+        return on_pin
+    law = model.hole_law
+    home = place.shaft_pin_centres[pin] + 0j
+    hole = centre + place.hole_centres[pin] * turn
+
+    def on_shaft_pin(shift):
+        away = home + shift - hole
+        gap = place.hole_radii[pin] - place.shaft_pin_radii[pin] + place.shaft_pin_plays[pin] - abs(away)
+        # The sleeve alone is between hole and pin: its law the other way round, the spring of the own beam taken out.
+        load = load_of(law.seat, -gap, law.play[[pin]])
+        return complex(-load * away / abs(away))
+
+    return on_shaft_pin
+
+
+def test_kinds_typed_out_are_those_left_out(joint):
+    typed = with_fields(joint, {"pin_wheel.seat.kind": "fixed", "pin_shaft.seat.kind": "fixed"})
+    assert typed.fingerprint() == joint.fingerprint()
+    np.testing.assert_array_equal(analyse(typed, ANGLES).full.pose, analyse(joint, ANGLES).full.pose)
+
+
+@pytest.mark.parametrize("name", ["three discs on bent sleeved pins", "everything"])
+def test_reverse_is_the_mirror_image(joint, name):
+    drive = kind(joint, name)
+    reverse = with_fields(drive, {"load.direction": "cw", "disc.phases": tuple(-p for p in drive.disc.disc_phases)})
+    plain, mirrored = analyse(drive, -ANGLES), analyse(reverse, ANGLES)
+    np.testing.assert_allclose(
+        plain.full.pose[:, WHEEL_ANGLE], -mirrored.full.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-11
+    )
+    numbers = -np.arange(drive.pin_wheel.number_of_pins) % drive.pin_wheel.number_of_pins
+    for first, second in zip(plain.discs, mirrored.discs, strict=True):
+        loads = first.full.response.pin_load, second.full.response.pin_load[:, numbers]
+        np.testing.assert_allclose(*loads, rtol=0.0, atol=LOAD)
+
+
+@pytest.mark.parametrize("name", ["bent wheel pins", "tied-pinned"])
+def test_turning_the_whole_drive_by_a_hole_pitch(joint, name):
+    """As for pins that stand still (`test_several_discs`): the same drive under other numbers."""
+    turn = 2.0 * np.pi / 8.0
+    drive = kind(joint, name)
+    plain = analyse(drive, ANGLES)
+    turned = analyse(with_fields(drive, {"disc.phases": tuple(p + turn for p in drive.disc.disc_phases)}), ANGLES)
+    np.testing.assert_allclose(turned.full.pose[:, WHEEL_ANGLE], plain.full.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-11)
+    for before, after in zip(plain.discs, turned.discs, strict=True):
+        first, second = before.full.response, after.full.response
+        np.testing.assert_allclose(np.roll(first.pin_load, 5, axis=1), second.pin_load, rtol=0.0, atol=LOAD)
+        np.testing.assert_allclose(np.roll(first.hole_load, 1, axis=1), second.hole_load, rtol=0.0, atol=LOAD)
+
+
+def test_planes_matter_where_pins_bend_and_nowhere_else(joint):
+    apart = {"disc.planes": (-8.0, 8.0)}
+    bent = kind(joint, "bent wheel pins")
+    moved = analyse(with_fields(bent, apart), ANGLES).full.pose - analyse(bent, ANGLES).full.pose
+    assert np.all(np.abs(moved[:, WHEEL_ANGLE]) > 1e-6)
+    np.testing.assert_array_equal(
+        analyse(with_fields(joint, apart), ANGLES).full.pose, analyse(joint, ANGLES).full.pose
+    )
+
+
+def test_deflection_of_the_handbook():
+    """Case F: a supported pin, load even over half the span, deflection at l/4 = 31 F l³/(48·64 E J): 14.05 µm at 278.5 N."""
+    pin = PinBeam(span=16.0, ends=("supported", "supported"), diameter=3.0, youngs_modulus=206e3)
+    assert 278.5e3 * pin.deflection(4.0, 4.0, 8.0) == pytest.approx(14.05, abs=0.005)
+    rigidity = 206e3 * np.pi * 3.0**4 / 64.0
+    assert pin.deflection(4.0, 4.0, 8.0) == pytest.approx(31.0 * 16.0**3 / (48.0 * 64.0 * rigidity), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("tip", "one_disc", "two_discs"),
+    [("free", 74.468085, None), ("supported", 55.075355, 139.221801), ("clamped", 40.336879, 83.789835)],
+)
+def test_bending_moments_of_tied_tips(tip, one_disc, two_discs):
+    """Case H: six pins in the flange, tips in a floating ring; largest moment at the flange for 1 N·m on each disc.
+
+    The discs push evenly by the lever, each on its half of the pins. Ring and reactions are ours (`tip_shape`,
+    `tip_stiffness`); the couple of a clamped tip, F a² (H − a)/H² less 6 E I v/H² of its sway, is Bernoulli's.
+    """
+    width, gap, pins = 6.35, 0.5, np.pi / 3.0 * np.arange(6)
+    for discs, radius, expected in ((1, 32.9, one_disc), (2, 32.3, two_discs)):
+        if expected is None:
+            continue
+        span = discs * (width + gap) + gap
+        planes = gap + 0.5 * width + (width + gap) * np.arange(discs)
+        beam = PinBeam(span=span, ends=("clamped", tip), diameter=4.0, youngs_modulus=2e5)
+        sense = np.array([1.0, -1.0])[:discs, None]
+        loads = sense * np.maximum(0.0, sense * np.cos(pins)) * 1j * 1000.0 / (1.5 * radius)
+        moment = planes @ loads
+        if tip != "free":
+            tips = np.stack([np.ones(6), np.full(6, 1j), 1j * radius * np.exp(1j * pins)], axis=-1)
+            onto = beam.tip_shape(planes.tolist(), 1e-4) @ loads
+            ring = beam.tip_stiffness * (tips.conj().T @ tips).real
+            sway = tips @ np.linalg.solve(ring, (tips.conj().T @ onto).real)
+            moment = moment - span * (onto - beam.tip_stiffness * sway)
+        if tip == "clamped":
+            rigidity = 2e5 * np.pi * 4.0**4 / 64.0
+            moment = moment + planes**2 * (span - planes) / span**2 @ loads - 6.0 * rigidity * sway / span**2
+        # printed to 1e-6
+        assert np.abs(moment).max() == pytest.approx(expected, abs=2e-6)
+
+
+def test_pin_as_a_beam_of_small_elements():
+    """Deflections of a stubby pin under loads along whole discs against Timoshenko elements that lock nowhere: 1e-3."""
+    span, diameter, modulus, ratio, count = 16.0, 5.0, 206e3, 0.3, 320
+    rigidity = modulus * np.pi * diameter**4 / 64.0
+    factor = 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio)
+    shear = factor * modulus / (2.0 * (1.0 + ratio)) * np.pi * diameter**2 / 4.0
+    step = span / count
+    slip = 12.0 * rigidity / (shear * step**2)
+    element = np.array([
+        [12.0, 6.0 * step, -12.0, 6.0 * step],
+        [6.0 * step, (4.0 + slip) * step**2, -6.0 * step, (2.0 - slip) * step**2],
+        [-12.0, -6.0 * step, 12.0, -6.0 * step],
+        [6.0 * step, (2.0 - slip) * step**2, -6.0 * step, (4.0 + slip) * step**2],
+    ]) * rigidity / (step**3 * (1.0 + slip))  # fmt: skip
+    whole = np.zeros((2 * count + 2, 2 * count + 2))
+    for number in range(count):
+        own = slice(2 * number, 2 * number + 4)
+        whole[own, own] += element
+    nodes = np.linspace(0.0, span, count + 1)
+    planes, width = [4.0, 11.0], 6.0
+    spread = np.array(
+        [(np.abs(nodes - z) < 0.5 * width) + 0.5 * (np.abs(np.abs(nodes - z) - 0.5 * width) < 1e-9) for z in planes]
+    )
+    spread = spread / spread.sum(axis=1, keepdims=True)
+    for ends, held in (
+        (("supported", "supported"), [0, 2 * count]),
+        (("clamped", "clamped"), [0, 1, 2 * count, 2 * count + 1]),
+        (("clamped", "free"), [0, 1]),
+        (("clamped", "supported"), [0, 1, 2 * count]),
+    ):
+        free = np.setdiff1d(np.arange(2 * count + 2), held)
+        onto = np.zeros((2 * count + 2, 2))
+        onto[::2] = spread.T
+        moved = np.zeros_like(onto)
+        moved[free] = np.linalg.solve(whole[np.ix_(free, free)], onto[free])
+        beam = PinBeam(span=span, ends=ends, diameter=diameter, youngs_modulus=modulus, poisson_ratio=ratio)
+        np.testing.assert_allclose(beam.flexibility(planes, width), spread @ moved[::2], rtol=1e-3)
