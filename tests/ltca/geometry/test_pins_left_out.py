@@ -40,13 +40,14 @@ def test_no_pin_that_touches_is_left_out(drives, size):
         motion = geometry.flank(angle, poses(drive, random, 40, size))
         for _ in range(3):  # what was left out stays known from the pose before
             pose = poses(drive, random, 40, size)
-            everything = geometry.flank(angle, pose)
-            motion = geometry.flank(angle, pose, motion.parameter, KnownPins.of(motion))
+            bent = poses(drive, random, 40, size)[:, :2] @ np.array([[1.0], [1j]]) * np.ones(motion.approach.shape[1])
+            everything = geometry.flank(angle, pose, shifts=bent)
+            motion = geometry.flank(angle, pose, motion.parameter, bent, KnownPins.of(motion))
             left_out.append(motion.left_out)
             assert np.all(everything.approach[motion.left_out] < 0.0)
             assert np.all(motion.approach[motion.left_out] < 0.0)
             assert_same(motion, everything, ~motion.left_out)
-            completed = geometry.complete_flank(angle, pose, motion)
+            completed = geometry.complete_flank(angle, pose, motion, bent)
             assert not completed.left_out.any()
             assert_same(completed, everything, np.ones_like(motion.left_out))
             kept = ~motion.left_out
