@@ -15,11 +15,12 @@ stress_coefficients  Stress along the walls of the disc by the loads on it: read
                      stress they give
 coefficients         Influence coefficients of the bodies derived from finite elements: the file, and their values at
                      any place
-near_field           Near fields of all contacts of a drive: the laws that `coupled` puts upon the body part
+near_field           Near fields of all contacts of a drive, and what finite elements have beyond them: the diagonal of the
+                     body part C
 coefficient_files    Where influence coefficients come from: files of the user's, or derived once for each distinct
                      shape and kept
-beyond_near_field    What finite elements have beyond the near field of each contact itself: the diagonal of the body
-                     part C
+undeformed           Overlap of the undeformed bodies at a pose, and where on the disc each contact lies: what coupled bodies
+                     start from
 coupled              Loads of all contact pairs at a pose when the pairs feel each other through the bodies (`fe` and
                      `hybrid`)
 wall_stress          Stress in the disc under the loads found: along lobe roots, bore and hole walls, and in the wall

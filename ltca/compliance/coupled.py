@@ -4,11 +4,10 @@ Every approach is the sum of the contact's own law and what the loads on the bod
 
 .. math:: \delta_i(q) = w_i(F_i) + \sum_j C_{ij} F_j ,
 
-with the law of the near field w (`ltca.compliance.near_field`: half-spaces with the lengths and profiles of the parts
-for `hybrid`, plane strain with a datum for `fe`) and the body part C of `ltca.compliance.coefficients`, in which pins
-and race are as thick as the disc and rollers as long as they are. The unknowns at a pose are the near-field
-approaches ε: F = f(ε) is zero where ε is negative, so that no contact has to be switched on or off, and Newton's
-method solves
+with the law of the near field w (`ltca.compliance.near_field`: half-spaces with the lengths and profiles of the parts for
+`hybrid`, plane strain with a datum for `fe`) and the body part C of `ltca.compliance.coefficients`, in which pins and race
+are as thick as the disc and rollers as long as they are. The unknowns at a pose are the near-field approaches ε: F = f(ε) is
+zero where ε is negative, so that no contact has to be switched on or off, and Newton's method solves
 
 .. math:: R(\epsilon) = \epsilon + C f(\epsilon) - \delta(q) = 0 .
 
@@ -26,9 +25,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.beyond_near_field import OwnParts
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.near_field import NearField, NearFieldLaws
+from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import (
     ContactPressures,
@@ -43,12 +41,12 @@ from ltca.compliance.response import (
     take_positions,
 )
 from ltca.compliance.rollers import RollerState
+from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.undeformed import UndeformedBodies
 from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw, approach_at_load

@@ -30,7 +30,8 @@ from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, 
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import Coordinates
-from ltca.geometry.pairs import ContactGeometry, FlankMotion
+from ltca.geometry.pair_motion import FlankMotion
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 
 FloatArray = NDArray[np.float64]
@@ -159,7 +160,13 @@ class GridCompliance:
         rollers = balance_rollers(
             rays,
             bores.each(bores.displacement, rays.direction.shape[1]),
-            RollerLaws(inner=inner, outer=outer, inner_radius=self.inner_radius, outer_radius=self.outer_radius),
+            RollerLaws(
+                inner=inner,
+                outer=outer,
+                inner_radius=self.inner_radius,
+                outer_radius=self.outer_radius,
+                by_place=True,
+            ),
             None if start is None else start.share,
         )
         warm_start = np.empty(crank_angle.size, dtype=object)

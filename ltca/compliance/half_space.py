@@ -187,7 +187,8 @@ class HalfSpaceCompliance:
         force without friction: the force acts along the common normal.
         """
         moved = split_shifts(shifts, self.geometry)
-        flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
+        places, known = (None, None) if start is None else (start.parameter, start.known)
+        flank = self.geometry.flank(crank_angle, pose, places, moved[0], known)
         pin_load, pin_stiffness = self.pin_law.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose, moved[1])
         hole_load, hole_stiffness = self.hole_law.load_and_stiffness(

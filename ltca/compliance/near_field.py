@@ -1,20 +1,34 @@
-"""Near fields of all contacts of a drive: the laws that `ltca.compliance.coupled` puts upon the body part."""
+"""Near fields of all contacts of a drive, and what finite elements have beyond them: the diagonal of the body part C.
+
+The near field of a contact belongs to its law, plane strain with a datum (`fe`) or a half-space of finite length
+(`hybrid`). The finite-element approach of a patch holds it as well, so it is taken off, once.
+
+What is taken off is the near field of the *finite-element body's own* load: even over the body's thickness, whatever
+the length and profile of the part that presses on it. What is left, the walls and supports of the body, then goes
+with any law near the contact: of a roller shorter than the disc, of a crowned pin. (With the law's own length in its
+place that length would cancel, and short rollers would be as stiff as long ones.)
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+import numpy as np
+
+from ltca.compliance.coefficients import InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.contact.tracked_grid import ContactKinds
-from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.drive.plane_strain import require_plane_strain
 from ltca.errors import DriveError
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import Placement
 from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.plane_strain import PlaneContactLaw
+from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
 
 NearField = Literal["plane-strain", "half-space"]
 
@@ -114,3 +128,128 @@ class NearFieldLaws:
     def has_ends(self) -> bool:
         """Whether contacts end somewhere: in plane strain they do not."""
         return self.kind == "half-space"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnParts:
+    """Diagonal body parts of the contacts, mm/N: what FE has beyond the near field of each contact itself.
+
+    Attributes
+    ----------
+    pin, outer, inner, hole : float
+        Added to the interpolated diagonal of disc (pin, outer, hole) and race (inner).
+    """
+
+    pin: float
+    outer: float
+    inner: float
+    hole: float
+
+    @classmethod
+    def of_drive(
+        cls,
+        drive: Drive,
+        geometry: ContactGeometry,
+        coefficients: InfluenceCoefficients,
+        near_field: NearField,
+        datum: float,
+    ) -> OwnParts:
+        """Return the diagonal parts.
+
+        Parameters
+        ----------
+        drive : Drive
+            The drive.
+        geometry : ContactGeometry
+            Its contact geometry.
+        coefficients : InfluenceCoefficients
+            Of its bodies, rollers as long as they are (`InfluenceCoefficients.with_roller_length`).
+        near_field : {"plane-strain", "half-space"}
+            What the laws of the contacts hold.
+        datum : float
+            D, where a near field in plane strain hands over, mm.
+
+        Notes
+        -----
+        With A = smooth + κ (−ln(b/2) + 1/4) the approach of a patch, the plane-strain law holds κ (ln(2D/b) + 1/4)
+        of it, which leaves smooth − κ ln D. What a half-space of finite length holds of it for the same patch is
+        `finite_length_approach`; both are taken at the half-width of half the drive's load T/(e u) on one contact
+        (they differ by the end effects alone, which change little with the load). A plane-stress body part joins the
+        plane-strain near field at D.
+        """
+        parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
+        place = geometry.placement
+        load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
+
+        def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
+            if body == 0.0:
+                return 0.0
+            joined = -body * np.log(datum)
+            if near_field == "plane-strain":
+                return float(joined)
+            half_width = float(line_half_width(load / thickness, radius, modulus))
+            factor = logarithm_factor(material, thickness)
+            held = material.plane_strain_compliance * finite_length_approach(thickness, half_width)
+            return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
+
+        thickness, length = drive.disc.thickness, bearing.roller_length
+        # Where the pitch circle cuts the flank the pins carry most.
+        steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
+        at_pin = (
+            float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
+            contact_modulus(parts.disc, drive.flank_pin),
+        )
+        in_bore = (
+            effective_radius(bearing.roller_radius, -drive.bore_radius),
+            contact_modulus(parts.disc, parts.roller),
+        )
+        on_race = (
+            effective_radius(bearing.roller_radius, bearing.inner_race_radius),
+            contact_modulus(parts.inner_race, parts.roller),
+        )
+        shaft = drive.pin_shaft
+        in_hole = (
+            1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
+            1.0 / parts.disc.plane_strain_compliance,
+        )
+        sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
+        disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
+        whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
+        return cls(
+            pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
+            outer=remove(disc, parts.disc, *in_bore, thickness)
+            + float(c.roller[1, 1])
+            + remove(roller, parts.roller, *in_bore, length),
+            inner=remove(race, parts.inner_race, *on_race, thickness)
+            + float(c.roller[0, 0])
+            + remove(roller, parts.roller, *on_race, length),
+            hole=remove(disc, parts.disc, *in_hole, thickness),
+        )
+
+
+def finite_length_approach(length: float, half_width: float) -> float:
+    """Return the mean displacement of a half-space over a patch of finite length, times E/(1 − ν²) per load, 1/mm.
+
+    Parameters
+    ----------
+    length : float
+        L, mm.
+    half_width : float
+        b at mid-length, mm.
+
+    Returns
+    -------
+    float
+        Pressure-weighted mean over the patch pressed by a straight cylinder: its approach less the mean separation.
+    """
+    from scipy.optimize import brentq  # 0.2 s to import, for hybrid models only
+
+    law = LineContactLaw(length, 1.0)
+
+    def excess(logarithm: float) -> float:
+        return float(law.half_width(np.exp(logarithm), 1.0)) - half_width
+
+    # b²/(ρδ) lies between 0.1 (very long) and 2 (the undeformed overlap).
+    approach = float(np.exp(brentq(excess, np.log(0.4 * half_width**2), np.log(20.0 * half_width**2), xtol=1e-12)))
+    load = float(law.load_and_stiffness(approach, 1.0)[0])
+    return (approach - half_width**2 / 8.0) / load

@@ -44,10 +44,13 @@ def pressures_of_law(
     """
     if isinstance(law, BackedLaw):
         approach, law = law.contact_approach(approach, effective_radius), law.known_contact
-    mid, half_width = law.mid_pressure(approach, effective_radius), law.half_width(approach, effective_radius)
+    closed = approach > 0.0
+    mid, half_width, largest = (np.zeros(closed.shape) for _ in range(3))
+    pressed, radius = approach[closed], np.broadcast_to(effective_radius, closed.shape)[closed]
+    mid[closed], half_width[closed] = law.mid_pressure(pressed, radius), law.half_width(pressed, radius)
     if ends is None:
         return KindPressures(mid=mid, largest=np.full(mid.shape, np.nan), half_width=half_width, end_cell=np.nan)
-    largest = mid * largest_pressure_ratio(ends, approach, effective_radius)
+    largest[closed] = mid[closed] * largest_pressure_ratio(ends, pressed, radius)
     return KindPressures(mid=mid, largest=largest, half_width=half_width, end_cell=ends.end_cell)
 
 

@@ -7,7 +7,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.balance`
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
-from ltca.geometry.pairs import BoreMotion, ContactGeometry, FlankMotion, PairMotion
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -176,6 +177,9 @@ class Start:
         Shares of `ltca.compliance.rollers`.
     warm_start : array of object, shape (positions,)
         Of the model, see `Response`.
+    known : KnownPins or None
+        Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
+        where all are asked for.
     shifts : array of complex, shape (positions, discs, pairs), or None
         Displacements of pins that several discs bend, mm.
     """
@@ -183,11 +187,12 @@ class Start:
     parameter: FloatArray
     share: FloatArray
     warm_start: NDArray[np.object_]
+    known: KnownPins | None = None
     shifts: ComplexArray | None = None
 
     @classmethod
     def after(cls, response: Response) -> Start:
-        """Return the start that a response gives for the next pose."""
+        """Return the start that a response gives for poses near it, also of other drives and angles."""
         return cls(
             parameter=response.flank.parameter,
             share=response.rollers.share,
@@ -195,12 +200,32 @@ class Start:
             shifts=response.shifts,
         )
 
+    @classmethod
+    def onward(cls, response: Response) -> Start:
+        """Return the start for other poses of the same positions: pins that cannot touch may be left out.
+
+        What is left out `ltca.equilibrium.reducer.complete` adds.
+        """
+        return replace(cls.after(response), known=KnownPins.of(response.flank))
+
+    def of_others(self, reach_beyond: FloatArray) -> Start:
+        """Return the start for other drives of which pins may be that much deeper in the flank at the same places.
+
+        Parameters
+        ----------
+        reach_beyond : array, shape (positions, pins)
+            `ltca.geometry.pairs.ContactGeometry.reach_beyond`, mm.
+        """
+        known = self.known
+        return replace(self, known=None if known is None else replace(known, approach=known.approach + reach_beyond))
+
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
         """Return the start of some of the positions."""
         return Start(
             parameter=self.parameter[rows],
             share=self.share[rows],
             warm_start=self.warm_start[rows],
+            known=None if self.known is None else self.known.take(rows),
             shifts=None if self.shifts is None else self.shifts[rows],
         )
 
@@ -327,7 +352,7 @@ def bearing_bend(rollers: RollerState, bores: BoreMotion) -> FloatArray:
 
 def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
     positions, cranks = bores.arm.shape
-    stiffness = rollers.tangent.reshape(positions, cranks, -1, 2, 2).sum(axis=2)
+    stiffness = np.einsum("bcri->bci", rollers.tangent.reshape(positions, cranks, -1, 4)).reshape(-1, cranks, 2, 2)
     moved = np.stack((bores.gradient.real, bores.gradient.imag), axis=2)
     tangent = np.matmul(moved.swapaxes(2, 3), np.matmul(stiffness, moved)).sum(axis=1)
     tangent[:, DISC_ROTATION, DISC_ROTATION] += bearing_bend(rollers, bores)

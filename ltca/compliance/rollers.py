@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.pairs import RollerRays
+from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import LoadLaw
 
 FloatArray = NDArray[np.float64]
@@ -39,12 +39,15 @@ class RollerLaws(Generic[Law]):
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (rollers,)
         Effective radii of curvature, mm.
+    by_place : bool
+        Whether the laws know their contacts by their places, shape (positions, rollers), as grids do.
     """
 
     inner: Law
     outer: Law
     inner_radius: FloatArray
     outer_radius: FloatArray
+    by_place: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,12 +107,11 @@ def balance_rollers(
         When a law gives no number or a roller does not settle.
     """
     direction = rays.direction
-    lowest = rays.touching_distance(displacement)
-    interference = rays.outermost - lowest
+    interference = rays.outermost - rays.touching_distance(displacement)
     share = np.full(direction.shape, 0.5) if start is None else np.array(start)
     # Half of the rollers are free: only those pressed between the races are balanced.
-    pressed = np.nonzero(interference > 0.0)
-    balanced = _balance_pressed(rays, displacement, laws, pressed, interference[pressed], share[pressed])
+    pressed = np.flatnonzero(interference > 0.0)
+    balanced = _balance_pressed(rays, displacement, laws, pressed, interference.take(pressed), share.take(pressed))
     # A free roller rests on the inner race; its outer gap follows from there.
     arm = rays.outermost * direction - displacement
     length = np.abs(arm)
@@ -119,7 +121,7 @@ def balance_rollers(
     for values, found in zip(
         (share, inner_approach, outer_approach, inner_load, outer_load, outward, tangent), balanced, strict=True
     ):
-        values[pressed] = found
+        values.reshape(direction.size, *values.shape[2:])[pressed] = found
     return RollerState(
         share=share,
         inner_approach=inner_approach,
@@ -135,24 +137,34 @@ def _balance_pressed(
     rays: RollerRays,
     displacement: ComplexArray,
     laws: RollerLaws[Law],
-    pressed: tuple[NDArray[np.intp], ...],
+    pressed: NDArray[np.intp],
     total: FloatArray,
     share: FloatArray,
 ) -> tuple[NDArray[Any], ...]:
-    """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last."""
+    """Balance the rollers that interfere by `total`, one row: the arrays of `RollerState` in its order, tangent last.
+
+    They are counted through all positions.
+    """
+    shape = rays.direction.shape
+    rows, numbers = np.divmod(pressed, shape[1])
 
     def each(values: NDArray[Any]) -> NDArray[Any]:
-        return np.broadcast_to(values, rays.direction.shape)[pressed]
+        if values.shape == shape:
+            return values.take(pressed)
+        return values[numbers] if values.shape == shape[1:] else np.broadcast_to(values, shape)[rows, numbers]
 
-    direction, moved = rays.direction[pressed], each(displacement)
+    direction, moved = each(rays.direction), each(displacement)
     outermost, bore_play = each(rays.outermost), each(rays.bore_play)
+    inner_radius, outer_radius = each(laws.inner_radius), each(laws.outer_radius)
 
     def loads(law: Law, approach: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        # A law may know its pairs by their places (grids), so it is asked for all; open ones cost it nothing.
-        everywhere = np.zeros(rays.direction.shape)
-        everywhere[pressed] = approach
-        load, stiffness = law.load_and_stiffness(everywhere, radius)
-        return load[pressed], stiffness[pressed]
+        if not laws.by_place:
+            return law.load_and_stiffness(approach, radius)
+        # Open ones cost it nothing.
+        everywhere, radii = np.zeros(rays.direction.size), np.ones(rays.direction.size)
+        everywhere[pressed], radii[pressed] = approach, radius
+        load, stiffness = law.load_and_stiffness(everywhere.reshape(shape), radii.reshape(shape))
+        return load.take(pressed), stiffness.take(pressed)
 
     lowest = outermost - total
     along = direction.real * moved.real + direction.imag * moved.imag
@@ -167,8 +179,8 @@ def _balance_pressed(
         inner_approach = share * total
         # |s n − d| less the bore play as a product: no cancellation for rollers that barely touch.
         outer_approach = (1.0 - share) * total * (place + lowest - 2.0 * along) / (length + bore_play)
-        inner_load, inner_stiffness = loads(laws.inner, inner_approach, laws.inner_radius)
-        outer_load, outer_stiffness = loads(laws.outer, outer_approach, laws.outer_radius)
+        inner_load, inner_stiffness = loads(laws.inner, inner_approach, inner_radius)
+        outer_load, outer_stiffness = loads(laws.outer, outer_approach, outer_radius)
         bend = outer_load * (1.0 - cosine**2) / length
         stiffness = inner_stiffness + outer_stiffness * cosine**2 + bend
         imbalance = inner_load - outer_load * cosine
@@ -205,12 +217,12 @@ def _eliminated_tangent(
     place_stiffness: FloatArray,
 ) -> FloatArray:
     """Schur complement of the roller's place in the Hessian of U_i + U_o over (d, s)."""
-    sideways = 1j * outward
-    normal = np.stack((outward.real, outward.imag), axis=-1)
-    across = np.stack((sideways.real, sideways.imag), axis=-1)
-    slant = direction.real * sideways.real + direction.imag * sideways.imag
+    slant = direction.imag * outward.real - direction.real * outward.imag
+    normal, across = (outward.real, outward.imag), (-outward.imag, outward.real)
     bend = load / length
-    direct = outer_stiffness[..., None, None] * normal[..., :, None] * normal[..., None, :]
-    direct = direct + bend[..., None, None] * across[..., :, None] * across[..., None, :]
-    mixed = -(outer_stiffness * cosine)[..., None] * normal - (bend * slant)[..., None] * across
-    return np.asarray(direct - mixed[..., :, None] * mixed[..., None, :] / place_stiffness[..., None, None])
+    mixed = [-(outer_stiffness * cosine) * n - (bend * slant) * a for n, a in zip(normal, across, strict=True)]
+    tangent = np.empty((*load.shape, 2, 2))
+    for i, j in ((0, 0), (0, 1), (1, 1)):
+        direct = outer_stiffness * normal[i] * normal[j] + bend * across[i] * across[j]
+        tangent[..., i, j] = tangent[..., j, i] = direct - mixed[i] * mixed[j] / place_stiffness
+    return tangent

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, is_dataclass
-from functools import cache
+from functools import cache, lru_cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_hints
 
@@ -68,6 +68,7 @@ def field_kinds() -> dict[str, FieldKind]:
     return {path: kind for path, kind in _kinds(Drive, "") if path not in _WHOSE}
 
 
+@lru_cache(maxsize=4096)
 def field_kind(path: str) -> FieldKind | None:
     """Return what is known of a field, also of one of a numbered disc; None where there is none.
 

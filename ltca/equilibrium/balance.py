@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ltca.compliance.response import ComplianceModel, Response, Start
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
-from ltca.equilibrium.reducer import at_rows, disc_responses, geometries
+from ltca.equilibrium.reducer import at_rows, complete, disc_responses, geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
@@ -101,6 +101,7 @@ def solve_equilibrium(
     wheel_moment: FloatArray | float,
     start: FloatArray | Equilibrium | None = None,
     inner: Start | None = None,
+    gaps: bool = True,
 ) -> Equilibrium:
     """Find the pose in which every position of a batch balances.
 
@@ -117,6 +118,8 @@ def solve_equilibrium(
         centres and the wheel turned to first contact.
     inner : Start, optional
         Inner unknowns near the poses to start from.
+    gaps : bool
+        Whether the pairs of pins that do not touch are wanted, which balance does not need (`FlankMotion.left_out`).
 
     Returns
     -------
@@ -143,21 +146,26 @@ def solve_equilibrium(
         left = _follow_down(search, left)
     if left.size:
         raise _failure(search, left)
+    response = search.contacts()[1]
     return Equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(moment),
         pose=search.pose,
-        response=search.contacts()[1],
+        response=complete(model, angle, search.pose, response) if gaps else response,
         residual=search.residual,
         iterations=search.iterations,
     )
 
 
 def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start | None) -> NDArray[np.intp]:
-    """Balance leading positions from their starts, then the others from between them; return what does not balance."""
+    """Balance leading positions from their starts, then the others from between them; return what does not balance.
+
+    Without starts one position leads: what disc and wheel do from first contact on is that of all, seen from the crank.
+    """
     model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
     first = leading_positions(model.discs[0].geometry, angle, moment)
     if start is None:
+        first = first if first.size == angle.size else first[:1]
         pose[first] = _at_first_contact(at_rows(model, first), angle[first], moment[first])
     else:
         pose[:] = start

@@ -42,6 +42,8 @@ VALLEY_STEPS, WALL_STEPS = 60, 6
 """Steps along a valley, and down to its bottom after each."""
 FIRST_ALONG = 1e-5
 """First step along a valley, as a part of the smallest pin radius; each may be four times the last."""
+SOFT = 1e-6
+"""Part of its stiffness that a coordinate must keep when those before it give way, for its modes not to be looked at."""
 SLOPE_LEFT = 0.3
 """A step is short enough when the slope of Π at its end is at most this part of the slope at its beginning."""
 
@@ -146,7 +148,7 @@ class Search:
                 break
             self.iterations[active] += 1
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
-            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.after(response))
+            taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.onward(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = np.max(np.abs(gradient), axis=1)
@@ -183,7 +185,7 @@ class Search:
                 if np.max(np.abs(wall)) < 0.1 * abs(soft @ gradient[0]):
                     break
                 pose = pose - (modes @ ((modes.T @ wall) / np.where(values == 0.0, 1.0, values)))[None] / lever
-                response = self.evaluate(rows, pose, Start.after(response))
+                response = self.evaluate(rows, pose, Start.onward(response))
             self.iterations[row] += 1
             slope = float(soft @ gradient[0])
             change = (slope - before) / along if along else float(np.min(np.abs(values)))
@@ -191,7 +193,7 @@ class Search:
             most = 4.0 * abs(along) if along else FIRST_ALONG * self.smallest_pin
             along, before, last = float(np.clip(step, -most, most)), slope, soft
             pose = pose + along * soft[None] / lever
-            response = self.evaluate(rows, pose, Start.after(response))
+            response = self.evaluate(rows, pose, Start.onward(response))
         return False
 
     def keep(self, rows: NDArray[np.intp], response: Response, balanced: NDArray[np.bool_]) -> None:
@@ -243,7 +245,7 @@ class Search:
             place = -low_slope[back] / (high_slope[back] - low_slope[back])
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            again = self.evaluate(rows[back], pose[back], Start.after(response).take(back))
+            again = self.evaluate(rows[back], pose[back], Start.onward(response).take(back))
             response = put_positions(response, back, again)
             gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])
@@ -259,13 +261,43 @@ def _damped_step(
 
     With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
     downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
-    direction still corrects the others.
+    direction still corrects the others. Where all modes are stiff and none is bounded that is −(H + μ tr(H)/n)⁻¹g, found
+    without them.
     """
     stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / tangent.shape[1]
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
     stiffness = np.where(stiffness > 0.0, stiffness, 1.0)
-    values, modes = np.linalg.eigh(tangent)
-    along = np.einsum("bij,bi->bj", modes, gradient)
     floor = np.maximum(damping, 1e-15) * stiffness
-    step = np.clip(-along / (np.abs(values) + floor[:, None]), -bound[:, None], bound[:, None])
-    return np.einsum("bij,bj->bi", modes, step), np.einsum("bj,bj->b", along, step)
+    step, stiff = _stiff_step(tangent, gradient, floor)
+    others = np.nonzero(~(stiff & (np.einsum("bi,bi->b", step, step) <= bound**2)))[0]
+    if others.size:
+        values, modes = np.linalg.eigh(tangent[others])
+        along, most = np.einsum("bij,bi->bj", modes, gradient[others]), bound[others, None]
+        lengths = np.clip(-along / (np.abs(values) + floor[others, None]), -most, most)
+        step[others] = np.einsum("bij,bj->bi", modes, lengths)
+    return step, np.einsum("bi,bi->b", gradient, step)
+
+
+def _stiff_step(tangent: FloatArray, gradient: FloatArray, floor: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return −(H + μ)⁻¹g by Gauss's elimination of all positions at once, and where H + μ is safely positive definite.
+
+    Pivots are measured without μ, which must not make a soft mode stiff; elsewhere the step is of no use.
+    """
+    size = gradient.shape[1]
+    matrix, right = tangent.transpose(1, 2, 0).copy(), -gradient.T
+    places = np.arange(size)
+    least = SOFT * matrix[places, places]
+    matrix[places, places] += floor
+    stiff = np.ones(gradient.shape[0], dtype=bool)
+    for place in range(size):
+        stiff &= matrix[place, place] > least[place] + floor
+        pivot = np.where(stiff, matrix[place, place], 1.0)
+        factors = np.where(stiff, matrix[place + 1 :, place] / pivot, 0.0)  # soft ones are left as they are
+        matrix[place + 1 :, place + 1 :] -= factors[:, None] * matrix[place, place + 1 :]
+        right[place + 1 :] -= factors * right[place]
+        right[place] /= pivot
+        matrix[place, place + 1 :] /= pivot
+    right = np.where(stiff, right, 0.0)
+    for place in range(size - 2, -1, -1):
+        right[place] -= (matrix[place, place + 1 :] * right[place + 1 :]).sum(axis=0)
+    return np.ascontiguousarray(right.T), stiff

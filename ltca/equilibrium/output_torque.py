@@ -90,6 +90,7 @@ def solve_at_output(
     torque: FloatArray | float,
     start: FloatArray | None = None,
     inner: Start | None = None,
+    gaps: bool = True,
 ) -> Equilibrium:
     """Balance positions at output torques.
 
@@ -107,6 +108,8 @@ def solve_at_output(
         Poses to start from, first contact by default.
     inner : Start, optional
         Inner unknowns near those poses.
+    gaps : bool
+        As for `ltca.equilibrium.balance.solve_equilibrium`.
 
     Returns
     -------
@@ -127,7 +130,8 @@ def solve_at_output(
 
     def balance(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
         part = model if rows.size == angle.size else at_rows(model, rows)
-        return solve_equilibrium(part, angle[rows], moment, begin, None if isinstance(begin, Equilibrium) else inner)
+        own = None if isinstance(begin, Equilibrium) else inner
+        return solve_equilibrium(part, angle[rows], moment, begin, own, gaps)
 
     part = np.repeat([drive.input_per_crank_moment for drive in each], repeats)
     return _at_output(model, balance, angle, mean, signed, held, part, start)

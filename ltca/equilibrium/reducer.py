@@ -24,9 +24,11 @@ from ltca.compliance.response import (
     Response,
     Start,
     bearing_pushes,
+    split_shifts,
 )
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
+from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
@@ -165,6 +167,36 @@ def disc_responses(response: Response) -> tuple[Response, ...]:
     return response.parts if isinstance(response, ReducerResponse) else (response,)
 
 
+def reach_beyond(model: ComplianceModel, other: ComplianceModel) -> FloatArray:
+    """Return how much deeper pins may be than those of another drive at the same places, mm, shape (…, pins of all discs)."""
+    pairs = zip(geometries(model), geometries(other), strict=True)
+    return np.concatenate([mine.reach_beyond(theirs) for mine, theirs in pairs], axis=-1)
+
+
+def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
+    """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
+
+    Parameters
+    ----------
+    model : ComplianceModel
+        What answered.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, coordinates)
+        q.
+    response : Response
+        Contacts there.
+    """
+    parts = []
+    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+        geometry, own = disc.geometry, model.coordinates.columns(number)
+        moved, _ = split_shifts(part.shifts, geometry)
+        parts.append(replace(part, flank=geometry.complete_flank(crank_angle, pose[:, own], part.flank, moved)))
+    if not isinstance(response, ReducerResponse):
+        return parts[0]
+    return replace(response, flank=_beside([part.flank for part in parts]), parts=tuple(parts))
+
+
 def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:
     """Return the pressures of each of several discs from those of all."""
     if discs == 1:
@@ -229,10 +261,17 @@ def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) 
 
 
 def _split_start(start: Start, count: int) -> list[Start]:
-    columns = zip(
-        np.split(start.parameter, count, axis=1), np.split(start.share, count, axis=1), start.warm_start.T, strict=True
-    )
-    return [Start(parameter=parameter, share=share, warm_start=warm) for parameter, share, warm in columns]
+    def of_each(values: Any) -> list[Any]:
+        return np.split(values, count, axis=1)
+
+    known: list[KnownPins | None] = [None] * count
+    if start.known is not None:
+        pairs = zip(*(of_each(getattr(start.known, item.name)) for item in fields(KnownPins)), strict=True)
+        known = [KnownPins(approach=values[0], point=values[1], turning=values[2]) for values in pairs]
+    columns = zip(of_each(start.parameter), of_each(start.share), start.warm_start.T, known, strict=True)
+    return [
+        Start(parameter=parameter, share=share, warm_start=warm, known=pins) for parameter, share, warm, pins in columns
+    ]
 
 
 def _beside(values: Sequence[Any]) -> Any:

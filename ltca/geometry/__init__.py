@@ -11,9 +11,8 @@ placement          Where pins, rollers and holes stand and how large they are, e
 flank              Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1)
 coordinates        Which coordinates a pose has and where: discs, cranks that yield, the wheel where its bearing does,
                    the wheel's angle
+pair_motion        What the geometry answers of pairs at a pose: approaches, derivatives, and what bounds them elsewhere
 pairs              How far each pair is pressed together at a pose, and how that changes with the pose (Eq. 45–64)
-undeformed         Overlap of the undeformed bodies at a pose, and where on the disc each contact lies: what coupled bodies
-                   start from
 interference       How far parts overlap as they are drawn, before any body yields: what presses a drive together
                    without load
 first_contact      Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry

@@ -54,6 +54,21 @@ class CurvePoints(NamedTuple):
         return np.asarray((self.tangent.conjugate() * self.second).imag / np.abs(self.tangent) ** 3)
 
 
+class CurveFrame(NamedTuple):
+    """The moving frame of a curve over θ, which has the speed |c′| and turns by w dθ."""
+
+    point: ComplexArray
+    """mm."""
+    tangent: ComplexArray
+    """Unit vector."""
+    speed: FloatArray
+    speed_slope: FloatArray
+    """mm/rad and its derivative, mm/rad²."""
+    turning: FloatArray
+    turning_slope: FloatArray
+    """w and its derivative, 1/rad."""
+
+
 class NearestPoint(NamedTuple):
     """Where the normal of the flank passes through a point: θ and the curve of `FlankProfile.contact_curve` there."""
 
@@ -114,6 +129,15 @@ class FlankProfile:
         if self.deviation is not None:
             picked["deviation"] = self.deviation.take(rows)
         return FlankProfile(**picked)
+
+    @property
+    def is_batch(self) -> bool:
+        """Whether every position has a flank of its own."""
+        return np.ndim(self.offset) > 0
+
+    def of_points(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
+        """Return the flanks of points that belong to these positions: itself for one drive."""
+        return self.take(rows) if self.is_batch else self
 
     @classmethod
     def stack(cls, drives: Sequence[Drive], positions: int) -> FlankProfile:
@@ -188,20 +212,39 @@ class FlankProfile:
         CurvePoints
             The trochoid; with a deviation the flank itself.
         """
-        c, dc, ddc = self.at(direction)
         if self.deviation is None:
+            c, dc, ddc = self.at(direction)
             return CurvePoints(c + self.centre, dc, ddc)
-        # Frame t = c′/|c′|, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
+        return self.deviated(self.frame(direction), direction)
+
+    def frame(self, direction: ComplexArray) -> CurveFrame:
+        """Return the frame of the design trochoid at e^{iθ}, in which deviations are given."""
+        c, dc, ddc = self.at(direction)
         u = self.reduction_ratio
         circle = self.generating_radius * direction * self.turn
         dddc = 1j * (u**3 * (circle - c) - circle)
         back = dc.conjugate()
         square = dc.real**2 + dc.imag**2
         speed = np.sqrt(square)
-        t = dc / speed
+        tangent = dc / speed
         turning = back * ddc
         w, ds = turning.imag / square, turning.real / speed
-        dw = (back * dddc).imag / square - 2.0 * w * ds / speed
+        return CurveFrame(c, tangent, speed, ds, w, (back * dddc).imag / square - 2.0 * w * ds / speed)
+
+    def deviated(self, frame: CurveFrame, direction: ComplexArray) -> CurvePoints:
+        """Return the flank itself, as it deviates from its design.
+
+        Parameters
+        ----------
+        frame : CurveFrame
+            Of the design at e^{iθ}.
+        direction : array of complex
+            e^{iθ}.
+        """
+        if self.deviation is None:
+            raise ValueError("the flank is as designed")
+        # The frame t, n = −it turns with w: t′ = −w n, n′ = w t. Derivatives of F = c − d n, d = offset − δ.
+        c, t, speed, ds, w, dw = frame
         delta, slope, bend = self.deviation.value_and_derivatives(direction)
         d = self.offset - delta
         along = speed - d * w
@@ -288,13 +331,19 @@ class FlankProfile:
             When a point does not settle; the history holds the largest steps.
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
-        direction = unit(theta)
+        found = self._settle(point, theta, limit)
+        return self._nearer_side(point, found) if across_root else found
+
+    def _settle(self, point: ComplexArray, start: FloatArray, limit: int) -> NearestPoint:
+        """Find the foot next to every start; points that have settled are left alone as soon as they are most of them."""
+        flank, theta, direction = self, start, unit(start)
+        every, settled, left = theta, direction, np.arange(theta.size)
         bound = 0.4 * np.pi / self.reduction_ratio
         low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
         last = slope_before = np.zeros(theta.shape)
         history: list[float] = []
         for iteration in range(limit):
-            curve = self.contact_curve(direction)
+            curve = flank.contact_curve(direction)
             away = curve.point - point
             tangent = curve.tangent
             speed = tangent.real**2 + tangent.imag**2
@@ -315,14 +364,24 @@ class FlankProfile:
                 far = np.where(value < 0.0, theta - step > high - margin, theta - step < low + margin)
                 outside = bracketed & far
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
-            theta -= step
+            theta = theta - step
             slope_before, last = slope, step
-            history.append(float(np.max(np.abs(step), initial=0.0)))
+            moved = np.abs(step)
+            history.append(float(np.max(moved, initial=0.0)))
             if history[-1] > THERE:
                 direction = direction * small_turn(-step)
-            if history[-1] <= SETTLED:
-                found = NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
-                return self._nearer_side(point, found) if across_root else found
+            if history[-1] <= SETTLED and theta.size == every.size:
+                return NearestPoint(theta, self.contact_curve(direction) if history[-1] > THERE else curve)
+            going = moved > SETTLED
+            if 2 * np.count_nonzero(going) < going.size:
+                every, settled = _with_places(every, left, theta), _with_places(settled, left, direction)
+                left = left[going.ravel()]
+                if left.size == 0:
+                    return NearestPoint(every, self.contact_curve(settled))
+                flank = flank.of_points(np.nonzero(going)[0])
+                theta, direction, point, low, high, last, slope_before = _picked(
+                    going, theta, direction, point, low, high, last, slope_before
+                )
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
     def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
@@ -344,9 +403,8 @@ class FlankProfile:
         if not np.any(doubtful):
             return found
         # The doubtful points alone; of a batch of flanks the positions that have some.
-        single = np.ndim(self.offset) == 0
-        rows = doubtful if single else np.nonzero(np.any(doubtful, axis=1))[0]
-        flank = self if single else self.take(rows)
+        rows = np.nonzero(np.any(doubtful, axis=1))[0] if self.is_batch else doubtful
+        flank = self.of_points(rows)
         point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
         other = flank.nearest_point(point, start, across_root=False)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
@@ -377,3 +435,15 @@ class FlankProfile:
     def tip_radius(self) -> float:
         """Largest radius of the disc as designed, mm (at θ = π/z_C for Δz = 1)."""
         return float(self.generating_radius + self.eccentricity - self.offset)
+
+
+def _picked(places: NDArray[np.bool_], *values: Any) -> Any:
+    """Values at some places of arrays, as columns."""
+    return [each[places][:, None] for each in values]
+
+
+def _with_places(values: NDArray[Any], places: NDArray[np.intp], fresh: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy with some values replaced, which are counted through all axes."""
+    changed = values.copy()
+    changed.ravel()[places] = fresh.ravel()
+    return changed

@@ -81,6 +81,13 @@ class ProfileDeviation:
             pieces=np.empty((4, 0)) if measured is None else measured.pieces,
         )
 
+    @property
+    def bound(self) -> FloatArray:
+        """What the deviation nowhere exceeds in size, mm, shape () or (positions, 1)."""
+        waves = np.abs(self.amplitudes).sum(axis=-1, keepdims=self.amplitudes.ndim > 1)
+        spans = np.diff(self.knots) ** np.arange(3, -1, -1)[:, None]
+        return np.asarray(waves + (np.abs(self.pieces) * spans).sum(axis=0).max(initial=0.0))
+
     def value_and_derivatives(self, direction: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return δ, δ′ and δ″ at θ, mm by powers of rad.
 

@@ -8,7 +8,7 @@ together.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,158 +16,58 @@ from numpy.typing import NDArray
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.pair_motion import (
+    BoreMotion,
+    FlankMotion,
+    KnownPins,
+    PairMotion,
+    RollerRays,
+    cross,
+    dot,
+)
 from ltca.geometry.placement import Placement
 from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-
-def _dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
-    return first.real * second.real + first.imag * second.imag
-
-
-def _cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
-    return first.real * second.imag - first.imag * second.real
+FARTHEST = 0.1
+"""Most that a contact is moved along the flank by its slope, rad times the tooth number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PairMotion:
-    """Approach of pairs of one kind, with first and second derivatives by the pose.
-
-    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its
-    tangent, and turning terms made of s again. They are only formed summed over the pairs, see `bend`.
+class _Pins:
+    """Wheel pins as the disc sees them, complex numbers of one shape, mm.
 
     Attributes
     ----------
-    approach : array, shape (positions, pairs)
-        δ, mm.
-    gradient : array, shape (positions, pairs, coordinates)
-        ∂δ/∂q, in mm/mm and mm/rad.
-    along : array, shape (positions, pairs, coordinates)
-        Slip along the tangent by the pose, in mm/mm and mm/rad.
-    bending : array, shape (positions, pairs)
-        κ of the path of equal approach, 1/mm.
+    centre, arm : array of complex
+        Centre from the axis of the wheel and from the centre of the disc, in the fixed frame.
+    turn : array of complex
+        Unit vector of the disc's rotation.
+    point : array of complex
+        Centre in the frame of the disc.
+    radius, reach : array
+        Of the pin, and less its play.
     """
 
-    approach: FloatArray
-    gradient: FloatArray
-    along: FloatArray
-    bending: FloatArray
-
-    def bend(self, load: FloatArray) -> FloatArray:
-        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, coordinates, coordinates).
-
-        Parameters
-        ----------
-        load : array, shape (positions, pairs)
-            F, N.
-        """
-        return self._sum(load, self.bending, self.along)
-
-    @property
-    def curvature(self) -> FloatArray:
-        """∂²δ/∂q² of every pair, shape (positions, pairs, coordinates, coordinates)."""
-        one = np.ones((*self.bending.shape, 1))
-        return self._sum(one, self.bending[..., None], self.along[..., None, :])
-
-    @staticmethod
-    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ, the disc rotation being coordinate 2."""
-        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
-        total[..., DISC_ROTATION, DISC_ROTATION] += (load * along[..., DISC_ROTATION]).sum(axis=-1)
-        return np.asarray(total)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlankMotion(PairMotion):
-    """Pairs of wheel pin and flank.
-
-    Attributes
-    ----------
-    parameter : array, shape (positions, z_P)
-        Place θ of the contact on the flank, rad.
-    effective_radius : array, shape (positions, z_P)
-        ρ of pin and flank there, mm.
-    """
-
-    parameter: FloatArray
-    effective_radius: FloatArray
-
-    @staticmethod
-    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ), the wheel angle being the last coordinate."""
-        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
-        slip = np.matmul(load[..., None, :], along)[..., 0, :]
-        total[..., DISC_ROTATION, :] += slip
-        total[..., :, DISC_ROTATION] += slip
-        for turn in (DISC_ROTATION, WHEEL_ANGLE):
-            total[..., turn, turn] -= slip[..., turn]
-        return np.asarray(-total)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BoreMotion:
-    """Bores of the disc against the centres of the inner races in them.
-
-    Attributes
-    ----------
-    displacement : array of complex, shape (positions, cranks)
-        Bore centre from inner-race centre in the fixed frame, mm.
-    arm : array of complex, shape (positions, cranks)
-        Bore centre from the centre of the disc in the fixed frame, mm: zero for a central crank. The second derivative of
-        `displacement` by the rotation of the disc is −`arm`, and there is no other.
-    gradient : array of complex, shape (positions, cranks, coordinates)
-        ∂ displacement/∂q, in mm/mm and mm/rad.
-    """
-
-    displacement: ComplexArray
+    centre: ComplexArray
     arm: ComplexArray
-    gradient: ComplexArray
+    turn: ComplexArray
+    point: ComplexArray
+    radius: FloatArray
+    reach: FloatArray
 
-    def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
-        """Return values of the bores as those of their rollers, shape (positions, rollers, …).
-
-        Parameters
-        ----------
-        values : array, shape (positions, cranks, …)
-            One of the attributes.
-        rollers : int
-            All of them.
-        """
-        return values if values.shape[1] == 1 else np.repeat(values, rollers // values.shape[1], axis=1)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RollerRays:
-    """Rollers on their cage rays about the inner-race centres, crank after crank.
-
-    Attributes
-    ----------
-    direction : array of complex, shape (positions, rollers)
-        Unit vector n of each ray in the fixed frame.
-    outermost : array, shape (rollers,)
-        Distance s of the roller centre from the race centre when it rests on the inner race, mm.
-    bore_play : array, shape (rollers,)
-        Bore radius less roller radius: distance from the bore centre at which it touches the bore, mm.
-    """
-
-    direction: ComplexArray
-    outermost: FloatArray
-    bore_play: FloatArray
-
-    def touching_distance(self, displacement: ComplexArray) -> FloatArray:
-        """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
-
-        Parameters
-        ----------
-        displacement : array of complex, shape (positions, rollers) or (positions, 1)
-            Bore centre from inner-race centre, mm.
-        """
-        along = _dot(self.direction, displacement)
-        across = (self.direction.conjugate() * displacement).imag
-        # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
-        return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
+    def take(self, places: NDArray[np.intp], rows: NDArray[np.intp]) -> _Pins:
+        """Return some pins, counted through all positions, and their positions; shape (pins, 1)."""
+        return _Pins(
+            centre=self.centre.take(places)[:, None],
+            arm=self.arm.take(places)[:, None],
+            turn=self.turn[rows],
+            point=self.point.take(places)[:, None],
+            radius=np.broadcast_to(self.radius, self.point.shape).take(places)[:, None],
+            reach=np.broadcast_to(self.reach, self.point.shape).take(places)[:, None],
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -246,6 +146,7 @@ class ContactGeometry:
         pose: FloatArray,
         start: FloatArray | None = None,
         shifts: ComplexArray | None = None,
+        known: KnownPins | None = None,
     ) -> FlankMotion:
         """Return the pairs of wheel pin and flank (Eq. 60–64).
 
@@ -259,49 +160,160 @@ class ContactGeometry:
             First guess of the contact parameters; the nominal ones by default.
         shifts : array of complex, shape (positions, z_P), optional
             Displacements of the pins in the fixed frame, mm.
+        known : KnownPins, optional
+            Of the same drives: pins that cannot have come as far as the flank are left out, see `complete_flank`.
         """
+        pins = self._pins(crank_angle, pose, shifts)
+        if start is None:
+            start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
+        if known is None:
+            return self._touching(self.profile, pins, start, self.coordinates_of(pose))
+        return self._touching_some(pins, start, known.may_touch(pins.point), known, self.coordinates_of(pose))
+
+    def complete_flank(
+        self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
+    ) -> FlankMotion:
+        """Return the pairs of which `flank` left some out as those of all pins.
+
+        Parameters
+        ----------
+        crank_angle, pose : array, array
+            As for `flank`.
+        motion : FlankMotion
+            What it answered.
+        shifts : array of complex, shape (positions, z_P), optional
+            As for `flank`.
+        """
+        if not motion.left_out.any():
+            return motion
+        pins = self._pins(crank_angle, pose, shifts)
+        others = self._touching_some(
+            pins, motion.parameter, motion.left_out, KnownPins.of(motion), self.coordinates_of(pose)
+        )
+        mixed = {}
+        for item in fields(motion):
+            mine, theirs = getattr(motion, item.name), getattr(others, item.name)
+            chosen = motion.left_out.reshape(*motion.left_out.shape, *(1,) * (mine.ndim - 2))
+            mixed[item.name] = np.where(chosen, theirs, mine)
+        return FlankMotion(**mixed | {"left_out": np.zeros_like(motion.left_out)})
+
+    def reach_beyond(self, other: ContactGeometry) -> FloatArray:
+        """Return a bound of how much deeper a pin is in the flank than that of another drive at the same place, mm.
+
+        It grows by its radius, and by no more than the flanks are apart: by their centres, the circles that generate them,
+        their offsets, turns and deviations.
+
+        Parameters
+        ----------
+        other : ContactGeometry
+            Of one drive with as many pins, or of as many positions.
+
+        Returns
+        -------
+        array, shape (z_P,) or (positions, z_P)
+        """
+        mine, theirs = self.profile, other.profile
+        apart = np.abs(np.asarray(mine.centre - theirs.centre)) + np.abs(mine.offset - theirs.offset)
+        apart = apart + np.abs(mine.generating_radius - theirs.generating_radius)
+        apart = apart + np.abs(mine.eccentricity - theirs.eccentricity)
+        apart = apart + np.abs(mine.turn - theirs.turn) * (theirs.generating_radius + theirs.eccentricity)
+        for deviation in (mine.deviation, theirs.deviation):
+            if deviation is not None:
+                apart = apart + deviation.bound
+        return np.asarray(self._pin_reaches - other._pin_reaches + apart)
+
+    @property
+    def _pin_reaches(self) -> FloatArray:
+        """From the nominal centre of a wheel pin to where it touches: its radius less the play in its seat."""
+        return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
+
+    def _pins(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None) -> _Pins:
         place, coordinates = self.placement, self.coordinates_of(pose)
-        rotation, wheel_angle = pose[:, DISC_ROTATION, None], pose[:, WHEEL_ANGLE, None]
         disc_centre = (place.race_centre(crank_angle) + pose[:, X] + 1j * pose[:, Y])[:, None]
-        wheel = coordinates.wheel_place
         if coordinates.wheel:  # a wheel that moves is a disc that moves the other way
+            wheel = coordinates.wheel_place
             disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
-        pin = place.wheel_pin_centres * unit(place.wheel_rotation(crank_angle)[:, None] + wheel_angle)
-        arm = place.wheel_axis + pin - disc_centre
+        turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
+        pin = place.wheel_pin_centres * unit(turned)
+        arm, turn = place.wheel_axis + pin - disc_centre, unit(pose[:, DISC_ROTATION, None])
         if shifts is not None:
             arm = arm + shifts
-        turn = unit(rotation)
-        point = arm * turn.conjugate()
-        if start is None:
-            start = self.nominal_parameter(crank_angle) + wheel_angle - rotation
-        parameter, curve = self.profile.nearest_point(point, start)
-        tangent, second = curve.tangent, curve.second
-        speed = np.sqrt(tangent.real**2 + tangent.imag**2)
-        normal = -1j * tangent / speed
-        distance = _dot(normal, point - curve.point)
-        curvature = _cross(tangent, second) / speed**3
-        offset = self.profile.contact_offset
-        approach = place.wheel_pin_radii - place.wheel_pin_plays - offset - distance
-        flank_curvature = curvature / (1.0 - offset * curvature)
-        effective_radius = 1.0 / (1.0 / place.wheel_pin_radii + flank_curvature)
+        return _Pins(
+            centre=pin,
+            arm=arm,
+            turn=turn,
+            point=arm * turn.conjugate(),
+            radius=place.wheel_pin_radii,
+            reach=self._pin_reaches,
+        )
 
-        # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
-        # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
-        outward = normal * turn
-        gradient, along = (np.zeros((*approach.shape, coordinates.size)) for _ in range(2))
-        gradient[..., X], gradient[..., Y] = outward.real, outward.imag
-        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = _cross(arm, outward), -_cross(pin, outward)
-        along[..., X], along[..., Y] = outward.imag, -outward.real
-        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -_dot(outward, arm), _dot(outward, pin)
-        if coordinates.wheel:
-            gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
-        return FlankMotion(
+    def _touching_some(
+        self, pins: _Pins, start: FloatArray, near: NDArray[np.bool_], known: KnownPins, coordinates: Coordinates
+    ) -> FlankMotion:
+        """Pairs of the pins that are near, each as a position of its own, among those of which something is known."""
+        places = np.flatnonzero(near)
+        rows = places // near.shape[1]
+        chosen, most = pins.take(places, rows), FARTHEST / self.profile.reduction_ratio
+        turned = dot(known.turning.take(places), chosen.point[:, 0] - known.point.take(places)).clip(-most, most)
+        found = self._touching(
+            self.profile.of_points(rows), chosen, (start.take(places) + turned)[:, None], coordinates
+        )
+        approach, parameter = known.approach.copy(), start.copy()
+        point, turning = known.point.copy(), known.turning.copy()
+        bending, effective_radius = np.zeros(near.shape), np.ones(near.shape)
+        gradient, along = (np.zeros((*near.shape, coordinates.size)) for _ in range(2))
+        motion = FlankMotion(
             approach=approach,
             gradient=gradient,
             along=along,
-            bending=curvature / (1.0 + curvature * distance),
+            bending=bending,
             parameter=parameter,
             effective_radius=effective_radius,
+            point=point,
+            turning=turning,
+            left_out=~near,
+        )
+        for item in fields(found):
+            if item.name != "left_out":
+                values = getattr(motion, item.name)
+                values.reshape(near.size, *values.shape[2:])[places] = getattr(found, item.name)[:, 0]
+        return motion
+
+    def _touching(self, profile: FlankProfile, pins: _Pins, start: FloatArray, coordinates: Coordinates) -> FlankMotion:
+        """Pairs of pins and flank, all of the same shape."""
+        point, arm = pins.point, pins.arm
+        parameter, curve = profile.nearest_point(point, start)
+        tangent, second = curve.tangent, curve.second
+        square = tangent.real**2 + tangent.imag**2
+        speed = np.sqrt(square)
+        normal = -1j * tangent / speed
+        distance = dot(normal, point - curve.point)
+        curvature = cross(tangent, second) / (square * speed)
+        spread = 1.0 + curvature * distance
+        offset = profile.contact_offset
+        flank_curvature = curvature / (1.0 - offset * curvature)
+
+        # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
+        # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
+        outward = normal * pins.turn
+        gradient, along = (np.zeros((*point.shape, coordinates.size)) for _ in range(2))
+        gradient[..., X], gradient[..., Y] = outward.real, outward.imag
+        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = cross(arm, outward), -cross(pins.centre, outward)
+        along[..., X], along[..., Y] = outward.imag, -outward.real
+        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -dot(outward, arm), dot(outward, pins.centre)
+        if coordinates.wheel:
+            wheel = coordinates.wheel_place
+            gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
+        return FlankMotion(
+            approach=pins.reach - offset - distance,
+            gradient=gradient,
+            along=along,
+            bending=curvature / spread,
+            parameter=parameter,
+            effective_radius=1.0 / (1.0 / pins.radius + flank_curvature),
+            point=point,
+            turning=tangent / (square * spread),
+            left_out=np.zeros(point.shape, dtype=bool),
         )
 
     def holes(self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None) -> PairMotion:
@@ -320,12 +332,12 @@ class ContactGeometry:
         direction = play / distance
         gradient, along = (np.zeros((*distance.shape, coordinates.size)) for _ in range(2))
         gradient[..., X], gradient[..., Y] = -direction.real, -direction.imag
-        gradient[..., DISC_ROTATION] = -_cross(arm, direction)
+        gradient[..., DISC_ROTATION] = -cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
-        along[..., DISC_ROTATION] = _dot(direction, arm)
+        along[..., DISC_ROTATION] = dot(direction, arm)
         if tips is not None:
-            gradient[..., coordinates.ring_place] = _dot(direction[..., None], ring)
-            along[..., coordinates.ring_place] = _cross(ring, direction[..., None])
+            gradient[..., coordinates.ring_place] = dot(direction[..., None], ring)
+            along[..., coordinates.ring_place] = cross(ring, direction[..., None])
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 

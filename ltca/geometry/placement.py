@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -29,8 +30,14 @@ def _filled(values: Sequence[float], count: int) -> FloatArray:
 
 
 def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
-    ray = np.exp(2j * np.pi * np.arange(count) / count)
-    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * ray)
+    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * _rays(count))
+
+
+@lru_cache(maxsize=64)
+def _rays(count: int) -> ComplexArray:
+    rays: ComplexArray = np.exp(2j * np.pi * np.arange(count) / count)
+    rays.setflags(write=False)
+    return rays
 
 
 def _of_shaft(drive: Drive) -> dict[str, Any]:

@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion, RollerRays
+from ltca.geometry.pair_motion import FlankMotion, PairMotion, RollerRays
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 

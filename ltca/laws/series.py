@@ -56,17 +56,21 @@ def approach_at_load(
     if isinstance(law, PlaneContactLaw):  # which is given the other way round
         approach, compliance = law.approach_and_compliance(force, radius)
         return np.where(loaded, approach, 0.0), np.where(loaded, compliance, 0.0)
+    force, radius = force[loaded], radius[loaded]
     approach = np.full(force.shape, 1e-3)
     if start is not None:
-        approach = np.where(start > 0.0, start, approach)
+        near = np.broadcast_to(start, loaded.shape)[loaded]
+        approach = np.where(near > 0.0, near, approach)
     history: list[float] = []
     for _ in range(100):
         found, stiffness = law.load_and_stiffness(approach, radius)
         step = (found - force) / stiffness
         # A law like δ^1.1: from far above the root the step could fall below zero.
         following = np.maximum(approach - step, 0.1 * approach)
-        history.append(float(np.max(np.where(loaded, np.abs(following / approach - 1.0), 0.0), initial=0.0)))
-        approach = np.where(loaded, following, approach)
+        history.append(float(np.max(np.abs(following / approach - 1.0), initial=0.0)))
+        approach = following
         if history[-1] < 1e-7:  # quadratic: 1e-14 is left; of the derivative, which is that of the last step, 1e-8
-            return np.where(loaded, approach, 0.0), np.where(loaded, 1.0 / stiffness, 0.0)
+            every, compliance = np.zeros(loaded.shape), np.zeros(loaded.shape)
+            every[loaded], compliance[loaded] = approach, 1.0 / stiffness
+            return every, compliance
     raise ConvergenceError("no approach found for a load; relative change", history)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 from math import pi
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from ltca.drive.deviations import BoreErrors
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.parts import Drive, PlacementErrors, RollerErrors
-from ltca.geometry.flank import FlankProfile
+from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.rotation import unit
 
 FloatArray = NDArray[np.float64]
@@ -200,11 +201,12 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
         waves = max(
             (drive.pin_wheel.number_of_pins, *profile.deviation.orders, len(drive.disc.profile_errors.parameter))
         )
-        places, direction = _looked_at(
+        places, direction, frame = _looked_at(
             float(profile.generating_radius), float(profile.eccentricity), profile.reduction_ratio, waves
         )
-        design, flank = profile.at(direction), profile.contact_curve(direction)
-        forward = (flank.tangent * design.tangent.conjugate()).real / np.abs(design.tangent)
+        # As it is neither turned nor out of centre, which neither folds nor bends it.
+        flank = replace(profile, turn=1.0, centre=0.0).deviated(frame, direction)
+        forward = (flank.tangent * frame.tangent.conjugate()).real
         if np.min(forward) <= 0.0:
             worst = float(places[np.argmin(forward)])
             yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
@@ -242,8 +244,11 @@ def _hollow_radius(curvature: float, offset: float) -> float:
 
 
 @lru_cache(maxsize=8)
-def _looked_at(radius: float, eccentricity: float, ratio: float, waves: int) -> tuple[FloatArray, ComplexArray]:
-    """Parameters θ at which a deviated flank is looked at, and e^{iθ}: every wave of it, and the roots, however sharp.
+def _looked_at(
+    radius: float, eccentricity: float, ratio: float, waves: int
+) -> tuple[FloatArray, ComplexArray, CurveFrame]:
+    """Parameters θ at which a deviated flank is looked at, e^{iθ} and the design there: every wave of it, and the roots,
+    however sharp.
 
     They are kept, since studies check one design thousands of times.
     """
@@ -255,6 +260,8 @@ def _looked_at(radius: float, eccentricity: float, ratio: float, waves: int) -> 
     roots = 2.0 * pi * np.arange(teeth)[:, None] / teeth + about
     places = np.mod(np.concatenate([even, roots.ravel()]), 2.0 * pi)
     direction = unit(places)
-    for kept in (places, direction):
+    design = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
+    frame = design.frame(direction)
+    for kept in (places, direction, *frame):
         kept.setflags(write=False)
-    return places, direction
+    return places, direction, frame

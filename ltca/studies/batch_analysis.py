@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
-from ltca.compliance.response import Start
+from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import geometries
+from ltca.equilibrium.reducer import at_rows, geometries, reach_beyond
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
@@ -35,10 +35,13 @@ class Nominal:
     ----------
     full, light : Equilibrium
         At its torque and at its light torque.
+    model : ComplianceModel
+        What answered.
     """
 
     full: Equilibrium
     light: Equilibrium
+    model: ComplianceModel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,7 +108,7 @@ def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
     light = full
     if any(QUANTITIES[name].stage == "light" for name in settings.quantities):
         light = solved.balance([drive.load.light_torque], full)
-    return Nominal(full=full, light=light)
+    return Nominal(full=full, light=light, model=solved.model)
 
 
 class _Batch:
@@ -122,16 +125,23 @@ class _Batch:
             self.prepared = with_kept_coefficients(settings.engine, drive).prepare(drive)
             self.model = self.prepared.model
 
-    def balance(self, torques: list[float], near: Equilibrium | None) -> Equilibrium:
-        """Balance the drives at their torques, from what is near: one position for each of theirs, or for each angle."""
+    def balance(
+        self, torques: list[float], near: Equilibrium | None, nominal: ComplianceModel | None = None
+    ) -> Equilibrium:
+        """Balance the drives at their torques, from what is near: one position for each of theirs, or for each angle.
+
+        The latter is what the model of another drive answered, the nominal one.
+        """
         if self.prepared is not None:
             return self.prepared.balance(self.angle, torques[0], None if near is None else near.pose)
         loads = np.repeat(torques, self.positions)
         if near is None:
-            return solve_at_output(self.model, self.drives, self.angle, loads)
+            return solve_at_output(self.model, self.drives, self.angle, loads, gaps=False)
         rows = np.arange(self.angle.size) % near.crank_angle.size
-        inner = Start.after(near.response).take(rows)
-        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner)
+        inner = Start.onward(near.response).take(rows)
+        if nominal is not None:
+            inner = inner.of_others(reach_beyond(self.model, at_rows(nominal, rows)))
+        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner, gaps=False)
 
 
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
@@ -205,13 +215,14 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     """
     stages = {QUANTITIES[name].stage for name in settings.quantities}
     solved = _Batch(drives, settings)
-    full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full)
+    known = None if nominal is None else nominal.model
+    full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full, known)
     pressures = solved.model.pressures(full.response)
     check_half_widths(drives[0], full.response, pressures)
     light, play = None, None
     if "light" in stages:
         near = full if nominal is None else nominal.light
-        light = solved.balance([drive.load.light_torque for drive in drives], near)
+        light = solved.balance([drive.load.light_torque for drive in drives], near, known)
     if "backlash" in stages:
         play = backlash(geometries(solved.model), solved.angle, WHEEL_ANGLE)
     return SampleBatch(

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.rollers import RollerLaws, balance_rollers
-from ltca.geometry.pairs import RollerRays
+from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.line_contact import LineContactLaw
 
 

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.compliance.beyond_near_field import finite_length_approach
 from ltca.compliance.coupled import CoupledCompliance
+from ltca.compliance.near_field import finite_length_approach
 from ltca.contact.hertz import cylinder_approach, half_plane_approach, line_half_width, strip_approach
 from ltca.drive.parts import Material, Materials
 from ltca.equilibrium.balance import solve_equilibrium

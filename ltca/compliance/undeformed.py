@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
-from ltca.geometry.pairs import ContactGeometry, FlankMotion, PairMotion
+from ltca.geometry.pair_motion import FlankMotion, PairMotion
+from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -1,0 +1,214 @@
+r"""What the geometry answers of pairs at a pose: approaches, their derivatives by the pose, and what bounds them elsewhere.
+
+All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
+together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+MARGIN = 1e-6
+"""Gap below which a pin is never left out, mm: far above round-off of places, far below any play."""
+
+
+def dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
+    """Return the scalar product of vectors of the plane."""
+    return first.real * second.real + first.imag * second.imag
+
+
+def cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
+    """Return their vector product."""
+    return first.real * second.imag - first.imag * second.real
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PairMotion:
+    """Approach of pairs of one kind, with first and second derivatives by the pose.
+
+    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its
+    tangent, and turning terms made of s again. They are only formed summed over the pairs, see `bend`.
+
+    Attributes
+    ----------
+    approach : array, shape (positions, pairs)
+        δ, mm.
+    gradient : array, shape (positions, pairs, coordinates)
+        ∂δ/∂q, in mm/mm and mm/rad.
+    along : array, shape (positions, pairs, coordinates)
+        Slip along the tangent by the pose, in mm/mm and mm/rad.
+    bending : array, shape (positions, pairs)
+        κ of the path of equal approach, 1/mm.
+    """
+
+    approach: FloatArray
+    gradient: FloatArray
+    along: FloatArray
+    bending: FloatArray
+
+    def bend(self, load: FloatArray) -> FloatArray:
+        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, coordinates, coordinates).
+
+        Parameters
+        ----------
+        load : array, shape (positions, pairs)
+            F, N.
+        """
+        return self._sum(load, self.bending, self.along)
+
+    @property
+    def curvature(self) -> FloatArray:
+        """∂²δ/∂q² of every pair, shape (positions, pairs, coordinates, coordinates)."""
+        one = np.ones((*self.bending.shape, 1))
+        return self._sum(one, self.bending[..., None], self.along[..., None, :])
+
+    @staticmethod
+    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
+        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ, the disc rotation being coordinate 2."""
+        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
+        total[..., DISC_ROTATION, DISC_ROTATION] += (load * along[..., DISC_ROTATION]).sum(axis=-1)
+        return np.asarray(total)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlankMotion(PairMotion):
+    """Pairs of wheel pin and flank.
+
+    Attributes
+    ----------
+    parameter : array, shape (positions, z_P)
+        Place θ of the contact on the flank, rad.
+    effective_radius : array, shape (positions, z_P)
+        ρ of pin and flank there, mm.
+    point : array of complex, shape (positions, z_P)
+        Centre of the pin in the frame of the disc, mm.
+    turning : array of complex, shape (positions, z_P)
+        Change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm.
+    left_out : array of bool, shape (positions, z_P)
+        Pins that cannot touch and were left out: approach and point are those of another pose, where the pair was open as
+        well, and derivatives are zero.
+    """
+
+    parameter: FloatArray
+    effective_radius: FloatArray
+    point: ComplexArray
+    turning: ComplexArray
+    left_out: NDArray[np.bool_]
+
+    @staticmethod
+    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
+        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ), the wheel angle being the last coordinate."""
+        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
+        slip = np.matmul(load[..., None, :], along)[..., 0, :]
+        total[..., DISC_ROTATION, :] += slip
+        total[..., :, DISC_ROTATION] += slip
+        for turn in (DISC_ROTATION, WHEEL_ANGLE):
+            total[..., turn, turn] -= slip[..., turn]
+        return np.asarray(-total)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownPins:
+    """Approaches of wheel pins and flank at one pose or other, from which those at every pose are bounded.
+
+    Attributes
+    ----------
+    approach, point, turning : array, shape (positions, z_P)
+        Of `FlankMotion` there.
+    """
+
+    approach: FloatArray
+    point: ComplexArray
+    turning: ComplexArray
+
+    @classmethod
+    def of(cls, motion: FlankMotion) -> KnownPins:
+        """Return what pairs of pins and flank tell of the pins."""
+        return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> KnownPins:
+        """Return what is known at some of the positions."""
+        return KnownPins(approach=self.approach[rows], point=self.point[rows], turning=self.turning[rows])
+
+    def may_touch(self, point: ComplexArray) -> NDArray[np.bool_]:
+        """Tell which pins may touch the flank: a distance changes by no more than the point moves it is measured from.
+
+        Parameters
+        ----------
+        point : array of complex, shape (positions, z_P)
+            Centres of the pins in the frame of the disc, mm.
+        """
+        room, moved = -MARGIN - self.approach, point - self.point
+        return np.asarray((room < 0.0) | (moved.real**2 + moved.imag**2 > room * room))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoreMotion:
+    """Bores of the disc against the centres of the inner races in them.
+
+    Attributes
+    ----------
+    displacement : array of complex, shape (positions, cranks)
+        Bore centre from inner-race centre in the fixed frame, mm.
+    arm : array of complex, shape (positions, cranks)
+        Bore centre from the centre of the disc in the fixed frame, mm: zero for a central crank. The second derivative of
+        `displacement` by the rotation of the disc is −`arm`, and there is no other.
+    gradient : array of complex, shape (positions, cranks, coordinates)
+        ∂ displacement/∂q, in mm/mm and mm/rad.
+    """
+
+    displacement: ComplexArray
+    arm: ComplexArray
+    gradient: ComplexArray
+
+    def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
+        """Return values of the bores as those of their rollers, shape (positions, rollers, …).
+
+        Parameters
+        ----------
+        values : array, shape (positions, cranks, …)
+            One of the attributes.
+        rollers : int
+            All of them.
+        """
+        return values if values.shape[1] == 1 else np.repeat(values, rollers // values.shape[1], axis=1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerRays:
+    """Rollers on their cage rays about the inner-race centres, crank after crank.
+
+    Attributes
+    ----------
+    direction : array of complex, shape (positions, rollers)
+        Unit vector n of each ray in the fixed frame.
+    outermost : array, shape (rollers,)
+        Distance s of the roller centre from the race centre when it rests on the inner race, mm.
+    bore_play : array, shape (rollers,)
+        Bore radius less roller radius: distance from the bore centre at which it touches the bore, mm.
+    """
+
+    direction: ComplexArray
+    outermost: FloatArray
+    bore_play: FloatArray
+
+    def touching_distance(self, displacement: ComplexArray) -> FloatArray:
+        """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
+
+        Parameters
+        ----------
+        displacement : array of complex, shape (positions, rollers) or (positions, 1)
+            Bore centre from inner-race centre, mm.
+        """
+        along = dot(self.direction, displacement)
+        across = (self.direction.conjugate() * displacement).imag
+        # A disc displaced sideways by more than the bore play touches nowhere on the ray: nearest point instead.
+        return np.asarray(along + np.sqrt(np.maximum(self.bore_play**2 - across**2, 0.0)))
