@@ -179,7 +179,9 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
         print(f"{QUANTITIES[name].heading:<48}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
-        first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
+        first = [
+            f"{study.field_words(path)} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]
+        ]
         print(
             f"  {QUANTITIES[name].description}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)"
         )

@@ -9,6 +9,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from ltca.drive.fields import whose
 from ltca.figures.run_figures import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.optimiser import Optimum, describe_limit
@@ -67,7 +68,8 @@ def _search(optimum: Optimum, title: str) -> Figure:
         axes.plot(x[fine], aim[fine], ".", color=COLOURS[6], markersize=3.5, label="within the limits")
         axes.plot(x[optimum.best], aim[optimum.best], "D", color=COLOURS[2], label="best")
         axes.axhline(optimum.start[0], color=COLOURS[0], linewidth=0.8, linestyle=(0, (4, 2)), label="as it is")
-        axes.set_xlabel(variable.path)
+        owner = whose(optimum.problem.drive, variable.path)
+        axes.set_xlabel(variable.path + (f"\n({owner})" if owner else ""))
         axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
     all_axes[0].set_ylabel(QUANTITIES[optimum.problem.aims[0]].heading)
     all_axes[-1].legend(frameon=False, fontsize=7.5)

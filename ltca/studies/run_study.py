@@ -136,6 +136,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
             "nominal": found.nominal,
             "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
             "sensitivity": found.ranking,
+            **({"eccentrics": owners} if (owners := study.eccentrics()) else {}),
         },
     )
     for sample, _ in found.failures:
