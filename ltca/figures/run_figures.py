@@ -44,6 +44,8 @@ STYLE: Any = {
 
 DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (8, 3)))
 """Lines of disc after disc."""
+SECTORS, FEWEST_IN_A_SECTOR = 60, 8
+"""Places of the rollers about a crank at which mean and range are taken, and rollers of one disc that pass each."""
 MOST_CURVES = 16
 """Names beside one axes; more cannot be told apart."""
 
@@ -249,6 +251,9 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
     speed = float(data["cage_speed"].values[0])
     place = speed * angle[:, None] + 2.0 * np.pi * np.arange(rollers) / rollers - angle[:, None]
     place = np.degrees(np.mod(place, 2.0 * np.pi))
+    if "of_case" in data.coords and np.ptp(data["crank"].values) > 0:
+        _range_of_each_crank(figure, data, place)
+        return
     edges = np.linspace(0.0, 360.0, 121)
     centres = 0.5 * (edges[1:] + edges[:-1])
     bins = np.digitize(place, edges[1:-1])
@@ -270,6 +275,58 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
     axes.set_title("Load distribution over the rollers (Fig. 34)")
 
 
+def _range_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray) -> None:
+    """Mean load and its range on each crank: the force turns over the revolution, and a curve of each disc hides the others."""
+    steps = min(SECTORS, max(4, place.size // FEWEST_IN_A_SECTOR))
+    sector = np.minimum((place / 360.0 * steps).astype(int), steps - 1)
+    load, names, lines = data["roller_load"].values, _cases(data), _lines(data)
+    owners = list(zip(data["of_case"].values.tolist(), data["crank"].values.tolist(), strict=True))
+    several, told, drawn = len({case for case, _ in owners}) > 1, {}, []
+    for row, owner in enumerate(owners):
+        told.setdefault(owner, []).append(row)
+    for (_, crank), rows in told.items():
+        inside = [load[np.ix_(rows)][:, sector == number] for number in range(steps)]
+        low, mean, high = (
+            np.array([pick(part) if part.size else np.nan for part in inside]) for pick in (np.min, np.mean, np.max)
+        )
+        words = [word for word in names[rows[0]].split(", ") if not word.startswith("disc ")]
+        line = Line(lines[rows[0]].colour, DASHES[crank % len(DASHES)] if several else "-")
+        drawn.append((", ".join(words), line, low, mean, high))
+    axes, middle = figure.subplots(), (np.arange(steps) + 0.5) * 360.0 / steps
+    for _, line, low, _, high in drawn:
+        axes.fill_between(middle, low, high, color=line.colour, alpha=0.12, linewidth=0.0)
+    draw_curves(
+        figure, axes, middle, np.array([mean for _, _, _, mean, _ in drawn]), [name for name, *_ in drawn],
+        "angle of the roller from the eccentricity [°]", "load on the bore [N]",
+        (0.0, 1.04 * max(float(np.nanmax(high)) for *_, high in drawn) + 1e-9), [line for _, line, *_ in drawn],
+    )  # fmt: skip
+    axes.set_xlim(0.0, 360.0)
+    axes.set_xticks(np.arange(0.0, 361.0, 60.0))
+    axes.set_title("Load on the rollers of each crank, all discs: mean and range over the positions (Fig. 34)")
+
+
+def _cranks(figure: Figure, data: xr.Dataset) -> None:
+    """Torque of each crank, and where they yield how far each goes in the plane of each disc."""
+    cranks, yields = data.sizes["crank"], "crank_deflection_radial" in data
+    figure.set_figheight((1.0 + yields) * figure.get_figheight() * 0.85)
+    panels = np.atleast_1d(figure.subplots(1 + yields, 1, sharex=True))
+    torque = _one_by_one(data.isel(disc=[0]), cranks)
+    values = torque["crank_torque"].values / 1e3
+    room = 0.06 * max(np.ptp(values), 1e-6)
+    draw_curves(
+        figure, panels[0], _degrees(torque), values, _cases(torque), "" if yields else CRANK, "torque [N m]",
+        (values.min() - room, values.max() + room), _lines(torque),
+    )  # fmt: skip
+    if yields:
+        moved = _one_by_one(data, cranks)
+        size = 1e3 * np.hypot(moved["crank_deflection_radial"].values, moved["crank_deflection_tangential"].values)
+        draw_curves(
+            figure, panels[1], _degrees(moved), size, _cases(moved), CRANK, "deflection at the disc [µm]",
+            (0.0, 1.04 * float(np.nanmax(size)) + 1e-9), _lines(moved),
+        )  # fmt: skip
+    figure.suptitle("Moment that holds each crank" + (", and how far it yields on its bearings" if yields else ""))
+
+
 FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
     "fig23_transmission_error": _transmission_error,
     "fig24_pin_load": _one_quantity("pin_load", 0, "load [N]", "Load of wheel pin 0 over its mesh (Fig. 24)"),
@@ -288,6 +345,7 @@ FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
     "fig35_pin_shaft_load": _one_quantity("pin_shaft_load", 0, "load [N]", "Load of shaft pin 0 (Fig. 35)"),
     "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins (Fig. 36)"),
     "torque_share": _torque_share,
+    "cranks": _cranks,
 }
 
 
@@ -295,6 +353,8 @@ OF_THE_DRIVE = ("fig23_transmission_error",)
 """What is no disc's own."""
 OF_SEVERAL_DISCS = ("torque_share",)
 """What a drive of one disc has not."""
+OF_SEVERAL_CRANKS = ("cranks",)
+"""What a drive with a central crank has not."""
 OF_THE_CRANKS = (
     "fig28_bearing_load",
     "fig29_tangential_bearing_load",
@@ -306,15 +366,16 @@ OF_THE_PIN_SHAFT = ("fig35_pin_shaft_load", "fig36_loaded_shaft_pins")
 """What a drive without pin shaft has not."""
 
 
-def figure_names(discs: int, holes: int) -> list[str]:
+def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
     """Return the names of the figures of a run, keys of `FIGURES`.
 
     Parameters
     ----------
-    discs, holes : int
+    discs, holes, cranks : int
         How many the drives have; no holes without a pin shaft.
     """
     missing: tuple[str, ...] = OF_SEVERAL_DISCS if discs == 1 else ()
+    missing += OF_SEVERAL_CRANKS if cranks == 1 else ()
     missing += OF_THE_PIN_SHAFT if holes == 0 else ()
     return [name for name in FIGURES if name not in missing]
 
@@ -332,7 +393,9 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
-    if name in OF_THE_DRIVE:
+    if name in OF_SEVERAL_CRANKS:
+        shown = dataset
+    elif name in OF_THE_DRIVE:
         shown = dataset.isel(disc=0, crank=0)
     else:
         shown = _one_by_one(dataset, dataset.sizes["crank"] if name in OF_THE_CRANKS else 1)
@@ -386,7 +449,7 @@ def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
         The PNG of each figure when both files are written.
     """
     with mpl.rc_context(STYLE):
-        for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"]):
+        for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
             figure = draw_figure(name, dataset)
             # One layout serves both files: to find it takes as long as to draw.
             layout = figure.get_layout_engine()
