@@ -13,7 +13,7 @@ from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.torque_curve import LOST_MOTION, TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.figures.run_figures import COLOURS, STYLE
+from ltca.figures.labelled_curves import COLOURS, STYLE
 from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]

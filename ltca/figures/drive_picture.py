@@ -14,7 +14,7 @@ from matplotlib.patches import Arc, Circle, Polygon
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive, PinShaft, PinWheel
-from ltca.figures.run_figures import STYLE
+from ltca.figures.labelled_curves import STYLE
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.output.files import whole_file
 

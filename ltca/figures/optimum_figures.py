@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ltca.drive.fields import whose
-from ltca.figures.run_figures import COLOURS, STYLE
+from ltca.figures.labelled_curves import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.optimiser import Optimum, describe_limit
 from ltca.studies.quantities import QUANTITIES

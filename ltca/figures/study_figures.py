@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from ltca.figures.run_figures import COLOURS, STYLE
+from ltca.figures.labelled_curves import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
