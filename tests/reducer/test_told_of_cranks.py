@@ -1,0 +1,99 @@
+"""What summary, table and figures of a run tell of each of several cranks."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import build_dataset
+from ltca.analysis.summary import summarise
+from ltca.commands.program import main
+from ltca.figures.run_figures import draw_figure, figure_names
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+
+ANGLES = np.array([0.31, 1.7, 3.1, 4.4])
+
+
+@pytest.fixture(scope="module")
+def rv():
+    return parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+
+
+@pytest.fixture(scope="module")
+def solved(rv):
+    found = analyse(rv, ANGLES)
+    return found, build_dataset("rv", {"nominal": found})
+
+
+def test_summary_tells_largest_load_and_deflection_of_each_crank(solved):
+    """Loads were means alone, and how far cranks go was in results.nc only."""
+    found, data = solved[0], solved[1].isel(case=0)
+    summary = summarise(found)
+    load = np.hypot(data["bearing_radial"], data["bearing_tangential"])
+    moved = np.hypot(data["crank_deflection_radial"], data["crank_deflection_tangential"])
+    round_off = 1e-12
+    assert summary["max_bearing_load_N"] == pytest.approx(float(load.max()), rel=round_off)
+    for crank in range(3):
+        told = summary[f"max_bearing_load_crank_{crank}_N"], summary[f"max_crank_deflection_crank_{crank}_mm"]
+        assert told[0] == pytest.approx(float(load.isel(crank=crank).max()), rel=round_off)
+        assert told[1] == pytest.approx(float(moved.isel(crank=crank).max()), rel=round_off)
+    assert "max_bearing_load_crank_3_N" not in summary
+
+
+def test_rigid_and_central_cranks_have_no_keys_of_their_own(rv):
+    rigid = summarise(analyse(replace(rv, crank=replace(rv.crank, support=None)), ANGLES[:1]))
+    assert "max_bearing_load_crank_2_N" in rigid
+    assert not any("deflection" in key for key in rigid)
+    central = summarise(analyse(load_drive("paper").cases["CS-1"], ANGLES[:1]))
+    assert central["max_bearing_load_N"] == central["mean_bearing_load_N"]
+    assert not any("deflection" in key or "load_crank" in key for key in central)
+
+
+def test_run_prints_what_each_crank_bears(tmp_path, capsys):
+    """The table had the torque of each crank alone, and a residual of 0.15 N beside nothing."""
+    path, out = tmp_path / "rv.toml", tmp_path / "out"
+    path.write_text(shipped_drive("rv"), encoding="utf-8")
+    assert main(["run", str(path), "--angles", "0.31", "1.7", "--no-figures", "--out", str(out)]) == 0
+    printed = {line[:44].strip(): line[44:].split() for line in capsys.readouterr().out.splitlines()}
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))["cases"]["nominal"]
+    assert printed["largest bearing load [N]"] == [f"{summary['max_bearing_load_N']:.1f}"]
+    assert printed["largest deflection of crank 2 [mm]"] == [f"{summary['max_crank_deflection_crank_2_mm']:.4f}"]
+    part = summary["max_equilibrium_residual_N"] / summary["max_bearing_load_N"]
+    assert printed["as a part of the largest bearing load"] == [f"{part:.1e}"]
+
+
+def curves(axes):
+    """Curves over positions or places; leaders to names have two points."""
+    return [line.get_ydata() for line in axes.lines if len(line.get_xdata()) > 2]
+
+
+def test_the_figure_of_cranks_has_torque_and_deflection_of_each(solved):
+    """No figure had either."""
+    data = solved[1]
+    upper, lower = draw_figure("cranks", data).axes
+    np.testing.assert_allclose(curves(upper), data["crank_torque"].values[0] / 1e3, rtol=1e-15)
+    moved = np.hypot(data["crank_deflection_radial"], data["crank_deflection_tangential"]).values[0]
+    np.testing.assert_allclose(
+        curves(lower), 1e3 * moved.reshape(6, -1), rtol=1e-15
+    )  # disc after disc, crank after crank
+    assert sorted(text.get_text() for text in upper.texts) == ["crank 0", "crank 1", "crank 2"]
+    assert set(figure_names(2, 8, 3)) - set(figure_names(2, 8)) == {"cranks"}
+
+
+def test_rollers_of_several_cranks_are_three_curves_in_their_ranges(solved):
+    """Six hairy curves in three colours hid each other."""
+    data = solved[1]
+    axes = draw_figure("fig34_roller_load", data).axes[0]
+    means, bands = curves(axes), [band.get_paths()[0].vertices[:, 1] for band in axes.collections]
+    assert (len(means), len(bands), sorted(text.get_text() for text in axes.texts)) == (
+        3,
+        3,
+        ["crank 0", "crank 1", "crank 2"],
+    )
+    for crank, (mean, band) in enumerate(zip(means, bands, strict=True)):
+        assert np.max(band) == np.max(data["roller_load"].isel(crank=crank).values)
+        assert 0.0 < np.max(mean) < np.max(band)
