@@ -11,6 +11,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
+from ltca.commands.curves import _speed_words
 from ltca.commands.program import main
 from ltca.figures.run_figures import draw_figure, figure_names
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -97,3 +98,23 @@ def test_rollers_of_several_cranks_are_three_curves_in_their_ranges(solved):
     for crank, (mean, band) in enumerate(zip(means, bands, strict=True)):
         assert np.max(band) == np.max(data["roller_load"].isel(crank=crank).values)
         assert 0.0 < np.max(mean) < np.max(band)
+
+
+@pytest.mark.parametrize(
+    ("installation", "elsewhere"),
+    [
+        # Sun and carrier at n and n/81 (1 + i₁ z_P), wheel and crank z₂/z₁ = 2: (n − n/81)/2 = 1000.
+        ({}, "1000 turns a minute of the cranks against the carrier, 2025 of the input before the first stage"),
+        ({"held": "pin-shaft"}, "1000 turns a minute of the cranks against the carrier, 2000 of the input"),
+        # The carrier turns backward once for 40 turns of the cranks in it.
+        ({"first_stage_ratio": None}, "1000 turns a minute of the cranks against the carrier, 975 against the housing"),
+    ],
+)
+def test_the_speed_of_a_life_says_whose_it_is(rv, installation, elsewhere):
+    """`--speed` was a crank speed, against the input, the housing or the carrier."""
+    drive = replace(rv, installation=replace(rv.installation, **installation))
+    assert _speed_words(drive, 1000.0).startswith(elsewhere)
+
+
+def test_the_speed_of_a_central_crank_is_against_the_held_member():
+    assert _speed_words(load_drive("paper").cases["CS-1"], 1500.0).endswith("of the crank against the held pin shaft")
