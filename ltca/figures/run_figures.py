@@ -215,16 +215,16 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
-    if name in OF_SEVERAL_CRANKS:
-        shown = dataset
-    elif name in OF_THE_DRIVE:
-        shown = dataset.isel(disc=0, crank=0)
-    else:
-        shown = one_by_one(dataset, dataset.sizes["crank"] if name in OF_THE_CRANKS else 1)
+    shown = one_by_one(dataset, dataset.sizes["crank"] if name in (*OF_THE_CRANKS, *OF_SEVERAL_CRANKS) else 1)
+    drawn = int(shown["of_case"].max()) + 1 if "of_case" in shown.coords else dataset.sizes["case"]
+    if name in OF_THE_DRIVE:
+        shown, drawn = dataset.isel(disc=0, crank=0), dataset.sizes["case"]
+    elif name in OF_SEVERAL_CRANKS:
+        shown = dataset.isel(case=slice(drawn))
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         FIGURES[name](figure, shown)
-        if "of_case" in shown.coords and (drawn := int(shown["of_case"].max()) + 1) < dataset.sizes["case"]:
+        if drawn < dataset.sizes["case"]:
             figure.text(0.005, 0.005, f"{drawn} of {dataset.sizes['case']} cases", fontsize=7.0)
     return figure
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +12,13 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
+from ltca.analysis.transmission_error_orders import Order, Spectrum
 from ltca.commands.curves import _speed_words
 from ltca.commands.program import main
+from ltca.commands.show import _loads
+from ltca.drive.units.quantities import ARCSEC
+from ltca.figures import curve_figures, drive_picture
+from ltca.figures.drive_picture import draw_drive
 from ltca.figures.run_figures import draw_figure, figure_names
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
@@ -85,6 +91,13 @@ def test_the_figure_of_cranks_has_torque_and_deflection_of_each(solved):
     assert set(figure_names(2, 8, 3)) - set(figure_names(2, 8)) == {"cranks"}
 
 
+def test_cases_that_have_no_room_in_the_figure_of_cranks_are_counted(solved):
+    data = build_dataset("rv", {f"case {number}": solved[0] for number in range(4)})
+    figure = draw_figure("cranks", data)
+    assert [text.get_text() for text in figure.texts if "cases" in text.get_text()] == ["2 of 4 cases"]
+    assert [len(curves(axes)) for axes in figure.axes] == [6, 12]
+
+
 def test_rollers_of_several_cranks_are_three_curves_in_their_ranges(solved):
     """Six hairy curves in three colours hid each other."""
     data = solved[1]
@@ -118,3 +131,47 @@ def test_the_speed_of_a_life_says_whose_it_is(rv, installation, elsewhere):
 
 def test_the_speed_of_a_central_crank_is_against_the_held_member():
     assert _speed_words(load_drive("paper").cases["CS-1"], 1500.0).endswith("of the crank against the held pin shaft")
+
+
+def test_a_crank_that_carries_nothing_is_said_to_carry_none(rv):
+    """`rollers, on the bore, crank 2` was followed by nothing, and its force was -0.0 N."""
+    wide = replace(rv, clearance=replace(rv.clearance, bearing=0.1))
+    rows = dict(_loads(analyse(wide, np.array([0.7]))))
+    assert rows["disc 0: rollers, on the bore, crank 2"] == "none"
+    assert rows["disc 0: bearing load on it, crank 2, radial, tangential"] == "0.0, 0.0 N"
+    assert "N" in rows["disc 0: rollers, on the bore, crank 0"]
+
+
+def test_cranks_are_numbered_in_the_picture(rv, tmp_path, monkeypatch):
+    """Which crank is 2 had to be guessed from the angles."""
+    drawn = []
+    monkeypatch.setattr(drive_picture.Figure, "savefig", lambda figure, *words, **options: drawn.append(figure))
+    monkeypatch.setattr(drive_picture, "whole_file", lambda path: nullcontext(path))
+    draw_drive(rv, analyse(rv, np.array([0.7])), 0, tmp_path / "drive.png")
+    for axes in drawn[0].axes:
+        numbers = {text.get_text(): complex(*text.get_position()) for text in axes.texts if text.get_text().isdigit()}
+        assert sorted(numbers) == ["0", "1", "2"]
+        for crank, axis in enumerate(rv.crank.places):
+            # inside the inner race of its own crank
+            assert abs(numbers[str(crank)] - axis) < rv.crank_bearing.inner_race_radius
+
+
+def test_numbers_of_orders_do_not_cover_each_other(tmp_path, monkeypatch):
+    """Orders 1.95 and 2 of an RV reducer, and some ten more below 8, beside an axis up to 280."""
+    values = np.array([0.975, 1.0, 1.742, 1.95, 2.0, 2.925, 4.0, 4.065, 6.0, 39.0, 78.0, 273.0])
+    amplitude = np.array([0.041, 0.048, 0.018, 0.103, 0.124, 0.017, 0.053, 0.044, 0.28, 0.064, 0.011, 1e-5]) / ARCSEC
+    orders = tuple(Order(value=float(value), name=f"order {value:g}") for value in values)
+    drawn = []
+    monkeypatch.setattr(curve_figures, "_save", lambda figure, stem: drawn.append(figure) or stem)
+    curve_figures.draw_spectrum(
+        Spectrum(orders=orders, amplitude=amplitude, phase=0.0 * values, mean=0.0, residual=0.0),
+        "rv",
+        tmp_path / "orders",
+    )
+    (axes,) = drawn[0].axes
+    drawn[0].canvas.draw()
+    numbers = [text for text in axes.texts if "″" not in text.get_text()]
+    assert {text.get_text() for text in numbers} >= {"6", "2", "39"}
+    boxes = [text.get_window_extent() for text in numbers]
+    assert not any(one.overlaps(other) for place, one in enumerate(boxes) for other in boxes[:place])
+    assert 78.0 < axes.get_xlim()[1] < 90.0
