@@ -12,6 +12,7 @@ from ltca.drive.fields import whose
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+from ltca.studies.tolerance_study import tolerance_study
 
 RV, PAPER = shipped_drive("rv"), shipped_drive("paper")
 SCATTER = '{ distribution = "normal", tolerance = 0.003 }'
@@ -124,4 +125,9 @@ def test_a_tolerance_on_a_part_that_one_case_has_is_kept():
     head, table, rest = RV.partition("[tolerances]\n")
     cases = '\n[[case]]\nname = "rigid"\n[[case]]\nname = "soft"\npin_wheel = { support_stiffness = 1e6 }\n'
     text = f'{head}{table}pin_wheel.support_stiffness = {{ distribution = "normal", tolerance = 1e4 }}\n{rest}{cases}'
-    assert "pin_wheel.support_stiffness" in parse_drive(text).tolerances
+    file = parse_drive(text, "drive.toml")
+    assert "pin_wheel.support_stiffness" in file.tolerances
+    told = r"^drive\.toml: case rigid: tolerances\.pin_wheel\.support_stiffness: is left out in this drive"
+    with pytest.raises(DriveError, match=told):
+        tolerance_study(file, case="rigid", samples=4, positions=3)
+    assert tolerance_study(file, case="soft", samples=4, positions=3).design.samples == 4
