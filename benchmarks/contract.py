@@ -74,9 +74,11 @@ def program(words: list[str], answer: str, extra: str = "", study: bool = False)
             errors = io.StringIO()
             with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(io.StringIO()):
                 status = cyclo([words[0], str(source), *words[1:], "--out", str(path / "out"), "--no-figures"])
-            if status != 0:
+            partial = status == 1 and "partial:" in errors.getvalue()
+            content = json.loads((path / "out" / answer).read_text(encoding="utf-8")) if partial or status == 0 else {}
+            if status != 0 and not content.get("quantities"):  # some samples of a study answer for it
                 raise DriveError([errors.getvalue()])
-            return np.array(numbers_of(json.loads((path / "out" / answer).read_text(encoding="utf-8"))))
+            return np.array(numbers_of(content))
 
     return run
 

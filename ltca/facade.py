@@ -177,6 +177,10 @@ class Plots:
         """Draw the part of the torque that each disc carries over the crank angle; 1 throughout of one disc."""
         return self._drawn("torque_share")
 
+    def cranks(self) -> Figure:
+        """Draw the moment that holds each crank, and where they yield how far each does."""
+        return self._drawn("cranks")
+
     def __repr__(self) -> str:
         """Name the figures there are."""
         names = [name for name, value in vars(type(self)).items() if isinstance(value, Callable) and name[0] != "_"]  # type: ignore[arg-type]

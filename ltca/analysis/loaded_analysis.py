@@ -38,6 +38,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import preload_warning
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 SHARED = 24
@@ -122,6 +123,21 @@ class LoadedAnalysis:
     def crank_torques(self) -> FloatArray:
         """External moment that holds each crank, ccw positive, shape (positions, cranks), N·mm."""
         return crank_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+
+    @property
+    def crank_deflections(self) -> ComplexArray:
+        """Displacement of each crank in the plane of each disc along its eccentric + i · 90° ahead, mm.
+
+        Shape (positions, discs, cranks); without cranks where they are rigid.
+        """
+        pose, coordinates, parts = self.full.pose, self.model.coordinates, []
+        for number, disc in enumerate(self.model.discs):
+            own = pose[:, coordinates.columns(number)]
+            first, last = coordinates.crank(0), coordinates.crank(coordinates.cranks)
+            moved = own[:, first:last:2] + 1j * own[:, first + 1 : last : 2]
+            ahead = disc.geometry.placement.eccentric_directions(self.full.crank_angle)
+            parts.append(moved * ahead.conjugate() if coordinates.cranks else moved)
+        return np.stack(parts, axis=1)
 
     @property
     def compliance_shares(self) -> dict[str, FloatArray]:

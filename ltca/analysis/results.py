@@ -150,14 +150,7 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
     if coordinates.wheel:
         values["wheel_x"], values["wheel_y"] = pose[:, coordinates.wheel_place].T
     if coordinates.cranks:
-        parts = []
-        for number, disc in enumerate(analysis.model.discs):
-            own = pose[:, coordinates.columns(number)]
-            first, last = coordinates.crank(0), coordinates.crank(coordinates.cranks)
-            moved = own[:, first:last:2] + 1j * own[:, first + 1 : last : 2]
-            ahead = disc.geometry.placement.eccentric_directions(analysis.full.crank_angle)
-            parts.append((moved * ahead.conjugate()).T)
-        yielding = np.stack(parts)
+        yielding = np.moveaxis(analysis.crank_deflections, 0, 2)
         values["crank_deflection_radial"], values["crank_deflection_tangential"] = yielding.real, yielding.imag
     return values
 

@@ -81,6 +81,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         "mean_radial_bearing_load_N": np.mean(radial),
         "mean_tangential_bearing_load_N": np.mean(tangential),
         "ptp_tangential_bearing_load_N": np.max(np.ptp(tangential, axis=0)),
+        "max_bearing_load_N": np.max(np.hypot(radial, tangential)),
         "max_pin_load_N": np.max(contacts.pin_load),
         "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
         "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
@@ -111,6 +112,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
+    values |= _of_cranks(analysis)
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     if analysis.wall_stresses:
         for wall in ("root", "bore", "hole"):
@@ -122,6 +124,19 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
+    """Largest bearing load of each of several cranks on any disc, and how far each goes in the plane of any where it yields."""
+    load, moved = np.hypot(analysis.bearing_radial, analysis.bearing_tangential), np.abs(analysis.crank_deflections)
+    cranks = load.shape[2] if load.shape[2] > 1 else 0
+    return {
+        **{f"max_bearing_load_crank_{crank}_N": float(np.max(load[:, :, crank])) for crank in range(cranks)},
+        **{
+            f"max_crank_deflection_crank_{crank}_mm": float(np.max(moved[:, :, crank]))
+            for crank in range(moved.shape[2])
+        },
+    }
 
 
 def _most(values: FloatArray) -> float:

@@ -58,7 +58,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--speed",
         metavar="N",
         type=quantity_argument("--speed", "rpm", gt=0.0),
-        help="crank speed in turns a minute (or a text such as '1500 rpm'), for the life in hours",
+        help="crank speed in turns a minute (or a text such as '1500 rpm'), for the life in hours: of a central crank "
+        "against the held member, of several cranks against the carrier (what that is of the input is printed)",
     )
     parser.add_argument(
         "--load-rating",
@@ -81,7 +82,7 @@ class Limits(NamedTuple):
     load_rating : float or None
         Of the crank bearing, N; by ISO 281 otherwise.
     speed : float or None
-        Of the crank, turns a minute.
+        Of the crank, turns a minute: of a central one against the held member, of several against the carrier.
     """
 
     pressure: float
@@ -298,10 +299,22 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     print(f"rating life of the crank bearing{which} ({stands})")
     print(f"  C {life.dynamic_load_rating:.0f} N, P {life.equivalent_load:.0f} N, L10r {life.life:.1f} million turns")
     if found.hours is not None:
-        print(f"  {found.hours:.0f} h at {limits.speed:g} turns a minute")
+        print(f"  {found.hours:.0f} h at {_speed_words(drive, limits.speed)}")
     print(
         f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limits.pressure:g} MPa, largest {over}"
     )
+
+
+def _speed_words(drive: Drive, speed: float | None) -> str:
+    """Which speed it is, and what that of several cranks in the carrier is elsewhere."""
+    told, ratio = f"{speed:g} turns a minute", drive.reduction_ratio
+    if speed is None or drive.crank.number == 1:
+        return f"{told} of the crank against the held {drive.installation.held.replace('-', ' ')}"
+    told += " of the cranks against the carrier"
+    if drive.installation.first_stage_ratio is not None:
+        return f"{told}, {speed * abs(drive.transmission_ratio) / ratio:.6g} of the input before the first stage"
+    # The carrier turns backward, by one turn for u of the cranks in it.
+    return f"{told}, {speed * (1.0 - 1.0 / ratio):.6g} against the housing" if drive.wheel_is_held else told
 
 
 def _range(values: Any) -> str:

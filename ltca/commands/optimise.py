@@ -164,6 +164,7 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet
 
+    from ltca.drive.fields import whose
     from ltca.output.files import whole_file
     from ltca.output.provenance import code_hash, code_version
     from ltca.studies.execution.storage import field_column, quantity_column
@@ -177,7 +178,10 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
     }
     schema = pa.schema(
         [
-            *(pa.field(v.path, pa.float64(), metadata=field_column(v.path)) for v in problem.variables),
+            *(
+                pa.field(v.path, pa.float64(), metadata=field_column(v.path, whose(problem.drive, v.path)))
+                for v in problem.variables
+            ),
             *(pa.field(name, pa.float64(), metadata=quantity_column(name)) for name in problem.quantities),
             *(
                 pa.field(name, pa.bool_(), metadata={"units": "1", "description": text})
@@ -193,7 +197,7 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
 
 def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positions: int) -> dict[str, Any]:
     """What ``optimum.json`` holds: the drive as it is and the one found, solved finely, and as the search saw them."""
-    from ltca.drive.fields import read_field
+    from ltca.drive.fields import read_field, whose
     from ltca.output.provenance import code_hash, code_version
     from ltca.studies.execution.storage import field_column, quantity_column
     from ltca.studies.optimiser import broken_limits, describe_limit
@@ -210,7 +214,7 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
         "extremes": "refined between the positions",
         "variables": {
             variable.path: {
-                **field_column(variable.path),
+                **field_column(variable.path, whose(problem.drive, variable.path)),
                 "low": variable.low,
                 "high": variable.high,
                 "as_it_is": float(read_field(problem.drive, variable.path)),
@@ -234,7 +238,7 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
 
 
 def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
-    from ltca.drive.fields import read_field
+    from ltca.drive.fields import read_field, whose, with_whose
     from ltca.studies.optimiser import broken_limits, describe_limit
     from ltca.studies.quantities import QUANTITIES
 
@@ -246,7 +250,8 @@ def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
     print(f"{'':<48}{f'{found.positions} positions, refined':>24}{f'{positions} positions':>24}")
     print(f"{'':<48}{'as it is':>12}{'found':>12}{'as it is':>12}{'found':>12}")
     for variable, value in zip(problem.variables, optimum.variables[optimum.best], strict=True):
-        print(f"{variable.path:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")
+        head = with_whose(variable.path, whose(problem.drive, variable.path))
+        print(f"{head:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")
     for column, name in enumerate(problem.quantities):
         values = nominal.values[name], found.values[name], optimum.start[column], optimum.values[optimum.best, column]
         print(f"{QUANTITIES[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))

@@ -105,10 +105,10 @@ def execute(arguments: argparse.Namespace) -> int:
         return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
 
 
-def _discs_and_holes(cases: Mapping[str, Drive]) -> tuple[int, int]:
-    """Numbers of discs and of holes, which all cases of a run have."""
+def _parts(cases: Mapping[str, Drive]) -> tuple[int, int, int]:
+    """Numbers of discs, of holes and of cranks, which all cases of a run have."""
     drive = next(iter(cases.values()))
-    return drive.disc.number_of_discs, drive.number_of_holes
+    return drive.disc.number_of_discs, drive.number_of_holes, drive.crank.number
 
 
 def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterator[str]:
@@ -123,7 +123,7 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
         from ltca.figures.run_figures import figure_names
         from ltca.output.run_folder import figure_files
 
-        yield from figure_files(*figure_names(*_discs_and_holes(cases)))
+        yield from figure_files(*figure_names(*_parts(cases)))
         if arguments.pressure is not None:
             yield from figure_files(*PRESSURE_FIGURES)
             yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
@@ -225,7 +225,7 @@ def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], fol
     from ltca.figures.run_figures import figure_names, write_figures
     from ltca.output.progress import progress
 
-    names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"])
+    names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"])
     with progress("figures", len(names)) as advance:
         for path in write_figures(dataset, folder):
             advance(path.name)
@@ -262,6 +262,7 @@ ROWS = (
     ("  radial", "mean_radial_bearing_load_N", "N", "{:.1f}"),
     ("  tangential", "mean_tangential_bearing_load_N", "N", "{:.1f}"),
     ("  tangential, peak to peak", "ptp_tangential_bearing_load_N", "N", "{:.1f}"),
+    ("largest bearing load", "max_bearing_load_N", "N", "{:.1f}"),
     ("largest pin load", "max_pin_load_N", "N", "{:.1f}"),
     ("largest pin pressure, mid-width", "max_pin_pressure_mid_MPa", "MPa", "{:.1f}"),
     ("  anywhere (end cell a hundredth)", "max_pin_pressure_max_MPa", "MPa", "{:.1f}"),
@@ -280,7 +281,13 @@ ROWS = (
     ("backlash at the disc", "backlash_disc_arcmin", "′", "{:z.2f}"),
     ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
 )
-RESIDUAL_ROWS = (("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),)
+RESIDUAL_PART = "residual_part"
+RESIDUAL_ROWS = (
+    ("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),
+    ("  as a part of the largest bearing load", RESIDUAL_PART, "", "{:.1e}"),
+)
+HEAD = 44
+"""Width of the names of the rows."""
 
 
 RIGID_SHAFT_PINS = (
@@ -299,10 +306,11 @@ WALL_ROWS = (
 def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str], yields: bool) -> str:
     from ltca.analysis.summary import refined_value
 
+    summaries = {name: {**case, RESIDUAL_PART: _residual_part(case)} for name, case in summaries.items()}
     width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
     lines = [
-        f"{'case':<40}" + "".join(f"{name:>{width}}" for name in summaries),
-        f"{'torque, direction of the crank':<40}" + "".join(f"{load:>{width}}" for load in loads.values()),
+        f"{'case':<{HEAD}}" + "".join(f"{name:>{width}}" for name in summaries),
+        f"{'torque, direction of the crank':<{HEAD}}" + "".join(f"{load:>{width}}" for load in loads.values()),
     ]
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
     shares = (*_share_rows(summaries), *_compliance_rows(summaries, yields))
@@ -314,9 +322,15 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str],
     pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
     for title, key, unit, form in (*ROWS, *output, *shares, *RESIDUAL_ROWS, *pressed, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
-        values = [refined_value(case, key) for case in summaries.values()]
-        lines.append(f"{head:<40}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
+        values = [refined_value(case, key) if key in case else None for case in summaries.values()]
+        lines.append(f"{head:<{HEAD}}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
     return "\n".join(lines)
+
+
+def _residual_part(case: Mapping[str, float | None]) -> float | None:
+    """What the residual is against: very stiff supports leave round-off of tenths of a newton."""
+    residual, load = case["max_equilibrium_residual_N"], case["max_bearing_load_N"]
+    return residual / load if residual is not None and load else None
 
 
 def _share_rows(summaries: dict[str, dict[str, float | None]]) -> Iterator[tuple[str, str, str, str]]:
@@ -337,6 +351,12 @@ def _compliance_rows(
     cranks = sum(key.startswith("mean_torque_crank_") for key in first)
     for crank in range(cranks if cranks > 1 else 0):
         yield f"torque of crank {crank}, mean", f"mean_torque_crank_{crank}_Nmm", "N mm", "{:.0f}"
+        yield "  largest bearing load at the positions", f"max_bearing_load_crank_{crank}_N", "N", "{:.1f}"
+    for crank in range(cranks):
+        key = f"max_crank_deflection_crank_{crank}_mm"
+        if any(key in case for case in summaries.values()):
+            of = f" of crank {crank}" if cranks > 1 else " of the crank"
+            yield f"largest deflection{of}", key, "mm", "{:.4f}"
     told = [part for part in PARTS if any(case[f"compliance_share_{part}"] for case in summaries.values())]
     for number, part in enumerate(told if yields or cranks > 1 else ()):
         title = "part of the compliance: " if number == 0 else "  "

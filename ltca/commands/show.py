@@ -248,7 +248,7 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
 
     def loaded(values: FloatArray) -> str:
         numbers = np.nonzero(values > 1e-3 * values.max())[0]
-        return ", ".join(f"{n}: {values[n]:.0f} N" for n in numbers)
+        return ", ".join(f"{n}: {values[n]:.0f} N" for n in numbers) or "none"
 
     rows = []
     share = analysis.torque_share[0]
@@ -266,16 +266,16 @@ def _loads(analysis: LoadedAnalysis) -> list[tuple[str, str]]:
         forces = zip(disc.bearing_radial[0, 0], disc.bearing_tangential[0, 0], strict=True)
         for crank, (radial, tangential) in enumerate(forces):
             on = f"{of}bearing load on it" if of else "bearing load on the disc"
-            rows += [(f"{on}{_of_crank(crank, rollers)}, radial, tangential", f"{radial:.1f}, {tangential:.1f} N")]
+            rows += [(f"{on}{_of_crank(crank, rollers)}, radial, tangential", f"{radial:z.1f}, {tangential:z.1f} N")]
         rows += [
-            (f"{of}displacement x, y" if of else "disc displacement x, y", f"{1e3 * x:.2f}, {1e3 * y:.2f} µm"),
-            (f"{of}rotation" if of else "disc rotation", f"{rotation * ARCMIN:.4f}′"),
+            (f"{of}displacement x, y" if of else "disc displacement x, y", f"{1e3 * x:z.2f}, {1e3 * y:z.2f} µm"),
+            (f"{of}rotation" if of else "disc rotation", f"{rotation * ARCMIN:z.4f}′"),
         ]
     wheel = analysis.full.pose[0, WHEEL_ANGLE]
-    rows += [("wheel angle", f"{wheel * ARCMIN:.4f}′")]
+    rows += [("wheel angle", f"{wheel * ARCMIN:z.4f}′")]
     if analysis.drive.wheel_is_held:
         rows += [
             ("moment that holds the wheel", f"{analysis.full.wheel_moment[0] / 1000.0:.6g} N·m"),
-            ("deviation of the output", f"{analysis.transmission_error[0] * ARCMIN:.4f}′"),
+            ("deviation of the output", f"{analysis.transmission_error[0] * ARCMIN:z.4f}′"),
         ]
     return rows

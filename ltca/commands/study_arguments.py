@@ -154,7 +154,10 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
 
         paths = list(write_study_figures(folder, study, found.ranking, found.nominal))
         print(f"figures: {folder.path / 'figures'} ({len(paths)} as SVG and PNG)")
-    return 1 if len(found.failures) == study.design.samples else 0
+    if found.failures:
+        # Said last and as `run` says it: what stands above is that of the samples that have an answer.
+        tell(f"cyclo: error: partial: {len(found.failures)} of {study.design.samples} samples failed")
+    return 1 if found.failures else 0
 
 
 def tell(message: str) -> None:
@@ -179,7 +182,9 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
         print(f"{QUANTITIES[name].heading:<48}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
-        first = [f"{path} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]]
+        first = [
+            f"{study.field_words(path)} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]
+        ]
         print(
             f"  {QUANTITIES[name].description}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)"
         )

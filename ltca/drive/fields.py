@@ -8,7 +8,7 @@ disc after disc: ``crank.of.N`` is that of disc N // cranks on crank N % cranks,
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, is_dataclass
 from functools import cache, lru_cache
 from types import NoneType, UnionType
@@ -19,7 +19,7 @@ from pydantic.functional_validators import BeforeValidator
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.units.quantities import QuantityCheck
-from ltca.errors import DriveError, did_you_mean
+from ltca.errors import DriveError, nearest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,6 +111,72 @@ def numbered(path: str) -> tuple[str, int, str] | None:
     return None if found is None else (found.group(1), int(found.group(2)), path[found.end() :])
 
 
+def whose(drive: Drive, path: str) -> str:
+    """Return whose a field of one eccentric of several cranks is; empty where its path says it.
+
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import parse_drive, shipped_drive
+    >>> whose(parse_drive(shipped_drive("rv")).cases["nominal"], "crank.of.4.phase_error")
+    'disc 1, crank 1'
+    """
+    found = numbered(path)
+    if found is None or found[0] != "crank.of" or drive.crank.number == 1:
+        return ""
+    disc, crank = divmod(found[1], drive.crank.number)
+    return f"disc {disc}, crank {crank}"
+
+
+def with_whose(path: str, owner: str) -> str:
+    """Return a path with its owner (`whose`) behind it, if any.
+
+    Examples
+    --------
+    >>> with_whose("crank.of.4.phase_error", "disc 1, crank 1")
+    'crank.of.4.phase_error (disc 1, crank 1)'
+    """
+    return f"{path} ({owner})" if owner else path
+
+
+def _counting(drive: Drive, table: str) -> str:
+    """What N of ``disc.of.N`` or ``crank.of.N`` is."""
+    last, cranks = _entries(drive, table.partition(".")[0]) - 1, drive.crank.number
+    means = f"disc · {cranks} + crank" if table == "crank.of" and cranks > 1 else "the disc"
+    return f"N of {table}.N is {means}, " + (f"from 0 to {last}" if last else "and 0 alone")
+
+
+def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = None) -> str:
+    """Return what to say of a path that is no field: the one that was meant, of those the drive can have.
+
+    Parameters
+    ----------
+    drive : Drive or None
+        None where it is not known yet.
+    path : str
+        As it was written.
+    known : iterable of str, optional
+        Fields to choose from; all by default.
+    """
+    there = tuple(
+        name
+        for name in (field_kinds() if known is None else known)
+        if drive is None or absence(drive, name.replace(f".{ANY}.", ".0.")) is None
+    )
+    written = re.fullmatch(r"(disc|crank)\.of\.(\w+)\.(.*)", path)
+    plain = path if written is None else f"{written.group(1)}.of.{ANY}.{written.group(3)}"
+    table, _, name = path.partition(".")
+    of_one = f"{table}.of.{ANY}.{name}"
+    meant = plain if plain in there else of_one if of_one in there else nearest(plain, there)
+    told = ""
+    if f".{ANY}." in meant and drive is not None:
+        told = f"; {_counting(drive, meant.partition(f'.{ANY}.')[0])}"
+    if meant == plain and written is not None:
+        return f"must have a number in the place of {written.group(2)}{told}"
+    if written is not None and written.group(2).isdigit():
+        meant, told = meant.replace(f".{ANY}.", f".{written.group(2)}."), ""
+    return "is not a field of the drive definition" + (f"; did you mean `{meant}`?{told[1:]}" if meant else "")
+
+
 def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path = f"{prefix}{name}"
@@ -144,7 +210,7 @@ def element_count(drive: Drive, path: str) -> int | None:
     """
     kind = field_kind(path)
     if kind is None:
-        raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
+        raise DriveError([f"{path}: {not_a_field(drive, path)}"])
     if missing := missing_part(drive, path):
         raise DriveError([f"{path}: there is no {missing} in this drive"])
     drive, path = _of_disc(drive, path)
@@ -180,14 +246,58 @@ def missing_part(drive: Drive, path: str) -> str | None:
     return None
 
 
+_OF_SEVERAL_CRANKS = ("crank.circle_radius", "crank.angle", "installation.first_stage_ratio")
+_OF_PARTS = {
+    "materials.shaft_pin.": "pin_shaft",
+    "clearance.pin_hole": "pin_shaft",
+    "materials.crankshaft.": "crank.support",
+}
+"""What belongs to a part that may be left out without being in it."""
+
+
+def absence(drive: Drive, path: str) -> str | None:
+    """Return why a drive cannot have a number in a field; None where it can.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    path : str
+        A field of the definition (`field_kind`).
+    """
+    found = numbered(path)
+    if found is not None and (problem := no_entry(drive, found[0], found[1])) is not None:
+        return problem
+    held = {"pin_shaft": drive.pin_shaft, "crank.support": drive.crank.support}
+    name = path if found is None else found[2]
+    beside = [part for head, part in _OF_PARTS.items() if held[part] is None and name.startswith(head)]
+    if missing := missing_part(drive, path) or _left_out(drive, path) or next(iter(beside), None):
+        return f"there is no {missing} in this drive"
+    if drive.crank.number == 1 and (path in _OF_SEVERAL_CRANKS or name.startswith("bore_errors.")):
+        return "must be left out with one crank (crank.number = 1), which stands in the centre"
+    return None
+
+
+def _left_out(drive: Drive, path: str) -> str | None:
+    """The table of a field where this drive leaves it out."""
+    value: Any = drive
+    tables = path.split(".")[:-1] if numbered(path) is None else []
+    for depth, name in enumerate(tables):
+        value = getattr(value, name)
+        if value is None:
+            return ".".join(tables[: depth + 1])
+    return None
+
+
 def no_entry(drive: Drive, table: str, number: int) -> str | None:
     """Return what to say of an entry of ``disc.of`` or ``crank.of`` that the drive has not; None where it has it."""
     discs, cranks = drive.disc.number_of_discs, drive.crank.number
     if number < _entries(drive, table.partition(".")[0]):
         return None
     if table == "crank.of" and cranks > 1:
-        return f"there is no eccentric {number}; disc.number_of_discs = {discs}, crank.number = {cranks}"
-    return f"there is no disc {number}; disc.number_of_discs = {discs}"
+        sizes = f"disc.number_of_discs = {discs}, crank.number = {cranks}"
+        return f"there is no eccentric {number}; {sizes}: {_counting(drive, table)}"
+    return f"there is no disc {number}; disc.number_of_discs = {discs}: {_counting(drive, table)}"
 
 
 def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:

@@ -34,9 +34,11 @@ def describe_mistakes(
     told = []
     for place, detail in found:
         if place in meant:
-            told.append(f"{_path(place)}: is not a field; did you mean `{meant[place][-1]}`, which is missing?")
+            told.append(
+                f"{_words(place, len(prefix))}: is not a field; did you mean `{meant[place][-1]}`, which is missing?"
+            )
         elif place not in meant.values():
-            told.append(_sentence(place, detail, known))
+            told.append(_sentence(place, _words(place, len(prefix)), detail, known))
     return told
 
 
@@ -47,12 +49,24 @@ GONE = {
 UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
 
 
+def entry_words(number: int | str) -> str:
+    """Return an entry of ``crank.of`` by its place in the file: no number of an eccentric, as in the paths of studies."""
+    return f"crank.of, entry {number}"
+
+
 def _path(place: Iterable[str]) -> str:
     return printable(".".join(part[:60] for part in place))
 
 
-def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) -> str:
-    path = _path(place)
+def _words(place: tuple[str, ...], given: int) -> str:
+    """The path of a mistake, of which the first parts were given: an entry of the file by its place."""
+    if given == 0 and place[:2] == ("crank", "of") and len(place) > 2:
+        below = _path(place[3:])
+        return entry_words(place[2]) + (f": {below}" if below else "")
+    return _path(place)
+
+
+def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[str] | None) -> str:
     match detail["type"]:
         case "missing" | "missing_argument" | "missing_keyword_only_argument":
             return f"{path}: is missing"
@@ -65,7 +79,7 @@ def _sentence(place: tuple[str, ...], detail: Any, known: Sequence[str] | None) 
         case "dataclass_type" | "dataclass_exact_type" | "model_type" | "dict_type":
             return f"{path} = {shortened(detail['input'])}: must be a table"
         case "tuple_type":
-            return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(path)}"
+            return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(_path(place))}"
         case "literal_error":
             expected = detail["ctx"]["expected"]
             choices = [name.strip("' ") for name in expected.replace(" or ", ",").split(",")]

@@ -7,7 +7,7 @@ parts outside ±T are sorted out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import Annotated, Any, Literal
 
@@ -16,11 +16,20 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.fields import element_count, field_kind, field_kinds, own_paths, read_field
+from ltca.drive.fields import (
+    MAY_BE_LEFT_OUT,
+    absence,
+    element_count,
+    field_kind,
+    field_kinds,
+    not_a_field,
+    own_paths,
+    read_field,
+)
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
-from ltca.errors import DriveError, did_you_mean, printable, shortened
+from ltca.errors import DriveError, printable, shortened
 
 FloatArray = NDArray[np.float64]
 
@@ -85,7 +94,7 @@ _ADAPTER: TypeAdapter[Distribution] = TypeAdapter(Distribution)
 Tolerances = dict[str, Distribution]
 
 
-def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
+def parse_tolerances(table: Any, problems: list[str], drive: Drive | None = None) -> Tolerances:
     """Read a ``[tolerances]`` table.
 
     Parameters
@@ -94,6 +103,8 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
         Nested tables of the drive's fields; a table with ``distribution`` is an entry.
     problems : list of str
         Takes what is wrong, one sentence each.
+    drive : Drive, optional
+        Whose they are, for what a misspelt path may have meant.
 
     Returns
     -------
@@ -105,10 +116,11 @@ def parse_tolerances(table: Any, problems: list[str]) -> Tolerances:
         kind = field_kind(path)
         if kind is None or not kind.unit:
             scattering = [name for name, known in field_kinds().items() if known.unit]
-            problems.append(
-                f"tolerances.{printable(path)}: is not a field of the drive that can scatter"
-                f"{did_you_mean(path, scattering)}"
+            told = not_a_field(drive, path, scattering)
+            told = told.replace(
+                "is not a field of the drive definition", "is not a field of the drive that can scatter"
             )
+            problems.append(f"tolerances.{printable(path)}: {told}")
             continue
         values = dict(entry)
         try:
@@ -148,6 +160,28 @@ def _entries(table: Any, prefix: str, problems: list[str]) -> list[tuple[str, Ma
     return entries
 
 
+def nothing_scatters(drive: Drive, path: str) -> str | None:
+    """Return why a field cannot scatter in a drive that has it not; None where it can."""
+    if (problem := absence(drive, path)) is not None:
+        return problem
+    try:
+        if path in MAY_BE_LEFT_OUT:
+            read_field(drive, path)
+    except DriveError as error:
+        return error.problems[0].partition(": ")[2]
+    return None
+
+
+def find_absent(tolerances: Tolerances, drives: Collection[Drive]) -> list[str]:
+    """Return what is wrong with tolerances on what none of the drives has, one sentence each."""
+    found = []
+    for path in tolerances:
+        problems = [nothing_scatters(drive, path) for drive in drives]
+        if problems and problems[0] is not None and None not in problems:
+            found.append(f"tolerances.{path}: {problems[0]}")
+    return found
+
+
 def _per_disc(drive: Drive, tolerances: Tolerances) -> Tolerances:
     """What scatters, disc by disc where each has it of its own; what is said of one disc stands before what is said of all."""
     each: Tolerances = {}
@@ -185,13 +219,17 @@ class Factors:
         Raises
         ------
         DriveError
-            When nothing scatters, or an array with an entry has no elements in this drive (harmonics without orders).
+            When nothing scatters, the drive has not what shall scatter, or an array with an entry has no elements in
+            this drive (harmonics without orders).
         """
         found: list[tuple[str, int | None]] = []
         centres: list[float] = []
         problems = []
         each = _per_disc(drive, tolerances)
         for path in each:
+            if (problem := nothing_scatters(drive, path)) is not None:
+                problems.append(f"tolerances.{path}: {problem}")
+                continue
             count = element_count(drive, path)
             if count == 0:
                 problems.append(
@@ -200,7 +238,7 @@ class Factors:
             found.append((path, count))
             value = read_field(drive, path)
             centres += [value] if count is None else value
-        if not found:
+        if not found and not problems:
             problems.append(
                 "tolerances: is missing or empty, so nothing scatters; see the shipped drive for an example"
             )

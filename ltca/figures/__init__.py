@@ -3,6 +3,9 @@
 Modules in the order data passes:
 
 ================  ============================================================
+labelled_curves   Curves with their names at their right ends, in the style of the house; discs and cranks as cases
+                  of their own
+crank_figures     Figures of several cranks: moment and deflection of each, and the loads of its rollers
 run_figures       Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: six cases per axes,
                   labelled directly
 drive_picture     Picture of a drive at one crank angle: its parts, contact normals, and loads as arrows

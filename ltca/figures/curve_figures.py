@@ -13,13 +13,17 @@ from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.torque_curve import LOST_MOTION, TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.figures.run_figures import COLOURS, STYLE
+from ltca.figures.labelled_curves import COLOURS, STYLE
 from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 
 NAMED = 10
 """Orders listed by name in the figure, the largest."""
+SEEN = 0.004
+"""Amplitudes below this part of the largest are thinner than a line: the axis ends behind the last one above."""
+APART = 0.055, 0.04
+"""Width and height of a number at a line, as parts of the axes: where two would overlap the larger amplitude has it."""
 
 
 def _save(figure: Figure, stem: Path) -> Path:
@@ -63,26 +67,35 @@ def draw_spectrum(spectrum: Spectrum, title: str, stem: Path) -> Path:
         heights = spectrum.amplitude * ARCSEC
         axes.vlines(values, 0.0, heights, color=COLOURS[1], linewidth=1.6)
         largest = np.argsort(-heights)[:NAMED]
+        seen = heights >= SEEN * heights.max()
+        ends = 1.05 * float(values[seen].max()), 1.12 * float(heights.max()) + 1e-9
+        free = _without_overlap(values / ends[0], heights / ends[1])
         for row, number in enumerate(largest):
             order = spectrum.orders[number]
-            axes.text(
-                float(values[number]),
-                float(heights[number]),
-                f"{order.value:.4g}",
-                fontsize=7.0,
-                ha="center",
-                va="bottom",
-            )
+            if seen[number] and free[number]:
+                place = float(values[number]), float(heights[number])
+                axes.text(*place, f"{order.value:.4g}", fontsize=7.0, ha="center", va="bottom")
             axes.text(
                 0.42, 0.96 - 0.055 * row, f"{order.value:>8.4f}  {heights[number]:.3f}″  {order.name}",
                 transform=axes.transAxes, fontsize=7.5, family="monospace",
             )  # fmt: skip
-        axes.set_xlim(0.0, 1.02 * float(values.max()))
-        axes.set_ylim(0.0, 1.12 * float(heights.max()) + 1e-9)
+        axes.set_xlim(0.0, ends[0])
+        axes.set_ylim(0.0, ends[1])
         axes.set_xlabel("order per turn of the crank")
         axes.set_ylabel("amplitude [″]")
         axes.set_title(f"{title}; unexplained {spectrum.residual * ARCSEC:.2g}″ rms")
         return _save(figure, stem)
+
+
+def _without_overlap(x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
+    """Which lines at places x of the axes can have a number at their end y: no larger one's, and no larger line behind it."""
+    free = np.zeros(x.size, dtype=bool)
+    for number in np.argsort(-y, kind="stable"):
+        apart = np.abs(x - x[number])
+        numbers = free & (apart < APART[0]) & (np.abs(y - y[number]) < APART[1])
+        lines = (apart < 0.5 * APART[0]) & (y > y[number])
+        free[number] = not np.any(numbers | lines)
+    return free
 
 
 def draw_pressure(

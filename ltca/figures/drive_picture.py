@@ -14,7 +14,7 @@ from matplotlib.patches import Arc, Circle, Polygon
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive, PinShaft, PinWheel
-from ltca.figures.run_figures import STYLE
+from ltca.figures.labelled_curves import STYLE
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.output.files import whole_file
 
@@ -55,7 +55,8 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
             axes.set_title(
                 f"{name}: forces on the disc at φ_C = {shown.crank_angle:.4g} rad, {held}"
                 f"torque {analysis.torque / 1000.0:g} N·m\n"
-                f"blue: contact normals; + crank axis, • inner-race centre (eccentricity){_legend(drive)}",
+                f"blue: contact normals; + crank axis, • inner-race centre (eccentricity)"
+                f"{', number of the crank' if drive.crank.number > 1 else ''}{_legend(drive)}",
                 fontsize=9.0,
             )
         with whole_file(path) as part:
@@ -77,6 +78,10 @@ def _draw_disc(axes: Any, shown: _Position, largest: float) -> None:
         axes.plot([axis.real, race.real], [axis.imag, race.imag], color="black", linewidth=1.2, zorder=6)
         axes.plot([axis.real], [axis.imag], marker="+", color="black", markersize=9, zorder=6)
         axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
+    if shown.cranks.size > 1:  # on the side of the axis that the eccentric leaves free
+        for number, (axis, race) in enumerate(zip(shown.cranks, shown.races, strict=True)):
+            place = axis - 0.55 * shown.place.inner_race_radius * (race - axis) / np.abs(race - axis)
+            axes.text(place.real, place.imag, f"{number}", fontsize=10.0, ha="center", va="center", zorder=6)
     reach = 1.06 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)

@@ -9,7 +9,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from ltca.figures.run_figures import COLOURS, STYLE
+from ltca.drive.fields import whose
+from ltca.figures.labelled_curves import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.optimiser import Optimum, describe_limit
 from ltca.studies.quantities import QUANTITIES
@@ -58,7 +59,7 @@ def _front(optimum: Optimum, title: str) -> Figure:
 
 def _search(optimum: Optimum, title: str) -> Figure:
     count = len(optimum.problem.variables)
-    figure = Figure(figsize=(1.2 + 3.0 * count, 3.4))
+    figure = Figure(figsize=(1.2 + 3.0 * count, 3.8))
     all_axes = figure.subplots(1, count, sharey=True, squeeze=False)[0]
     aim, fine = optimum.values[:, 0], optimum.feasible
     for column, (axes, variable) in enumerate(zip(all_axes, optimum.problem.variables, strict=True)):
@@ -67,9 +68,12 @@ def _search(optimum: Optimum, title: str) -> Figure:
         axes.plot(x[fine], aim[fine], ".", color=COLOURS[6], markersize=3.5, label="within the limits")
         axes.plot(x[optimum.best], aim[optimum.best], "D", color=COLOURS[2], label="best")
         axes.axhline(optimum.start[0], color=COLOURS[0], linewidth=0.8, linestyle=(0, (4, 2)), label="as it is")
-        axes.set_xlabel(variable.path)
+        owner = whose(optimum.problem.drive, variable.path)
+        axes.set_xlabel(variable.path + (f"\n({owner})" if owner else ""))
         axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
     all_axes[0].set_ylabel(QUANTITIES[optimum.problem.aims[0]].heading)
-    all_axes[-1].legend(frameon=False, fontsize=7.5)
+    # Below all axes: points lie anywhere in them.
+    handles, words = all_axes[-1].get_legend_handles_labels()
+    figure.legend(handles, words, loc="outside lower center", ncols=2 if count == 1 else 4, frameon=False, fontsize=7.5)
     figure.suptitle(title, fontsize=9.0)
     return figure

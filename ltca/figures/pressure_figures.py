@@ -19,7 +19,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.figures.run_figures import COLOURS, STYLE, draw_curves
+from ltca.figures.labelled_curves import COLOURS, STYLE, draw_curves
 from ltca.geometry.flank import FlankProfile
 from ltca.output.files import whole_file
 

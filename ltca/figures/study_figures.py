@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from ltca.figures.run_figures import COLOURS, STYLE
+from ltca.figures.labelled_curves import COLOURS, STYLE
 from ltca.output.files import whole_file
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
@@ -118,7 +118,7 @@ def _responses(folder: StudyFolder, study: Study, design: SweepDesign) -> Figure
             else:
                 axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
             if row == rows - 1:
-                axis.set_xlabel(factor.path, fontsize=8.0)
+                axis.set_xlabel(study.field_words(factor.path).replace(" (", "\n("), fontsize=8.0)
         axes[row, 0].set_ylabel(QUANTITIES[name].heading, fontsize=7.0, wrap=True)
     figure.suptitle(
         f"{study.name}, {study.engine.compliance}: {design.samples} samples × {study.positions} positions", fontsize=9.5
@@ -134,7 +134,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any]) -> Figure:
         shares = dict(list(entry["shares"].items())[:SHOWN])
         places = np.arange(len(shares))
         axis.barh(places, [100.0 * share for share in shares.values()], color=COLOURS[1], height=0.7)
-        axis.set_yticks(places, list(shares), fontsize=6.0)
+        axis.set_yticks(places, [study.field_words(path) for path in shares], fontsize=6.0)
         axis.invert_yaxis()
         axis.grid(visible=False, axis="y")
         axis.set_xlim(left=0.0)

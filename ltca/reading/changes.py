@@ -9,10 +9,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
-from ltca.drive.fields import field_kind, field_kinds, is_element, missing_part, no_entry, numbered, read_field
+from ltca.drive.fields import field_kind, is_element, missing_part, no_entry, not_a_field, numbered, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError, did_you_mean
+from ltca.errors import DriveError
 from ltca.reading.physical_checks import find_contradictions
 
 
@@ -52,7 +52,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
                 raise DriveError([f"{path}: {parent} has no element {last}"])
             arrays[parent][int(last)] = value
         elif field_kind(path) is None:
-            raise DriveError([f"{path}: is not a field of the drive definition{did_you_mean(path, field_kinds())}"])
+            raise DriveError([f"{path}: {not_a_field(drive, path)}"])
         else:
             whole[path] = value
             missing = missing_part(drive, path)

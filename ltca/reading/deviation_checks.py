@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ltca.drive.deviations import BoreErrors
 from ltca.drive.fields import ANY, OWN
+from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import Drive, PlacementErrors, RollerErrors
 from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.rotation import unit
@@ -57,7 +58,7 @@ def find_disc_problems(drive: Drive) -> Iterator[str]:
     for number, entry in enumerate(drive.crank.of):
         if abs(entry.phase_error) > bound:
             yield (
-                f"crank.of.{number}.phase_error = {entry.phase_error:g} rad: must be at most {bound:.4g} rad in size: the "
+                f"{_entry(drive, number)}: phase_error = {entry.phase_error:g} rad: must be at most {bound:.4g} rad in size: the "
                 "eccentric's centre moves by a tenth of the smallest pin or roller radius, or by half the eccentricity"
             )
 
@@ -69,20 +70,28 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
     if entries and not all(told) and (any(told) or cranks > 1):
         number = told.index(False)
         yield (
-            f"crank.of.{number}.disc is left out: every entry must say its disc"
+            f"{entry_words(number)}: disc is left out: every entry must say its disc"
             + (f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none")
         )
         return
     seen = set()
     for number, entry in enumerate(entries):
         if entry.disc is not None and entry.disc >= discs:
-            yield f"crank.of.{number}.disc = {entry.disc}: must be less than {discs}, the number of discs, which count from 0"
+            yield (
+                f"{entry_words(number)}: disc = {entry.disc}: must be less than {discs}, the number of discs, which count "
+                "from 0"
+            )
         if entry.crank is not None and entry.crank >= cranks:
-            yield f"crank.of.{number}.crank = {entry.crank}: must be less than {cranks}, crank.number; cranks count from 0"
+            yield (
+                f"{entry_words(number)}: crank = {entry.crank}: must be less than {cranks}, crank.number; cranks count from 0"
+            )
         if entry.crank is None and cranks > 1:
-            yield f"crank.of.{number}.crank is left out: every entry must say its disc and its crank (crank.number = {cranks})"
+            yield (
+                f"{entry_words(number)}: crank is left out: every entry must say its disc and its crank (crank.number = "
+                f"{cranks})"
+            )
         if entry.disc is not None and (place := (entry.disc, entry.crank or 0)) in seen:
-            yield f"crank.of.{number}: disc {place[0]} on crank {place[1]} has an entry already"
+            yield f"{entry_words(number)}: disc {place[0]} on crank {place[1]} has an entry already"
         seen.add((number if entry.disc is None else entry.disc, entry.crank or 0))
     bound = deviation_bound(drive)
     for number, own in enumerate(drive.disc.of):
@@ -100,9 +109,16 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
     for number, entry in enumerate(entries):
         if cranks > 1 and abs(entry.eccentricity_error or 0.0) > size:
             yield (
-                f"crank.of.{number}.eccentricity_error = {entry.eccentricity_error:g} mm: must be at most {size:g} mm in size, a "
-                "tenth of the smallest pin or roller radius and half the eccentricity"
+                f"{_entry(drive, number)}: eccentricity_error = {entry.eccentricity_error:g} mm: must be at most {size:g} mm in "
+                "size, a tenth of the smallest pin or roller radius and half the eccentricity"
             )
+
+
+def _entry(drive: Drive, number: int) -> str:
+    """An entry of ``crank.of`` with whose it is, where it says so."""
+    entry = drive.crank.of[number]
+    told = [f"{name} {value}" for name, value in (("disc", entry.disc), ("crank", entry.crank)) if value is not None]
+    return entry_words(number) + (f" ({', '.join(told)})" if told else "")
 
 
 def named_in_disc(drive: Drive, problem: str, disc: int) -> str:

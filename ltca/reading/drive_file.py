@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
-from ltca.drive.tolerances import Tolerances, parse_tolerances
+from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.contradictions import explain_contradictions, find_cause
 from ltca.reading.physical_checks import find_contradictions
@@ -118,11 +118,11 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     scatter = table.pop("tolerances", {})
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
-    tolerances = parse_tolerances(scatter, problems)
-    named = _named_cases(cases, problems)
     # Mistakes of the common part come back in every case: the base is validated alone, first.
     base_problems: list[str] = []
     base = _validate(table, base_problems)
+    tolerances = parse_tolerances(scatter, problems, base)
+    named = _named_cases(cases, problems)
     if base_problems or base is None:
         raise DriveError(problems + base_problems, source)
     drives: dict[str, Drive] = {}
@@ -138,6 +138,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
         drives[NOMINAL_CASE] = base
     found, left = _contradictions(base, drives)
     problems += found
+    problems = problems or find_absent(tolerances, drives.values())
     if problems:
         raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
     return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, text=text)

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.drive.fields import ANY, field_kind, field_kinds, read_field
+from ltca.drive.fields import ANY, field_kind, field_kinds, not_a_field, read_field
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import label, parse_quantity
-from ltca.errors import CycloError, DriveError, did_you_mean, shortened
+from ltca.errors import CycloError, DriveError, shortened
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
@@ -72,11 +72,10 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     found = [name] if own or element else [path for path in kinds if path.rpartition(".")[2] == name]
     if len(found) != 1:
         last = [path.rpartition(".")[2] for path in kinds]
-        meant = did_you_mean(name, [*kinds, *last])
         hint = (
             f"may be {' or '.join(found)}: give the whole path"
             if found
-            else f"is not a field of the drive definition{meant}"
+            else not_a_field(drive, name, (*field_kinds(), *last))
         )
         raise DriveError([f"--vary {shortened(name)[1:-1]}: {hint}"])
     path = found[0]

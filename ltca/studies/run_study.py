@@ -136,6 +136,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
             "nominal": found.nominal,
             "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
             "sensitivity": found.ranking,
+            **({"eccentrics": owners} if (owners := study.eccentrics()) else {}),
         },
     )
     for sample, _ in found.failures:
@@ -164,7 +165,11 @@ def write_sample(study: Study, folder: StudyFolder, sample: int) -> str:
     except CycloError as error:
         fields = study.design.fields(study.design.rows(sample, sample + 1)[0])
         reason = "\n".join(f"# {line}" for line in str(error).splitlines())
-        lines = [f"# {name} = {list(value) if isinstance(value, tuple) else value}" for name, value in fields.items()]
+        told = {
+            study.field_words(name): list(value) if isinstance(value, tuple) else value
+            for name, value in fields.items()
+        }
+        lines = [f"# {name} = {value}" for name, value in told.items()]
         text = f"# Sample {sample} of {study.name} is no sound drive:\n{reason}\n" + "\n".join(lines) + "\n"
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")

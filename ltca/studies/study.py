@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
+from ltca.drive.fields import whose, with_whose
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
@@ -94,6 +95,19 @@ class Study:
             return f"{' and '.join(varied)} varied"
         loads = dict.fromkeys(drive.load_words() for _, drive in self.cases)
         return ", ".join(loads) if len(loads) < 4 else f"{len(loads)} torques, by case"
+
+    def whose(self, path: str) -> str:
+        """Return whose a field is where its number does not say so (`ltca.drive.fields.whose`); empty elsewhere."""
+        cranks = {drive.crank.number for _, drive in self.cases}
+        return "" if len(cranks) > 1 or "crank.number" in self.design.names else whose(self.cases[0][1], path)
+
+    def eccentrics(self) -> dict[str, str]:
+        """Return whose the fields of single eccentrics of several cranks are, by path; empty without any."""
+        return {path: owner for path in self.design.names if (owner := self.whose(path))}
+
+    def field_words(self, path: str) -> str:
+        """Return a field as people read it: with whose it is where its number does not say so."""
+        return with_whose(path, self.whose(path))
 
     def fingerprint(self) -> str:
         """Return a hash of everything the results depend on, the code included (hex, 16 digits)."""

@@ -53,9 +53,12 @@ def tolerance_study(
     name = case or next(iter(file.cases))
     drive = file.select([name])[name]
     kept = quantities_for(drive, quantities)
-    design = ToleranceDesign(
-        factors=Factors.of_tolerances(drive, file.tolerances), samples=samples, seed=seed, sequence=sequence
-    )
+    try:
+        factors = Factors.of_tolerances(drive, file.tolerances)
+    except DriveError as error:
+        of_case = f"case {name}: " if len(file.cases) > 1 else ""
+        raise DriveError([of_case + problem for problem in error.problems], file.source) from error
+    design = ToleranceDesign(factors=factors, samples=samples, seed=seed, sequence=sequence)
     block = len(design.groups) + 2
     if sequence == "saltelli" and samples < FEWEST_BLOCKS * block:
         raise DriveError(

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.drive.fields import field_kind
+from ltca.drive.fields import field_kind, with_whose
 from ltca.errors import CycloError, DamagedFileError, one_line
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import DiscStream, netcdf_stream
@@ -316,6 +316,8 @@ def _attributes(study: Study) -> dict[str, Any]:
         "samples": study.design.samples,
         **study.engine.options,
     }
+    if owners := study.eccentrics():
+        found["eccentrics"] = json.dumps(owners)
     if isinstance(study.design, SweepDesign):
         found["levels"] = json.dumps({f.path: list(f.levels) for f in study.design.factors if f.is_text})
     return found
@@ -326,12 +328,12 @@ def quantity_column(name: str) -> dict[str, str]:
     return {"units": QUANTITIES[name].unit, "description": QUANTITIES[name].description}
 
 
-def field_column(path: str) -> dict[str, str]:
-    """Return the metadata of the column of a field of the drive in a table."""
+def field_column(path: str, owner: str = "") -> dict[str, str]:
+    """Return the metadata of the column of a field of the drive in a table, with whose it is."""
     kind = field_kind(path) or field_kind(path.rpartition(".")[0])
     plain = "" if kind is None else kind.unit
     unit = {"": "1", "dimensionless": "1"}.get(plain, plain.replace("*", " "))
-    return {"units": unit, "description": f"drive field {path}"}
+    return {"units": unit, "description": f"drive field {with_whose(path, owner)}"}
 
 
 def _factor_column(study: Study, name: str) -> dict[str, str]:
@@ -340,4 +342,4 @@ def _factor_column(study: Study, name: str) -> dict[str, str]:
         if factor.is_text:
             levels = ", ".join(f"{number} {level}" for number, level in enumerate(factor.levels))
             return {"units": "1", "description": f"number of the level of {name}: {levels}"}
-    return field_column(name)
+    return field_column(name, study.whose(name))

@@ -80,7 +80,7 @@ def test_what_single_discs_have_of_their_own():
     ("entry", "told"),
     [
         ("[[disc.of]]\n[[disc.of]]", r"disc\.of has 2 entries: must have 1"),
-        ("[[crank.of]]\nphase_error = 0.2", r"crank\.of\.0\.phase_error = 0\.2 rad: must be at most 0\.125 rad"),
+        ("[[crank.of]]\nphase_error = 0.2", r"crank\.of, entry 0: phase_error = 0\.2 rad: must be at most 0\.125 rad"),
         ("[[disc.of]]\nrunout = { amount = 0.6 }", r"disc\.of\.0\.runout\.amount = 0\.6 mm: must be at most 0\.5 mm"),
         ("[[disc.of]]\nrunnout = { amount = 0.6 }", r"disc\.of\.0\.runnout: is not a field .* did you mean `runout`"),
         ("[[disc.of]]\nclearance = { bearing = -1 }", r"disc\.of\.0\.clearance\.bearing = -1: must be at least 0 mm"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import tomllib
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 
@@ -15,11 +16,14 @@ from ltca.compliance.coefficients import without_coupling
 from ltca.drive.fields import read_field
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DriveError
+from ltca.figures.labelled_curves import STYLE
+from ltca.figures.optimum_figures import _search
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies.optimiser import (
     Limit,
+    Optimum,
     Problem,
     Variable,
     batch_analysis,
@@ -300,3 +304,39 @@ def test_replacing_fields_keeps_the_rest(drive):
     with pytest.raises(DriveError, match=r"there is no disc 2"):
         with_fields(changed, {"disc.of.2.runout.amount": 0.003})
     assert changed.pin_wheel is drive.pin_wheel or changed.pin_wheel == drive.pin_wheel
+
+
+def test_a_study_with_failed_samples_is_a_partial_result(tmp_path, capsys):
+    """Status 0 told a script that all was well: a flank that overlaps its pins by 0.75 mm was among the samples."""
+    path = tmp_path / "study.toml"
+    text = 'drive = "paper"\npositions = 3\nquantities = ["max_pin_load"]\ndesign = { kind = "grid" }\n[factors]\n'
+    path.write_text(f"{text}disc.equidistant_offset = [0.15, -0.6, 0.16]\n", encoding="utf-8")
+    assert run(sweep, path, "--out", tmp_path / "some", "--no-figures") == 1
+    told = capsys.readouterr()
+    assert told.err.splitlines()[-1] == "cyclo: error: partial: 1 of 3 samples failed"
+    assert "1 of 3 samples failed; their drives" in told.out
+    assert (
+        run(sweep, path, "--out", tmp_path / "some", "--no-figures", "--resume") == 1
+    )  # what is finished stays partial
+    path.write_text(f"{text}disc.equidistant_offset = [0.15, 0.16]\n", encoding="utf-8")
+    assert run(sweep, path, "--out", tmp_path / "all", "--no-figures") == 0
+
+
+def test_the_legend_of_a_search_stands_outside_the_axes():
+    """It covered candidates."""
+    drive = load_drive("paper").cases["CS-1"]
+    variables = tuple(
+        Variable(path=path, low=0.1, high=0.2) for path in ("disc.equidistant_offset", "disc.shifting_offset")
+    )
+    problem = Problem(drive=drive, variables=variables, aims=("max_pin_load",), limits=())
+    points = np.random.default_rng(1).uniform(0.1, 0.2, (40, 2))
+    optimum = Optimum(
+        problem=problem, variables=points, values=points[:, :1], feasible=points[:, 0] > 0.12, best=0,
+        front=np.zeros(1, dtype=int), start=np.array([0.15]), generations=1,
+    )  # fmt: skip
+    with mpl.rc_context(STYLE):
+        figure = _search(optimum, "search")
+        figure.canvas.draw()
+    (legend,) = figure.legends
+    assert [axes.get_legend() for axes in figure.axes] == [None, None]
+    assert not any(legend.get_window_extent().overlaps(axes.get_window_extent()) for axes in figure.axes)
