@@ -192,14 +192,25 @@ def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
     }
     for walls in analysis.wall_stresses:
         values |= _wall_values(walls, pressures)
-    return values | _seat_values(analysis)
+    return values | seat_values(analysis)
 
 
-def _seat_values(analysis: LoadedAnalysis) -> dict[str, Any]:
-    """What loose pins, sleeves and bent pins of one disc have."""
+def seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Return what loose pins, sleeves and bent pins of one disc have: loads, arcs and pressures of seats, deflections.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        Of one disc.
+
+    Returns
+    -------
+    dict of str to array, shape (positions, pairs)
+        By name in the dataset, as there; empty for fixed pins that do not bend.
+    """
     drive, contacts = analysis.drive, analysis.full.response
     place = analysis.model.discs[0].geometry.placement
-    values: dict[str, Any] = {}
+    values: dict[str, FloatArray] = {}
     for name, seat, load, play in (
         ("pin", wheel_pin_seat(drive), contacts.pin_load, place.wheel_pin_plays),
         ("hole", shaft_pin_seat(drive), contacts.hole_load, place.shaft_pin_plays),
@@ -207,8 +218,8 @@ def _seat_values(analysis: LoadedAnalysis) -> dict[str, Any]:
         if seat is not None:
             each = np.broadcast_to(play, load.shape)
             values[f"{name}_seat_load"] = load
-            values[f"{name}_seat_arc"] = 2.0 * seat.half_angle(load, each)
-            values[f"{name}_seat_pressure_max"] = seat.largest_pressure(load, each)
+            values[f"{name}_seat_arc"] = np.where(load > 0.0, 2.0 * seat.half_angle(load, each), 0.0)
+            values[f"{name}_seat_pressure_max"] = np.where(load > 0.0, seat.largest_pressure(load, each), 0.0)
     geometry = analysis.model.discs[0].geometry
     moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(analysis.full.pose)
     for name, beam, load, motion, others in (

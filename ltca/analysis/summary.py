@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.results import seat_values
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.reducer import geometries
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -112,7 +113,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
-    values |= _of_cranks(analysis)
+    values |= _of_cranks(analysis) | _of_pins(analysis)
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     if analysis.wall_stresses:
         for wall in ("root", "bore", "hole"):
@@ -124,6 +125,21 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:
+    """Largest pressure in the seats of loose pins and sleeves, and how far pins bend, of all discs."""
+    each = [seat_values(disc) for disc in analysis.discs]
+    return {
+        key: max(float(np.max(values[name], initial=0.0)) for values in each)
+        for key, name in (
+            ("max_pin_seat_pressure_MPa", "pin_seat_pressure_max"),
+            ("max_hole_seat_pressure_MPa", "hole_seat_pressure_max"),
+            ("max_pin_deflection_mm", "pin_deflection"),
+            ("max_shaft_pin_deflection_mm", "shaft_pin_deflection"),
+        )
+        if name in each[0]
+    }
 
 
 def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:

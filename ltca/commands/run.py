@@ -296,6 +296,12 @@ RIGID_SHAFT_PINS = (
 )
 OUTPUT_ROWS = (("  at the output", "backlash_output_arcmin", "′", "{:z.2f}"),)
 INTERFERENCE_ROWS = (("  pins and flank overlap at rest by", "interference_mm", "mm", "{:.4f}"),)
+SEAT_ROWS = (
+    ("largest pressure in wheel-pin seats", "max_pin_seat_pressure_MPa", "MPa", "{:.1f}"),
+    ("largest pressure in shaft-pin sleeves", "max_hole_seat_pressure_MPa", "MPa", "{:.1f}"),
+    ("largest deflection of a wheel pin", "max_pin_deflection_mm", "mm", "{:.4f}"),
+    ("largest deflection of a shaft pin", "max_shaft_pin_deflection_mm", "mm", "{:.4f}"),
+)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
     ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),
@@ -320,7 +326,8 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str],
         else ()
     )
     pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
-    for title, key, unit, form in (*ROWS, *output, *shares, *RESIDUAL_ROWS, *pressed, *walls):
+    seats = [row for row in SEAT_ROWS if any(row[1] in case for case in summaries.values())]
+    for title, key, unit, form in (*ROWS, *output, *seats, *shares, *RESIDUAL_ROWS, *pressed, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) if key in case else None for case in summaries.values()]
         lines.append(f"{head:<{HEAD}}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))

@@ -10,6 +10,8 @@ from scipy.optimize import root
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.results import build_dataset
+from ltca.analysis.summary import summarise
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
@@ -375,3 +377,31 @@ def test_pin_as_a_beam_of_small_elements():
         moved[free] = np.linalg.solve(whole[np.ix_(free, free)], onto[free])
         beam = PinBeam(span=span, ends=ends, diameter=diameter, youngs_modulus=modulus, poisson_ratio=ratio)
         np.testing.assert_allclose(beam.flexibility(planes, width), spread @ moved[::2], rtol=1e-3)
+
+
+def test_results_of_seats_and_beams(joint):
+    """Loads of the seats are those of the contacts; deflections those of the beam under all discs; what a case lacks is none."""
+    drive = kind(joint, "everything")
+    found = analyse(drive, ANGLES)
+    dataset = build_dataset("pins", {"bent": found, "fixed": analyse(joint, ANGLES)})
+    bent, fixed = dataset.sel(case="bent"), dataset.sel(case="fixed")
+    np.testing.assert_array_equal(bent["pin_seat_load"], bent["pin_load"])
+    np.testing.assert_array_equal(bent["hole_seat_load"], bent["pin_shaft_load"])
+    assert np.isnan(fixed["pin_seat_load"]).all()
+    assert np.isnan(fixed["ring_x"]).all()
+    loaded = bent["pin_load"].values > 0.0
+    assert np.all((bent["pin_seat_arc"].values > 0.0) == loaded)
+    assert np.all((bent["pin_seat_pressure_max"].values > 0.0) == loaded)
+    # By hand: the force of each disc on the pin, along the normal out of the disc, by the beam of all.
+    beam = wheel_pin_beam(drive)
+    flexibility = beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)
+    force = np.stack([
+        part.pin_load * (part.flank.gradient[..., X] + 1j * part.flank.gradient[..., Y])
+        for part in disc_responses(found.full.response)
+    ])  # fmt: skip
+    expected = np.abs(np.einsum("de,epi->dpi", flexibility, force))
+    np.testing.assert_allclose(bent["pin_deflection"], expected, rtol=0.0, atol=1e-11)
+    summary = summarise(found)
+    assert summary["max_pin_deflection_mm"] == pytest.approx(expected.max(), abs=1e-11)
+    assert summary["max_pin_seat_pressure_MPa"] == float(bent["pin_seat_pressure_max"].max())
+    assert "max_pin_deflection_mm" not in summarise(analyse(joint, ANGLES))
