@@ -81,6 +81,12 @@ def require_rigid_members(drive: Drive, model: str) -> None:
         raise DriveError(problems)
 
 
+def pins_are_fixed(drive: Drive) -> bool:
+    """Tell whether no pin lies loose, carries a sleeve or bends."""
+    parts = (drive.pin_wheel, drive.pin_shaft)
+    return all(part is None or (part.seat.kind == "fixed" and part.beam is None) for part in parts)
+
+
 def require_fixed_pins(drive: Drive, model: str) -> None:
     """Refuse a drive of pins that lie loose, carry sleeves or bend.
 

@@ -78,6 +78,19 @@ def test_tables_are_warned_of_where_the_flank_leaves_its_parabola():
     assert analyse(drive, np.array([angle]), 0.01 * torque).warnings == []
 
 
+def test_loose_and_bent_pins_are_warned_of_as_well():
+    """Grids, which know fixed pins alone, were asked: "pin_shaft.stiffness: is left out", or pins taken for fixed."""
+    drive, angle = one_disc_of(116)
+    loose = {"pin_wheel.seat.kind": "slot", "pin_wheel.seat.radius": 1.002 * drive.pin_wheel.pin_radius}
+    bent = {"pin_shaft.stiffness": None, "pin_shaft.beam.span": 18.0, "pin_shaft.beam.tip": "tied-clamped"}
+    drive, torque = with_fields(drive, loose | bent), 100.0 * drive.load.torque
+    told = [text for text in analyse(drive, np.array([angle]), torque).warnings if "parabola" in text]
+    assert len(told) == 1
+    assert re.search(r"the surfaces at wheel pin \d+ depart from the parabola of the tables by [\d.]+ %", told[0])
+    assert "--method direct" not in told[0]
+    assert analyse(drive, np.array([angle]), 0.01 * torque).warnings == []
+
+
 @pytest.mark.slow
 def test_direct_has_nothing_to_warn_of():
     """Solved anew by the true separation the loads move by 0.9 % of the largest, as the warning said to its order."""
