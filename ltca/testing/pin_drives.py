@@ -16,6 +16,7 @@ from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, ShaftPinSe
 from ltca.drive.parts import Drive
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.crank_drives import crank_drive
+from ltca.testing.yielding_pins import beam_stiffness
 
 PLAYS = (0.001, 0.004, 0.01, 0.01, 0.02, 0.05)
 """mm."""
@@ -26,6 +27,9 @@ OTHERS = (
     Material(youngs_modulus=2.6e3, poisson_ratio=0.38),
 )
 """Slots and sleeves of steel, bronze or plastic."""
+SOFTEST = 0.5
+"""Largest deflection of a pin when a quarter of all carry a disc's part of the torque, in eccentricities: where pins give way
+by more, teeth slip."""
 
 
 def pin_drive(seed: int) -> tuple[Drive, float]:
@@ -53,8 +57,24 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
             play = play if random.uniform() < 0.5 else float(random.choice(PLAYS))
             drive = replace(drive, pin_shaft=_bent_shaft_pins(random, drive, _seated_shaft_pins(random, drive, play)))
         drive = _made_of(random, drive)
-        if is_sound(drive):
+        if largest_deflection(drive) < SOFTEST * drive.crank.eccentricity and is_sound(drive):
             return drive, angle
+
+
+def largest_deflection(drive: Drive) -> float:
+    """Return how far pins that are beams bend under their disc when a quarter of them carry its part of the torque, mm."""
+    discs, found = drive.disc.number_of_discs, [0.0]
+    wheel, shaft, materials = drive.pin_wheel, drive.pin_shaft, drive.materials
+    at_wheel = drive.crank.eccentricity * wheel.number_of_pins
+    for part, moment, lever, material in (
+        (wheel, drive.wheel_moment(), at_wheel, materials.wheel_pin),
+        (shaft, drive.load.torque, shaft.pin_circle_radius if shaft else 1.0, materials.shaft_pin),
+    ):
+        stiffness = None if part is None else beam_stiffness(drive, part, material)
+        if part is not None and stiffness is not None:
+            yielding = np.max(np.diagonal(np.linalg.inv(stiffness[:discs, :discs])))
+            found.append(float(yielding) * 4.0 * abs(moment) / (lever * discs * part.number_of_pins))
+    return max(found)
 
 
 def _inner(random: Generator, radius: float) -> float:
