@@ -1,7 +1,8 @@
 """Random valid drives, each balanced and checked by energies alone: ``python benchmarks/random_drives.py --count N``.
 
 ``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`), ``--preloaded`` such whose parts
-overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`); none of them may be refused.
+overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` such whose pins are loose,
+sleeved or bend (`ltca.testing.pin_drives`); none of them may be refused.
 
 Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
 `ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
@@ -26,6 +27,7 @@ from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
+from ltca.testing.pin_drives import pin_drive
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
 from ltca.testing.random_drives import random_reducer
 
@@ -55,12 +57,13 @@ def main() -> int:
         "--cranks", action="store_true", help="reducers of all kinds: several cranks, supports, first stages"
     )
     kind.add_argument("--preloaded", action="store_true", help="such drives whose parts overlap as drawn")
+    kind.add_argument("--pins", action="store_true", help="such reducers with loose, sleeved and bent pins")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
-    answered = arguments.practical or arguments.preloaded or arguments.cranks
+    answered = arguments.practical or arguments.preloaded or arguments.cranks or arguments.pins
     draw = practical_drive if arguments.practical else preloaded_drive if arguments.preloaded else random_reducer
-    draw = crank_drive if arguments.cranks else draw
+    draw = crank_drive if arguments.cranks else pin_drive if arguments.pins else draw
     outcomes: Counter[str] = Counter()
     remarks: list[str] = []
     iterations: Counter[int] = Counter()
@@ -76,7 +79,7 @@ def main() -> int:
         iterations[steps] += 1
         if detail:
             remarks.append(f"seed {seed}: {outcome}: {detail}")
-        if number % 1000 == 0 or number == arguments.count:
+        if number % 100 == 0 or number == arguments.count:
             counts = np.array(sorted(iterations.elements()))
             report = {
                 "drawn": number,

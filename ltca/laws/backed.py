@@ -105,25 +105,50 @@ class BackedLaw:
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Contact approach, load, stiffness of the contact, and slope of what is behind."""
         closed = delta > 0.0
-        near = np.where(closed, 0.5 * delta, delta)
+        found = delta.copy(), *(np.zeros_like(delta) for _ in range(3))
+        if closed.any():
+            radius = np.broadcast_to(np.asarray(effective_radius, dtype=float), delta.shape)[closed]
+            for all_pairs, part in zip(found, self._of_pairs(closed)._of_closed(delta[closed], radius), strict=True):
+                all_pairs[closed] = part
+        return found
+
+    def _of_pairs(self, chosen: NDArray[np.bool_]) -> BackedLaw:
+        """Law of some pairs of some positions, as one row."""
+
+        def of(values: float | FloatArray) -> FloatArray:
+            return np.asarray(np.broadcast_to(values, chosen.shape)[chosen])
+
+        law = self.contact
+        if isinstance(law, SpringLaw) and isinstance(law.stiffness, np.ndarray):
+            law = SpringLaw(stiffness=of(law.stiffness))
+        held = self.flexibility
+        return replace(
+            self, contact=law, play=of(self.play), flexibility=of(held) if isinstance(held, np.ndarray) else held
+        )
+
+    def _of_closed(
+        self, delta: FloatArray, radius: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """The same of closed pairs: Newton's method between bounds."""
+        near = 0.5 * delta
         history: list[float] = []
         # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole
         # where overlap is taken off.
         low, high = np.zeros_like(delta), np.full_like(delta, np.inf)
         for _ in range(80):
-            load, stiffness = self.contact.load_and_stiffness(near, effective_radius)
+            load, stiffness = self.contact.load_and_stiffness(near, radius)
             given, slope = self.behind(load)
-            left = np.where(closed, near + given - delta, 0.0)
-            if np.all(np.abs(left) <= 1e-15 + 4e-16 * np.abs(delta)):
+            left = near + given - delta
+            if np.all(np.abs(left) <= 1e-15 + 4e-16 * delta):
                 break
             high, low = np.where(left > 0.0, near, high), np.where(left < 0.0, near, low)
             following = near - left / (1.0 + stiffness * slope)
             outside = (following <= low) | (following >= high)
-            following = np.where(closed & outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
-            history.append(float(np.max(np.abs(following - near) / np.maximum(np.abs(delta), 1e-300), initial=0.0)))
-            near = np.where(closed, following, near)
+            following = np.where(outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
+            history.append(float(np.max(np.abs(following - near) / delta)))
+            near = following
             if history[-1] < 1e-13:
-                load, stiffness = self.contact.load_and_stiffness(near, effective_radius)
+                load, stiffness = self.contact.load_and_stiffness(near, radius)
                 _, slope = self.behind(load)
                 break
         else:

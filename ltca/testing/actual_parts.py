@@ -102,6 +102,22 @@ class ActualParts:
         return turned, wheel.pin_radius + 0.5 * self._each(errors.diameter, pins)
 
     @cached_property
+    def wheel_pin_plays(self) -> FloatArray:
+        """By how much slots are wider in radius than the pins in them, or bores of sleeves than theirs, mm."""
+        seat, radii = self.drive.pin_wheel.seat, self.wheel_pins[1]
+        if seat.kind == "slot":
+            return np.asarray((seat.radius or 0.0) - radii)
+        return np.full(radii.size, (seat.bore_radius or 0.0) - (seat.pin_radius or 0.0))
+
+    @cached_property
+    def shaft_pin_plays(self) -> FloatArray:
+        """By how much bores of sleeves are wider in radius than the shaft pins in them, mm."""
+        if self.drive.pin_shaft is None:
+            return np.zeros(0)
+        seat = self.drive.pin_shaft.seat
+        return np.full(self.drive.pin_shaft.number_of_pins, (seat.bore_radius or 0.0) - (seat.pin_radius or 0.0))
+
+    @cached_property
     def wheel_axis(self) -> complex:
         """Place of the axis the wheel turns about, mm."""
         return complex(self.drive.pin_wheel.axis_offset.x, self.drive.pin_wheel.axis_offset.y)

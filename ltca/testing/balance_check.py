@@ -4,7 +4,8 @@ Written apart from `ltca.geometry`, `ltca.compliance.rollers` and `ltca.equilibr
 the drive with all its deviations, distances from the flank by a search over points of the deviated flank, rollers placed by
 a search on their energy, nothing but energies. The only things shared are the definition of the drive and the energy
 ∫F dδ of the contact laws, crown and relief in it. A pose balances when its potential Π is a minimum: no small
-displacement lowers it, and its slope by central differences vanishes.
+displacement lowers it, and its slope by central differences vanishes. Loose and bent pins have coordinates of their own
+(`ltca.testing.yielding_pins`), by which the slope vanishes as well.
 
 The effective radii of the flank contacts are held at those of the pose looked at: a frictionless contact pushes
 along its normal with F(δ, ρ), and what the energy gains because the contact moves to another curvature (about 1e-3
@@ -23,7 +24,10 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.reducer import disc_responses
+from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+from ltca.testing.yielding_pins import SeatEnergy, YieldingPins, beam_stiffness
 
 FloatArray = NDArray[np.float64]
 
@@ -58,6 +62,8 @@ class PotentialEnergy:
         φ_C, rad.
     wheel_moment : float
         N·mm.
+    wheel_pins, shaft_pins : YieldingPins
+        Where forces hold them.
     """
 
     drive: Drive
@@ -66,16 +72,66 @@ class PotentialEnergy:
     outer_law: EnergyLaw
     crank_angle: float
     wheel_moment: float
+    wheel_pins: YieldingPins
+    shaft_pins: YieldingPins
 
     def at(self, pose: FloatArray) -> FloatArray:
         """Return Π of poses, shape (poses, coordinates), with the effective radii of the first of them, N·mm.
 
-        All poses lie within some approaches of the first.
+        All poses lie within some approaches of the first; pins stay where they are.
         """
-        stored = self._supports(pose)
+        stored = self._supports(pose) + self.of_wheel_pins(pose).sum(axis=1) + self.of_shaft_pins(pose).sum(axis=1)
         for disc in range(self.drive.disc.number_of_discs):
-            stored = stored + self._disc(disc, pose)
+            stored = stored + self._bearings(ActualParts(self.drive, self.crank_angle, disc), disc, pose)
         return np.asarray(stored - self.wheel_moment * pose[:, -1])
+
+    def of_wheel_pins(self, pose: FloatArray, moved: ComplexArray | float = 0.0) -> FloatArray:
+        """Return what each wheel pin stores, its flank contacts included, N·mm, shape (rows, pins).
+
+        Parameters
+        ----------
+        pose : array, shape (rows, coordinates)
+            One row stands for all.
+        moved : array of complex, shape (rows, 2, discs, 1)
+            Displacements of beams and of loose parts, of all pins alike, from where forces hold them, mm.
+        """
+        held = self.wheel_pins
+        place = np.stack([held.bent, held.loose])[None] + moved
+        total = held.stored(place[:, 0], place[:, 1], np.zeros((1, held.tip.size), dtype=complex))
+        for disc in range(self.drive.disc.number_of_discs):
+            parts, centre, turn = self._place(disc, pose)
+            pins, radii = parts.wheel_pins
+            axis = parts.wheel_axis + self._wheel(pose)[:, None] + place.sum(axis=1)[:, disc]
+            point = (axis + pins * np.exp(1j * pose[:, -1])[:, None] - centre) * np.conj(turn)
+            farthest = float(np.max(np.abs(point - point[:1])))
+            approach, effective = DeviatedFlank(self.drive, disc).approaches(point, radii, 2.0 * farthest)
+            total = total + self.pin_law.energy(approach, effective)
+        return np.asarray(total)
+
+    def of_shaft_pins(self, pose: FloatArray, moved: ComplexArray | float = 0.0) -> FloatArray:
+        """Return what each shaft pin stores, its contacts with the holes included; arguments as for `of_wheel_pins`."""
+        held, shaft = self.shaft_pins, self.drive.pin_shaft
+        if shaft is None:
+            return np.zeros((pose.shape[0], 0))
+        place = np.stack([held.bent, held.loose])[None] + moved
+        total = held.stored(place[:, 0], place[:, 1], ring_tips(self.drive, pose))
+        for disc in range(self.drive.disc.number_of_discs):
+            parts, centre, turn = self._place(disc, pose)
+            holes, hole_radii = parts.holes
+            pins, radii = parts.shaft_pins
+            overlap = np.abs(pins + place.sum(axis=1)[:, disc] - centre - holes * turn) - (hole_radii - radii)
+            if held.stiffness is None:
+                total = total + 0.5 * self.drive.hole_stiffness * np.maximum(overlap, 0.0) ** 2
+            else:  # What bends is the pin: the contact is a constraint, its load the multiplier (augmented Lagrangian).
+                pushed, load = held.stiffness[disc, disc], held.load[disc]
+                total = total + 0.5 * (np.maximum(load + pushed * overlap, 0.0) ** 2 - load**2) / pushed
+        return np.asarray(total)
+
+    def _place(self, disc: int, pose: FloatArray) -> tuple[ActualParts, ComplexArray, ComplexArray]:
+        """Parts about a disc, its centre and its turn at poses."""
+        parts, first = ActualParts(self.drive, self.crank_angle, disc), self.own * disc
+        centre = (parts.place + pose[:, first] + 1j * pose[:, first + 1])[:, None]
+        return parts, centre, np.exp(1j * pose[:, first + 2])[:, None]
 
     @property
     def own(self) -> int:
@@ -94,7 +150,8 @@ class PotentialEnergy:
         """Displacement of the wheel, mm."""
         if self.drive.pin_wheel.support_stiffness is None:
             return np.zeros(pose.shape[0], dtype=complex)
-        return np.asarray(pose[:, -3] + 1j * pose[:, -2])
+        last = -6 if has_ring(self.drive) else -3
+        return np.asarray(pose[:, last] + 1j * pose[:, last + 1])
 
     def _supports(self, pose: FloatArray) -> FloatArray:
         """Energy of crankshafts on their bearings and of the wheel on its own, N·mm."""
@@ -130,25 +187,6 @@ class PotentialEnergy:
                 total += float(self._bearings(parts, disc, moved[None])[0])
             ends.append(total)
         return (ends[0] - ends[1]) / (2.0 * step)
-
-    def _disc(self, disc: int, pose: FloatArray) -> FloatArray:
-        """Energy of all contacts of one disc."""
-        parts, first = ActualParts(self.drive, self.crank_angle, disc), self.own * disc
-        shift = pose[:, first] + 1j * pose[:, first + 1]
-        centre = (parts.place + shift)[:, None]
-        turn = np.exp(1j * pose[:, first + 2])[:, None]
-        pins, radii = parts.wheel_pins
-        axis = parts.wheel_axis + self._wheel(pose)[:, None]
-        point = (axis + pins * np.exp(1j * pose[:, -1])[:, None] - centre) * np.conj(turn)
-        moved = float(np.max(np.abs(point - point[:1])))
-        approach, effective = DeviatedFlank(self.drive, disc).approaches(point, radii, 2.0 * moved)
-        energy = self.pin_law.energy(approach, effective).sum(axis=1)
-        holes, hole_radii = parts.holes
-        shaft_pins, shaft_radii = parts.shaft_pins
-        overlap = np.abs(shaft_pins - centre - holes * turn) - (hole_radii - shaft_radii)
-        energy += 0.5 * self.drive.hole_stiffness * (np.maximum(overlap, 0.0) ** 2).sum(axis=1)
-        energy += self._bearings(parts, disc, pose)
-        return np.asarray(energy)
 
     def _bearings(self, parts: ActualParts, disc: int, pose: FloatArray) -> FloatArray:
         """Energy of the rollers of all crank bearings of one disc."""
@@ -196,6 +234,45 @@ class PotentialEnergy:
             bend = np.maximum(before - 2.0 * here + after, 1e-300)
             share = share + np.clip(0.5 * (before - after) / bend, -4.0, 4.0) * step
         return np.asarray(energy(np.clip(share, 0.0, 1.0)).sum(axis=1))
+
+
+def has_ring(drive: Drive) -> bool:
+    """Tell whether a ring ties the tips of the shaft pins."""
+    return drive.pin_shaft is not None and drive.pin_shaft.beam is not None and drive.pin_shaft.beam.tip != "free"
+
+
+def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
+    """Displacements of the tips of the shaft pins that a ring moves along and turns, mm, shape (poses, z_PS)."""
+    places = ActualParts(drive, 0.0).shaft_pins[0]
+    if not has_ring(drive):
+        return np.zeros((pose.shape[0], places.size), dtype=complex)
+    x, y, turned = pose[:, -4, None], pose[:, -3, None], pose[:, -2, None]
+    return np.asarray(x + 1j * y + 1j * turned * places)
+
+
+def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, row: int) -> dict[str, YieldingPins]:
+    """Wheel pins and shaft pins where the loads of an answer hold them."""
+    parts, found = disc_responses(balanced.response), {}
+    tip = ring_tips(drive, balanced.pose[row : row + 1])[0]
+    for name, part, law, material in (
+        ("wheel_pins", drive.pin_wheel, laws.pin_law, drive.materials.wheel_pin),
+        ("shaft_pins", drive.pin_shaft, laws.hole_law, drive.materials.shaft_pin),
+    ):
+        on_wheel = name == "wheel_pins"
+        load = np.stack([(each.pin_load if on_wheel else each.hole_load)[row] for each in parts])
+        gradient = np.stack([(each.flank if on_wheel else each.holes).gradient[row, :, :2] for each in parts])
+        seat = law.seat if isinstance(law, BackedLaw) else None
+        own = ActualParts(drive, 0.0)
+        play = own.wheel_pin_plays if on_wheel else own.shaft_pin_plays
+        largest = float(np.max(load, initial=0.0))
+        found[name] = YieldingPins(
+            stiffness=None if part is None else beam_stiffness(drive, part, material),
+            seat=None if seat is None else SeatEnergy(law=seat, play=play, largest=largest),
+            load=load,
+            away=gradient[..., 0] + 1j * gradient[..., 1],
+            tip=np.zeros(load.shape[1], dtype=complex) if on_wheel else tip,
+        )
+    return found
 
 
 def _deflections(drive: Drive) -> FloatArray:
@@ -253,18 +330,23 @@ def find_imbalance(
     pose, contacts = balanced.pose[position], balanced.response
     moment = float(balanced.wheel_moment[position])
     laws = cast(HalfSpaceCompliance, model.discs[0])
+    pins = _yielding(drive, laws, balanced, position)
     potential = PotentialEnergy(
         drive=drive,
-        pin_law=laws.pin_law,
+        pin_law=laws.pin_law.contact if isinstance(laws.pin_law, BackedLaw) else laws.pin_law,
         inner_law=laws.roller_laws.inner,
         outer_law=laws.roller_laws.outer,
         crank_angle=float(balanced.crank_angle[position]),
         wheel_moment=moment,
+        wheel_pins=pins["wheel_pins"],
+        shaft_pins=pins["shaft_pins"],
     )
     wheel, size = drive.crank.eccentricity * float(drive.reduction_ratio), pose.size
     lever = np.ones(size)
     lever[2 : potential.own * drive.disc.number_of_discs : potential.own] = wheel - drive.crank.eccentricity
     lever[-1] = wheel
+    if drive.pin_shaft is not None and has_ring(drive):
+        lever[-2] = drive.pin_shaft.pin_circle_radius
     load = abs(moment) / wheel
     problems = []
     if not np.all(np.isfinite(pose)):
@@ -305,6 +387,23 @@ def find_imbalance(
     best = int(np.argmin(slope - noise / steps))
     if slope[best] > 1e-3 * load + noise / steps[best]:
         problems.append(f"slope of the potential {slope[best]:.3g} N against a load of {load:.3g} N")
+    for name, held, stored in (
+        ("wheel", potential.wheel_pins, potential.of_wheel_pins),
+        ("shaft", potential.shaft_pins, potential.of_shaft_pins),
+    ):
+        if held.ways.size and held.load.size:
+            ways = (steps[:, None, None, None, None] * np.stack([held.ways, -held.ways])).reshape(
+                -1, *held.ways.shape[1:]
+            )
+            ways = np.concatenate([np.zeros((1, *ways.shape[1:])), ways])[..., None]
+            pairs = stored(pose[None], ways)[1:].reshape(steps.size, 2, -1, held.load.shape[1])
+            # Pins do not feel each other: of each coordinate the step that tells best.
+            slope = np.abs(pairs[:, 0] - pairs[:, 1]) / (2.0 * steps)[:, None, None]
+            slope = np.min(slope - (noise / steps)[:, None, None], axis=0)
+            if np.max(slope) > 1e-3 * load:
+                problems.append(
+                    f"slope of the potential by the place of a {name} pin {np.max(slope):.3g} N against a load of {load:.3g} N"
+                )
     rise = moved[1:] - moved[0]
     if np.any(rise < -noise - 1e-4 * load * sizes):
         problems.append(f"a displacement lowers the potential by {-np.min(rise):.3g} N·mm")

@@ -1,0 +1,151 @@
+"""Reducers whose pins are loose, sleeved or bend, or not: on those of all kinds (`crank_drives`), crowding at the plain choices.
+
+Nothing at all, plays that are equal, a beam no longer than the discs, its diameter typed although it is the pin's own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator
+
+from ltca.drive.materials import Material
+from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
+from ltca.drive.parts import Drive
+from ltca.reading.physical_checks import is_sound
+from ltca.testing.crank_drives import crank_drive
+from ltca.testing.yielding_pins import beam_stiffness
+
+PLAYS = (0.001, 0.004, 0.01, 0.01, 0.02, 0.05)
+"""mm."""
+OTHERS = (
+    Material(),
+    Material(),
+    Material(youngs_modulus=110e3, poisson_ratio=0.34),
+    Material(youngs_modulus=2.6e3, poisson_ratio=0.38),
+)
+"""Slots and sleeves of steel, bronze or plastic."""
+SOFTEST = 0.5
+"""Largest deflection of a pin when a quarter of all carry a disc's part of the torque, in eccentricities: where pins give way
+by more, teeth slip."""
+
+
+def pin_drive(seed: int) -> tuple[Drive, float]:
+    """Return a reducer of any kind whose pins sit and bend in any way, and a crank angle in rad.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative; the same seed gives the same drive.
+
+    Returns
+    -------
+    Drive
+        Wheel pins fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves; either kind rigid or beams.
+    float
+        φ_C, rad.
+    """
+    random = np.random.default_rng((seed, 3))
+    while True:
+        drive, angle = crank_drive(int(random.integers(2**32)))
+        play = float(random.choice(PLAYS))
+        drive = replace(drive, pin_wheel=_bent_wheel_pins(random, drive, _seated_wheel_pins(random, drive, play)))
+        if drive.pin_shaft is not None:
+            # Plays of both kinds are equal as often as not.
+            play = play if random.uniform() < 0.5 else float(random.choice(PLAYS))
+            drive = replace(drive, pin_shaft=_bent_shaft_pins(random, drive, _seated_shaft_pins(random, drive, play)))
+        drive = _made_of(random, drive)
+        if largest_deflection(drive) < SOFTEST * drive.crank.eccentricity and is_sound(drive):
+            return drive, angle
+
+
+def largest_deflection(drive: Drive) -> float:
+    """Return how far pins that are beams bend under their disc when a quarter of them carry its part of the torque, mm."""
+    discs, found = drive.disc.number_of_discs, [0.0]
+    wheel, shaft, materials = drive.pin_wheel, drive.pin_shaft, drive.materials
+    at_wheel = drive.crank.eccentricity * wheel.number_of_pins
+    for part, moment, lever, material in (
+        (wheel, drive.wheel_moment(), at_wheel, materials.wheel_pin),
+        (shaft, drive.load.torque, shaft.pin_circle_radius if shaft else 1.0, materials.shaft_pin),
+    ):
+        stiffness = None if part is None else beam_stiffness(drive, part, material)
+        if part is not None and stiffness is not None:
+            yielding = np.max(np.diagonal(np.linalg.inv(stiffness[:discs, :discs])))
+            found.append(float(yielding) * 4.0 * abs(moment) / (lever * discs * part.number_of_pins))
+    return max(found)
+
+
+def _inner(random: Generator, radius: float) -> float:
+    """Radius of the pin under a sleeve, as one writes it."""
+    step = 0.25 if radius > 1.0 else 0.05
+    return max(round(float(random.choice([0.5, 0.6, 0.75])) * radius / step), 1) * step
+
+
+def _seated_wheel_pins(random: Generator, drive: Drive, play: float) -> PinWheel:
+    wheel = drive.pin_wheel
+    play = min(play, 0.2 * drive.crank.eccentricity)
+    kind: Any = str(random.choice(["fixed", "slot", "sleeve"]))
+    seat = WheelPinSeat()
+    if kind == "slot":
+        seat = WheelPinSeat(kind=kind, radius=wheel.pin_radius + play)
+    elif kind == "sleeve":
+        pin = _inner(random, wheel.pin_radius)
+        seat = WheelPinSeat(kind=kind, pin_radius=pin, bore_radius=pin + play)
+    wheel = replace(wheel, seat=seat)
+    if random.uniform() < 0.3:
+        size = min(0.004, 0.002 * wheel.pin_radius, *([0.5 * play] if kind == "slot" else []))
+        scatter = size * random.choice([-1.0, 0.0, 0.0, 0.5, 1.0], wheel.number_of_pins)
+        wheel = replace(wheel, pin_errors=replace(wheel.pin_errors, diameter=tuple(scatter.tolist())))
+    return wheel
+
+
+def _seated_shaft_pins(random: Generator, drive: Drive, play: float) -> PinShaft:
+    shaft = drive.pin_shaft
+    assert shaft is not None
+    if random.uniform() < 0.5:
+        return shaft
+    play = min(play, 0.2 * drive.crank.eccentricity)
+    pin = _inner(random, shaft.pin_radius)
+    return replace(shaft, seat=ShaftPinSeat(kind="sleeve", pin_radius=pin, bore_radius=pin + play))
+
+
+def _span(random: Generator, drive: Drive) -> float:
+    """As long as the discs need, or longer."""
+    reach = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
+    return reach * float(random.choice([1.0, 1.0, 1.25, 2.0]))
+
+
+def _diameter(random: Generator, part: PinWheel | PinShaft) -> float | None:
+    """Left out, typed, or that of a pin that is thinner between its ends."""
+    own = 2.0 * (part.seat.pin_radius or part.pin_radius)
+    return [None, own, 0.8 * own][int(random.integers(3))]
+
+
+def _bent_wheel_pins(random: Generator, drive: Drive, wheel: PinWheel) -> PinWheel:
+    if random.uniform() < 0.4:
+        return wheel
+    ends: Any = str(random.choice(["supported", "clamped"]))
+    beam = WheelPinBeam(span=_span(random, drive), ends=ends, diameter=_diameter(random, wheel))
+    return replace(wheel, beam=beam)
+
+
+def _bent_shaft_pins(random: Generator, drive: Drive, shaft: PinShaft) -> PinShaft:
+    if random.uniform() < 0.3:
+        return shaft
+    tip: Any = str(random.choice(["free", "tied-clamped", "tied-pinned"]))
+    beam = ShaftPinBeam(span=_span(random, drive), tip=tip, diameter=_diameter(random, shaft))
+    return replace(shaft, beam=beam, stiffness=None)
+
+
+def _made_of(random: Generator, drive: Drive) -> Drive:
+    """Slots and sleeves of one material or another."""
+    materials, shaft = drive.materials, drive.pin_shaft
+    slot, sleeve = (OTHERS[int(random.integers(len(OTHERS)))] for _ in range(2))
+    kinds = {drive.pin_wheel.seat.kind, "fixed" if shaft is None else shaft.seat.kind}
+    if "slot" in kinds:
+        materials = replace(materials, wheel_seat=slot)
+    if "sleeve" in kinds:
+        materials = replace(materials, sleeve=sleeve)
+    return replace(drive, materials=materials)

@@ -1,0 +1,220 @@
+"""Where loose and bent pins are, and what they store: coordinates of their own, apart from the laws in series of `ltca.laws`.
+
+Each pin has, in the plane of each disc, the displacement of its beam, and what is loose on it or in it the displacement
+from there: two complex numbers for every pin and disc. Nothing is eliminated, no common normal is taken for granted: the slope of
+the potential by all these coordinates vanishes where pins, sleeves and slots are in balance. The stiffness of a beam comes
+from a quadrature of bending moments and shear forces (the unit-load theorem), ends held by forces and couples of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.materials import Material
+from ltca.drive.members.pins import PinShaft, PinWheel, WheelPinBeam
+from ltca.drive.parts import Drive
+from ltca.laws.backed import SeatLaw
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+LOADS = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 300), np.linspace(1.02, 8.0, 60)])
+"""Loads at which the energy of a seat is known, in its largest load."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeatEnergy:
+    """∫F ds of seats, one for each pin.
+
+    Parameters
+    ----------
+    law : SeatLaw
+        Approach at a load.
+    play : array, shape (pins,)
+        mm.
+    largest : float
+        Load about which energies are wanted, N.
+    """
+
+    law: SeatLaw
+    play: FloatArray
+    largest: float
+
+    def approach(self, load: FloatArray) -> FloatArray:
+        """Return s at loads, shape (discs, pins), mm."""
+        return self.law.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))[0]
+
+    def at(self, approach: FloatArray) -> FloatArray:
+        """Return the energy at approaches, shape (rows, discs, pins), N·mm: cubics between known loads, slopes and all."""
+        found = np.zeros(approach.shape)
+        for play in np.unique(self.play):
+            own = self.play == play
+            known, energy, load = self._known(float(play))
+            s = np.maximum(approach[..., own], 0.0)
+            piece = np.clip(np.searchsorted(known, s, side="right") - 1, 0, known.size - 2)
+            width, t = known[piece + 1] - known[piece], (s - known[piece]) / (known[piece + 1] - known[piece])
+            left = (1.0 + 2.0 * t) * energy[piece] + t * width * load[piece]
+            right = (3.0 - 2.0 * t) * energy[piece + 1] + (t - 1.0) * width * load[piece + 1]
+            value = (1.0 - t) ** 2 * left + t**2 * right
+            # Farther than any load that was tried: on along the last slope.
+            beyond = energy[-1] + load[-1] * (s - known[-1])
+            found[..., own] = np.where(s < known[-1], value, beyond)
+        return found
+
+    def _known(self, play: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Approaches, energies and loads of the nodes."""
+        loads = LOADS * max(self.largest, 1e-9)
+        nodes, weights = np.polynomial.legendre.leggauss(4)
+        middle, half = 0.5 * (loads[1:] + loads[:-1]), 0.5 * np.diff(loads)
+        at = middle[:, None] + half[:, None] * nodes
+        compliance = self.law.approach_and_compliance(at, np.full(at.shape, play))[1]
+        pieces = ((at * compliance) @ weights) * half
+        known = self.law.approach_and_compliance(loads, np.full(loads.shape, play))[0]
+        return known, np.concatenate([[0.0], np.cumsum(pieces)]), loads
+
+
+@dataclass(frozen=True, kw_only=True)
+class YieldingPins:
+    """Pins of one kind, at the displacements under the loads of an answer.
+
+    Parameters
+    ----------
+    stiffness : array or None, shape (discs + 1, discs + 1) or (discs, discs)
+        Forces of a beam by its displacements at the discs, and at its tip where a ring holds it, N/mm; None for rigid pins.
+    seat : SeatEnergy or None
+        None for fixed pins.
+    load : array, shape (discs, pins)
+        N.
+    away : array of complex, shape (discs, pins)
+        Unit vectors along which the discs press the pins.
+    tip : array of complex, shape (pins,)
+        Displacements of the tips, mm.
+    """
+
+    stiffness: FloatArray | None
+    seat: SeatEnergy | None
+    load: FloatArray
+    away: ComplexArray
+    tip: ComplexArray
+
+    @property
+    def bent(self) -> ComplexArray:
+        """Displacement of the beams at the discs, mm, shape (discs, pins)."""
+        if self.stiffness is None:
+            return np.zeros(self.load.shape, dtype=complex)
+        discs = self.load.shape[0]
+        force = self.load * self.away
+        if self.stiffness.shape[0] > discs:
+            force = force - self.stiffness[:discs, discs:] @ self.tip[None]
+        return np.asarray(np.linalg.solve(self.stiffness[:discs, :discs], force))
+
+    @property
+    def loose(self) -> ComplexArray:
+        """Displacement of loose pins and sleeves from the axes of their seats, mm, shape (discs, pins)."""
+        if self.seat is None:
+            return np.zeros(self.load.shape, dtype=complex)
+        return np.asarray((self.seat.play + self.seat.approach(self.load)) * self.away)
+
+    def stored(self, bent: ComplexArray, loose: ComplexArray, tip: ComplexArray) -> FloatArray:
+        """Return the energy of beams and seats, N·mm, shape (rows, pins).
+
+        Parameters
+        ----------
+        bent, loose : array of complex, shape (rows, discs, pins)
+            mm.
+        tip : array of complex, shape (rows, pins)
+            mm.
+        """
+        rows = max(bent.shape[0], loose.shape[0], tip.shape[0])
+        total = np.zeros((rows, self.load.shape[1]))
+        if self.stiffness is not None:
+            moved = np.broadcast_to(bent, (rows, *bent.shape[1:]))
+            if self.stiffness.shape[0] > bent.shape[1]:
+                moved = np.concatenate([moved, np.broadcast_to(tip, (rows, tip.shape[1]))[:, None]], axis=1)
+            total += 0.5 * np.einsum("rdp,de,rep->rp", moved.conj(), self.stiffness, moved).real
+        if self.seat is not None:
+            total += self.seat.at(np.abs(loose) - self.seat.play).sum(axis=1)
+        return total
+
+    @property
+    def ways(self) -> ComplexArray:
+        """Unit displacements of beams and loose parts in every direction that they have, shape (ways, 2, discs)."""
+        discs = self.load.shape[0]
+        kinds = [kind for kind, free in enumerate((self.stiffness, self.seat)) if free is not None]
+        each = np.zeros((len(kinds), discs, 2, 2, discs), dtype=complex)
+        for place, kind in enumerate(kinds):
+            for disc in range(discs):
+                each[place, disc, :, kind, disc] = (1.0, 1j)
+        return each.reshape(-1, 2, discs)
+
+
+def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) -> FloatArray | None:
+    """Return the forces on a pin by its mean displacements along the discs, and that of a tip that a ring holds, N/mm.
+
+    Parameters
+    ----------
+    drive : Drive
+        For the places and the thickness of its discs.
+    part : PinWheel or PinShaft
+        What the pins belong to.
+    material : Material
+        Of the pins.
+    """
+    beam = part.beam
+    if beam is None:
+        return None
+    span, width = beam.span, drive.disc.thickness
+    middles = [plane + 0.5 * span for plane in drive.disc.disc_planes]
+    if isinstance(beam, WheelPinBeam):
+        basis, held, kept = "between", 2 if beam.ends == "clamped" else 0, len(middles)
+    else:
+        basis, held, kept = "flange", {"free": 0, "tied-pinned": 1, "tied-clamped": 2}[beam.tip], len(middles)
+        kept += min(held, 1)
+    if beam.diameter is not None:
+        diameter = beam.diameter
+    else:
+        diameter = 2.0 * (part.pin_radius if part.seat.kind != "sleeve" else part.seat.pin_radius or 0.0)
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    ends = [middle + side * 0.5 * width for middle in middles for side in (-1.0, 1.0)]
+    marks = np.unique(np.concatenate([[0.0, span], np.clip(ends, 0.0, span)]))
+    half = 0.5 * np.diff(marks)
+    at = (0.5 * (marks[1:] + marks[:-1])[:, None] + half[:, None] * nodes).ravel()
+    weight = (half[:, None] * weights).ravel()
+    moments, shears = _unit_loads(at, middles, width, span, basis)
+    moments, shears = moments[: len(middles) + held], shears[: len(middles) + held]
+    bending = material.youngs_modulus * np.pi * diameter**4 / 64.0
+    ratio = material.poisson_ratio
+    shear = 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio) * material.youngs_modulus / (2.0 * (1.0 + ratio))
+    shear *= np.pi * diameter**2 / 4.0
+    yielding = (moments * weight) @ moments.T / bending + (shears * weight) @ shears.T / shear
+    # Where ends may not turn the rotations that belong to their couples are zero.
+    return np.asarray(np.linalg.inv(yielding)[:kept, :kept])
+
+
+def _unit_loads(
+    at: FloatArray, middles: Sequence[float], width: float, span: float, basis: str
+) -> tuple[FloatArray, FloatArray]:
+    """Bending moments and shear forces of unit loads spread along the discs, then of what the ends add."""
+    moments, shears = [], []
+    for middle in middles:
+        low, high = middle - 0.5 * width, middle + 0.5 * width
+        inside = np.clip(high - at, 0.0, width)
+        # Of the part of the load beyond a section: a cantilever.
+        moment = np.where(at < low, middle - at, 0.5 * inside**2 / width)
+        shear = inside / width
+        if basis == "between":  # less the cantilever's under the reaction at the far wall
+            moment, shear = moment - middle / span * (span - at), shear - middle / span
+        moments.append(moment)
+        shears.append(shear)
+    one = np.ones_like(at)
+    if basis == "between":
+        moments += [1.0 - at / span, at / span]
+        shears += [one / span, -one / span]
+    else:
+        moments += [span - at, one]
+        shears += [one, 0.0 * one]
+    return np.stack(moments), np.stack(shears)
