@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.errors import ConvergenceError
 from ltca.laws.beam import End, PinBeam
 from ltca.laws.conforming import ConformingLaw
@@ -27,6 +27,9 @@ FloatArray = NDArray[np.float64]
 
 SLOT_DATUM = 3.0
 """Radius, in radii of the slot, of the circle in the wheel against which a slot's yielding is measured."""
+MOST, SHARPNESS = 0.6, 8.0
+"""Part of a contact's approach that may be taken off, and how sharply what is more is bounded."""
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
 HALF_SPACE_DATUM = 0.7
 """Depth, in lengths of the contact, down to which a half-space of finite length counts: 0.68 to 0.72 (docs/seats.md)."""
 
@@ -66,8 +69,8 @@ class BackedLaw:
     flexibility : float or array, shape (positions, 1)
         c of the pin's bending, mm/N.
     overlap : float
-        What the contact's law counts of a sleeve beyond its outer surface, where the sleeve's own law begins, mm/N: it is
-        taken off.
+        What the contact's law counts of a sleeve below half its wall, where the sleeve's own law begins, mm/N: it is taken
+        off, up to `MOST` of the contact's approach. Where it would be more the contact is as wide as the wall, and no law holds.
     """
 
     contact: EnergyLaw
@@ -77,13 +80,22 @@ class BackedLaw:
     overlap: float = 0.0
 
     def behind(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return s + c F, overlap taken off, and its derivative, mm and mm/N."""
-        slope = np.zeros_like(load) + self.flexibility - self.overlap
-        given = slope * load
+        """Return s + c F and its derivative, mm and mm/N."""
+        given, slope = self.flexibility * load, np.zeros_like(load) + self.flexibility
         if self.seat is not None:
             approach, compliance = self.seat.approach_and_compliance(load, np.broadcast_to(self.play, load.shape))
             given, slope = given + approach, slope + compliance
         return given, slope
+
+    def counted_twice(self, near: FloatArray, load: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return what is taken off the approach of a contact, mm, and its derivative by that: bounded smoothly."""
+        if not self.overlap:
+            return np.zeros_like(near), np.zeros_like(near)
+        most, whole = MOST * near, self.overlap * np.maximum(load, 1e-300)
+        part = (whole / most) ** SHARPNESS
+        bounded = whole * (1.0 + part) ** (-1.0 / SHARPNESS)
+        slope = self.overlap * stiffness / whole + MOST * part / most
+        return bounded, bounded * slope / (1.0 + part)
 
     def contact_approach(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return the approach ε of the contacts themselves; that of open ones is the whole, mm.
@@ -97,15 +109,13 @@ class BackedLaw:
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the load at an approach and its derivative, N and N/mm; zero where open."""
-        _, load, stiffness, slope = self._solve(np.asarray(approach, dtype=float), effective_radius)
-        return load, stiffness / (1.0 + stiffness * slope)
+        _, load, stiffness = self._solve(np.asarray(approach, dtype=float), effective_radius)
+        return load, stiffness
 
-    def _solve(
-        self, delta: FloatArray, effective_radius: ArrayLike
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Contact approach, load, stiffness of the contact, and slope of what is behind."""
+    def _solve(self, delta: FloatArray, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Contact approach, load, and stiffness of the whole."""
         closed = delta > 0.0
-        found = delta.copy(), *(np.zeros_like(delta) for _ in range(3))
+        found = delta.copy(), np.zeros_like(delta), np.zeros_like(delta)
         if closed.any():
             radius = np.broadcast_to(np.asarray(effective_radius, dtype=float), delta.shape)[closed]
             for all_pairs, part in zip(found, self._of_pairs(closed)._of_closed(delta[closed], radius), strict=True):
@@ -126,41 +136,43 @@ class BackedLaw:
             self, contact=law, play=of(self.play), flexibility=of(held) if isinstance(held, np.ndarray) else held
         )
 
-    def _of_closed(
-        self, delta: FloatArray, radius: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def _of_closed(self, delta: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The same of closed pairs: Newton's method between bounds."""
         near = 0.5 * delta
         history: list[float] = []
-        # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole
-        # where overlap is taken off.
+        # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole where
+        # something is taken off.
         low, high = np.zeros_like(delta), np.full_like(delta, np.inf)
+        settled = False
         for _ in range(80):
             load, stiffness = self.contact.load_and_stiffness(near, radius)
             given, slope = self.behind(load)
-            left = near + given - delta
-            if np.all(np.abs(left) <= 1e-15 + 4e-16 * delta):
-                break
+            off, off_slope = self.counted_twice(near, load, stiffness)
+            left, slope = near - off + given - delta, 1.0 - off_slope + stiffness * slope
+            if settled or np.all(np.abs(left) <= 1e-15 + 4e-16 * delta):
+                return near, load, stiffness / slope
             high, low = np.where(left > 0.0, near, high), np.where(left < 0.0, near, low)
-            following = near - left / (1.0 + stiffness * slope)
+            following = near - left / slope
             outside = (following <= low) | (following >= high)
             following = np.where(outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
             history.append(float(np.max(np.abs(following - near) / delta)))
-            near = following
-            if history[-1] < 1e-13:
-                load, stiffness = self.contact.load_and_stiffness(near, radius)
-                _, slope = self.behind(load)
-                break
-        else:
-            raise ConvergenceError("contact and seat in series do not settle; relative change", history)
-        return near, load, stiffness, slope
+            near, settled = following, history[-1] < 1e-13
+        raise ConvergenceError("contact and seat in series do not settle; relative change", history)
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Return ∫ F dδ of contact, seat and beam, N·mm."""
-        near, load, _, _ = self._solve(np.asarray(approach, dtype=float), effective_radius)
-        held = 0.5 * (self.flexibility - self.overlap) * load**2
+        near, load, _ = self._solve(np.asarray(approach, dtype=float), effective_radius)
+        held = 0.5 * self.flexibility * load**2
         if self.seat is not None:
             held = held + self.seat.energy(load, np.broadcast_to(self.play, load.shape))
+        if self.overlap:
+            # ∫ F d(off) = F off − ∫ off dF
+            held = held - load * self.counted_twice(near, load, np.zeros_like(load))[0]
+            for point, weight in zip(0.5 * (1.0 + GAUSS_POINTS), 0.5 * GAUSS_WEIGHTS, strict=True):
+                at = np.maximum(near, 0.0) * point**2
+                force, stiffness = self.contact.load_and_stiffness(at, effective_radius)
+                off, _ = self.counted_twice(np.maximum(at, 1e-300), force, stiffness)
+                held = held + 2.0 * weight * point * np.maximum(near, 0.0) * off * stiffness
         return np.asarray(self.contact.energy(near, effective_radius) + held)
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
@@ -180,6 +192,11 @@ class BackedLaw:
             play=self.play[rows],
             flexibility=held[rows] if isinstance(held, np.ndarray) else held,
         )
+
+    @property
+    def outside(self) -> EnergyLaw:
+        """The law of the contact down to half the wall of a sleeve: overlap taken off, nothing behind."""
+        return replace(self, seat=None, flexibility=0.0) if self.overlap else self.contact
 
     @property
     def known_contact(self) -> ContactLaw:
@@ -227,7 +244,7 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
         return contact
     overlap = 0.0
     if drive.pin_wheel.seat.kind == "sleeve":
-        overlap = _overlap(drive, drive.pin_wheel.pin_radius, depth or HALF_SPACE_DATUM * drive.disc.thickness)
+        overlap = _overlap(drive, drive.pin_wheel, depth or HALF_SPACE_DATUM * drive.disc.thickness)
     return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam), overlap=overlap)
 
 
@@ -248,14 +265,20 @@ def back_shaft_pins(drive: Drive, contact: EnergyLaw, play: FloatArray, depth: f
     seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
     if seat is None or shaft is None:
         return contact
-    overlap = 0.0 if depth is None else _overlap(drive, shaft.pin_radius, depth)
+    overlap = 0.0 if depth is None else _overlap(drive, shaft, depth)
     return BackedLaw(contact=contact, seat=seat, play=play, overlap=overlap)
 
 
-def _overlap(drive: Drive, radius: float, depth: float) -> float:
-    """What a half-plane of the sleeve yields between its outer radius and a depth, 2 (1 − ν²) ln(D/R)/(π E L), mm/N."""
+def _datum(drive: Drive, part: PinWheel | PinShaft) -> float:
+    """Depth below which the law of a sleeve itself begins, mm: half its wall, from where on any yields; less in thin discs."""
+    wall = part.pin_radius - (part.seat.bore_radius or 0.0)
+    return min(0.5 * wall, HALF_SPACE_DATUM * drive.disc.thickness)
+
+
+def _overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
+    """What a half-plane of the sleeve yields between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
     compliance = drive.materials.sleeve.plane_strain_compliance
-    return float(2.0 * compliance * np.log(depth / radius) / (np.pi * drive.disc.thickness))
+    return float(2.0 * compliance * np.log(depth / _datum(drive, part)) / (np.pi * drive.disc.thickness))
 
 
 def shaft_pin_stiffness(drive: Drive) -> float:
@@ -326,7 +349,7 @@ def shaft_pin_seat(drive: Drive) -> ConformingLaw | None:
         pin_radius=shaft.seat.pin_radius or 0.0,
         bore_radius=shaft.seat.bore_radius or 0.0,
         outer_radius=shaft.pin_radius,
-        datum=shaft.pin_radius,
+        datum=_datum(drive, shaft),
         length=drive.disc.thickness,
     )
 
@@ -351,7 +374,7 @@ def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
             pin_radius=wheel.seat.pin_radius or 0.0,
             bore_radius=wheel.seat.bore_radius or 0.0,
             outer_radius=wheel.pin_radius,
-            datum=wheel.pin_radius,
+            datum=_datum(drive, wheel),
             length=length,
         )
     return None

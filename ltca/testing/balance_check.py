@@ -333,7 +333,7 @@ def find_imbalance(
     pins = _yielding(drive, laws, balanced, position)
     potential = PotentialEnergy(
         drive=drive,
-        pin_law=laws.pin_law.contact if isinstance(laws.pin_law, BackedLaw) else laws.pin_law,
+        pin_law=laws.pin_law.outside if isinstance(laws.pin_law, BackedLaw) else laws.pin_law,
         inner_law=laws.roller_laws.inner,
         outer_law=laws.roller_laws.outer,
         crank_angle=float(balanced.crank_angle[position]),
