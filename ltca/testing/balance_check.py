@@ -396,13 +396,13 @@ def find_imbalance(
                 -1, *held.ways.shape[1:]
             )
             ways = np.concatenate([np.zeros((1, *ways.shape[1:])), ways])[..., None]
-            pairs = stored(pose[None], ways)[1:].reshape(steps.size, 2, -1, held.load.shape[1])
+            pairs = stored(pose[None], ways.astype(complex))[1:].reshape(steps.size, 2, -1, held.load.shape[1])
             # Pins do not feel each other: of each coordinate the step that tells best.
-            slope = np.abs(pairs[:, 0] - pairs[:, 1]) / (2.0 * steps)[:, None, None]
-            slope = np.min(slope - (noise / steps)[:, None, None], axis=0)
-            if np.max(slope) > 1e-3 * load:
+            steep = np.abs(pairs[:, 0] - pairs[:, 1]) / (2.0 * steps)[:, None, None]
+            steep = np.min(steep - (noise / steps)[:, None, None], axis=0)
+            if np.max(steep) > 1e-3 * load:
                 problems.append(
-                    f"slope of the potential by the place of a {name} pin {np.max(slope):.3g} N against a load of {load:.3g} N"
+                    f"slope of the potential by the place of a {name} pin {np.max(steep):.3g} N against a load of {load:.3g} N"
                 )
     rise = moved[1:] - moved[0]
     if np.any(rise < -noise - 1e-4 * load * sizes):

@@ -96,7 +96,9 @@ def test_a_free_pin_by_its_own_two_unknowns(joint, name):
     pose, part = found.pose[0], found.response
     profile, wheel, place = FlankProfile.of_drive(drive), drive.pin_wheel, model.geometry.placement
     seat, contact = wheel_pin_seat(drive), LineContactLaw(drive.disc.thickness, 206e3 / (2.0 * (1.0 - 0.09)))
-    contact = replace(model.pin_law, contact=contact, seat=None)  # what a half-space counts of a sleeve's wall is off
+    contact = replace(
+        model.pin_law, contact=contact, seat=None, play=np.zeros(1)
+    )  # what a half-space counts of a sleeve's wall is off
     play = np.array([wheel.seat_play])
     centre = complex(place.race_centre(ANGLES[:1])[0]) + pose[X] + 1j * pose[Y]
     turn = np.exp(1j * pose[DISC_ROTATION])
@@ -113,7 +115,7 @@ def test_a_free_pin_by_its_own_two_unknowns(joint, name):
             theta = profile.nearest_parameter(np.array([in_disc]), part.flank.parameter[0, [pin]])
             gap = profile.distance(np.array([in_disc]), theta)[0] - wheel.pin_radius
             radius = profile.effective_radius(theta, np.array([wheel.pin_radius]))[0]
-            flank = float(contact.load_and_stiffness(np.array(-gap), radius)[0]) * profile.normal(theta)[0] * turn
+            flank = contact.load_and_stiffness(np.array([-gap]), radius)[0][0] * profile.normal(theta)[0] * turn
             pressed = abs(at - home) - play[0]
             held = load_of(seat, pressed, play)
             total = flank - held * (at - home) / abs(at - home)
