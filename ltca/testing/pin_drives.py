@@ -27,9 +27,9 @@ OTHERS = (
     Material(youngs_modulus=2.6e3, poisson_ratio=0.38),
 )
 """Slots and sleeves of steel, bronze or plastic."""
-SOFTEST = 0.5
+SOFTEST = 1.0
 """Largest deflection of a pin when a quarter of all carry a disc's part of the torque, in eccentricities: where pins give way
-by more, teeth slip."""
+by more than half the height of the teeth, these slip."""
 
 
 def pin_drive(seed: int) -> tuple[Drive, float]:
