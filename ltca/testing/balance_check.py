@@ -396,9 +396,9 @@ def find_imbalance(
                 -1, *held.ways.shape[1:]
             )
             ways = np.concatenate([np.zeros((1, *ways.shape[1:])), ways])[..., None]
-            pairs = stored(pose[None], ways.astype(complex))[1:].reshape(steps.size, 2, -1, held.load.shape[1])
+            beside = stored(pose[None], ways.astype(complex))[1:].reshape(steps.size, 2, -1, held.load.shape[1])
             # Pins do not feel each other: of each coordinate the step that tells best.
-            steep = np.abs(pairs[:, 0] - pairs[:, 1]) / (2.0 * steps)[:, None, None]
+            steep = np.abs(beside[:, 0] - beside[:, 1]) / (2.0 * steps)[:, None, None]
             steep = np.min(steep - (noise / steps)[:, None, None], axis=0)
             if np.max(steep) > 1e-3 * load:
                 problems.append(
