@@ -306,6 +306,7 @@ def test_cases_share_their_nominal_shape(paper_cases):
 
 
 LEFT_OUT = ("pin_wheel.support_stiffness", "installation.first_stage_ratio", "crank.circle_radius")
+TABLES_LEFT_OUT = ("crank.support", "pin_wheel.seat", "pin_wheel.beam", "pin_shaft.seat", "pin_shaft.beam")
 
 
 def bodies(drive):
@@ -325,7 +326,7 @@ def test_fingerprint_follows_the_bodies(path, paper_cases):
     drive = paper_cases["CS-6"]
     # one tooth more, as many as pins, makes no flank
     change = {path: 12}
-    if path in LEFT_OUT or path.startswith("crank.support"):
+    if path in LEFT_OUT or path.rpartition(".")[0] in TABLES_LEFT_OUT:
         drive, change = change_of(drive, path)
     elif path != "disc.number_of_teeth":
         change = {path: sensible_change(drive, path)}
