@@ -71,8 +71,8 @@ def kind(joint, name):
     return replace(drive, pin_shaft=shaft, crank=replace(joint.crank, support=support))
 
 
-BENT = ["bent wheel pins", "three discs on bent sleeved pins", "free", "tied-clamped", "tied-pinned", "everything"]
-KINDS = ["slots", "sleeves", *BENT]
+THREE, ALL = (pytest.param(name, marks=pytest.mark.slow) for name in ("three discs on bent sleeved pins", "everything"))
+KINDS = ["slots", "sleeves", "bent wheel pins", THREE, "free", "tied-clamped", "tied-pinned", ALL]
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -162,7 +162,7 @@ def unmodified(drive):
     )
 
 
-@pytest.mark.parametrize("name", ["bent wheel pins", "three discs on bent sleeved pins", "free", "everything"])
+@pytest.mark.parametrize("name", ["bent wheel pins", THREE, "free", ALL])
 def test_pins_that_discs_share_by_a_dense_reference(joint, name):
     """Every loaded pin alone, all its discs' forces and its place at each disc as unknowns, exact gaps of the moved pin."""
     drive = unmodified(kind(joint, name))
@@ -237,7 +237,7 @@ def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
     return on_shaft_pin
 
 
-@pytest.mark.parametrize("name", ["sleeves", "three discs on bent sleeved pins", "tied-clamped", "everything"])
+@pytest.mark.parametrize("name", ["sleeves", THREE, "tied-clamped", ALL])
 def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
     """Coefficients without coupling: the coupled model, its matrix of slopes too, gives what the tables give."""
     drive = kind(joint, name)
@@ -263,7 +263,7 @@ def test_kinds_typed_out_are_those_left_out(joint):
     np.testing.assert_array_equal(analyse(typed, ANGLES).full.pose, analyse(joint, ANGLES).full.pose)
 
 
-@pytest.mark.parametrize("name", ["three discs on bent sleeved pins", "everything"])
+@pytest.mark.parametrize("name", [THREE, ALL])
 def test_reverse_is_the_mirror_image(joint, name):
     drive = kind(joint, name)
     reverse = with_fields(drive, {"load.direction": "cw", "disc.phases": tuple(-p for p in drive.disc.disc_phases)})
