@@ -16,7 +16,7 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.pin_drives import pin_drive
-from ltca.testing.yielding_pins import SeatEnergy, beam_stiffness
+from ltca.testing.yielding_pins import ContactOfSleeves, SeatEnergy, beam_stiffness
 
 
 def check_seeds(first, count):
@@ -183,3 +183,15 @@ def test_energy_of_a_seat_has_its_load_as_slope(answered):
     # second order in the step, a thousandth of the approach
     np.testing.assert_allclose(slope, loads, rtol=2e-6)
     np.testing.assert_array_equal(seat.at(-at), 0.0)
+
+
+def test_energy_of_contacts_on_sleeves_has_their_load_as_slope(answered):
+    """By bisection and quadrature, against the load that Newton's method finds for the same law with nothing behind it."""
+    law = answered["sleeve"][1].discs[0].pin_law
+    assert law.overlap > 0.0
+    at, radius = np.geomspace(1e-6, 1e-2, 30)[None], np.full((1, 30), 2.0)
+    energy = ContactOfSleeves(law=law).energy
+    slope = (energy(1.0005 * at, radius) - energy(0.9995 * at, radius)) / (1e-3 * at)
+    # second order in a step of 5e-4 of the approach, where what is taken off comes to its bound
+    np.testing.assert_allclose(slope, law.outside.load_and_stiffness(at, radius)[0], rtol=1e-5)
+    np.testing.assert_array_equal(energy(-at, radius), 0.0)
