@@ -29,6 +29,8 @@ SLOT_DATUM = 3.0
 """Radius, in radii of the slot, of the circle in the wheel against which a slot's yielding is measured."""
 MOST, SHARPNESS = 0.6, 8.0
 """Part of a contact's approach that may be taken off, and how sharply what is more is bounded."""
+NEAR = 1e-7
+"""Last step, as a part of the contact's own approach, of contacts in series: loads are right to its square."""
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
 HALF_SPACE_DATUM = 0.7
 """Depth, in lengths of the contact, down to which a half-space of finite length counts: 0.68 to 0.72 (docs/seats.md)."""
@@ -137,26 +139,32 @@ class BackedLaw:
         )
 
     def _of_closed(self, delta: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The same of closed pairs: Newton's method between bounds."""
-        near = 0.5 * delta
+        """The same of closed pairs: Newton's method between bounds, with the bend of the last two slopes (Halley)."""
+        near, last, slope_before = 0.5 * delta, np.zeros_like(delta), np.zeros_like(delta)
         history: list[float] = []
         # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole where
         # something is taken off.
         low, high = np.zeros_like(delta), np.full_like(delta, np.inf)
-        settled = False
-        for _ in range(80):
+        for iteration in range(80):
             load, stiffness = self.contact.load_and_stiffness(near, radius)
             given, slope = self.behind(load)
             off, off_slope = self.counted_twice(near, load, stiffness)
-            left, slope = near - off + given - delta, 1.0 - off_slope + stiffness * slope
-            if settled or np.all(np.abs(left) <= 1e-15 + 4e-16 * delta):
-                return near, load, stiffness / slope
+            left, steep = near - off + given - delta, 1.0 - off_slope + stiffness * slope
             high, low = np.where(left > 0.0, near, high), np.where(left < 0.0, near, low)
-            following = near - left / slope
-            outside = (following <= low) | (following >= high)
+            step = left / steep
+            if iteration:
+                bend = np.divide(steep - slope_before, last, out=np.zeros_like(delta), where=last != 0.0)
+                step = step / (1.0 - (0.5 * step * bend / steep).clip(-0.3, 0.3))
+            following = near - step
+            # Next to the root round-off may have taken it for a bound.
+            outside = ((following <= 0.0) | (following < low) | (following > high)) & (np.abs(step) > NEAR * near)
             following = np.where(outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
-            history.append(float(np.max(np.abs(following - near) / delta)))
-            near, settled = following, history[-1] < 1e-13
+            last, slope_before = following - near, steep
+            history.append(float(np.max(np.abs(last) / following)))
+            near = following
+            if history[-1] < NEAR:
+                # A tangent's length away from there: what is left is its square.
+                return near, load + stiffness * last, stiffness / steep
         raise ConvergenceError("contact and seat in series do not settle; relative change", history)
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:

@@ -27,7 +27,7 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import disc_responses
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
-from ltca.testing.yielding_pins import SeatEnergy, YieldingPins, beam_stiffness
+from ltca.testing.yielding_pins import ContactOfSleeves, SeatEnergy, YieldingPins, beam_stiffness
 
 FloatArray = NDArray[np.float64]
 
@@ -250,6 +250,13 @@ def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
     return np.asarray(x + 1j * y + 1j * turned * places)
 
 
+def _without_what_is_behind(law: EnergyLaw) -> EnergyLaw:
+    """Law of the contacts themselves, on sleeves down to half their wall."""
+    if not isinstance(law, BackedLaw):
+        return law
+    return ContactOfSleeves(law=law) if law.overlap else law.contact
+
+
 def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, row: int) -> dict[str, YieldingPins]:
     """Wheel pins and shaft pins where the loads of an answer hold them."""
     parts, found = disc_responses(balanced.response), {}
@@ -333,7 +340,7 @@ def find_imbalance(
     pins = _yielding(drive, laws, balanced, position)
     potential = PotentialEnergy(
         drive=drive,
-        pin_law=laws.pin_law.outside if isinstance(laws.pin_law, BackedLaw) else laws.pin_law,
+        pin_law=_without_what_is_behind(laws.pin_law),
         inner_law=laws.roller_laws.inner,
         outer_law=laws.roller_laws.outer,
         crank_angle=float(balanced.crank_angle[position]),

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, WheelPinBeam
 from ltca.drive.parts import Drive
-from ltca.laws.backed import SeatLaw
+from ltca.laws.backed import MOST, BackedLaw, SeatLaw
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -75,6 +75,41 @@ class SeatEnergy:
         pieces = ((at * compliance) @ weights) * half
         known = self.law.approach_and_compliance(loads, np.full(loads.shape, play))[0]
         return known, np.concatenate([[0.0], np.cumsum(pieces)]), loads
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactOfSleeves:
+    """Contacts on sleeves, whose laws count less of the sleeve than a whole half-space: approaches by bisection.
+
+    Parameters
+    ----------
+    law : BackedLaw
+        For the contact's own law and what is taken off its approach.
+    """
+
+    law: BackedLaw
+
+    def _off(self, near: FloatArray, effective_radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What is taken off at approaches of a whole half-space, its derivative, and the load."""
+        load, stiffness = self.law.contact.load_and_stiffness(near, effective_radius)
+        return *self.law.counted_twice(near, load, stiffness), load
+
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """Return ∫F dδ, N·mm."""
+        delta = np.asarray(approach, dtype=float)
+        radius = np.broadcast_to(np.asarray(effective_radius, dtype=float), delta.shape)
+        total, closed = np.zeros(delta.shape), delta > 0.0
+        whole, radius = delta[closed], radius[closed]
+        low, high = whole.copy(), whole / (1.0 - MOST)
+        for _ in range(52):
+            middle = 0.5 * (low + high)
+            above = middle - self._off(middle, radius)[0] > whole
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        nodes, weights = np.polynomial.legendre.leggauss(20)
+        for node, weight in zip(0.5 * (1.0 + nodes), 0.5 * weights, strict=True):
+            _, slope, load = self._off(high * node**2, radius)
+            total[closed] += 2.0 * weight * node * high * load * (1.0 - slope)
+        return total
 
 
 @dataclass(frozen=True, kw_only=True)
