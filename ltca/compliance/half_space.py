@@ -234,10 +234,19 @@ def batch_signature(drive: Drive) -> tuple[object, ...]:
     numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.number_of_holes)
     lengths = (disc.thickness, bearing.roller_length)
     yields = (drive.crank.number, drive.crank.support is None, wheel.support_stiffness is None)
+    # Laws behind the contacts are those of one drive: what they are made of is the same for all of a batch.
+    behind: tuple[object, ...] = (wheel.seat, wheel.beam)
+    if wheel.seat.kind != "fixed" or wheel.beam is not None:
+        behind += (wheel.pin_radius, disc.disc_planes)
+    shaft = drive.pin_shaft
+    if shaft is not None and shaft.seat.kind != "fixed":
+        behind += (shaft.seat, shaft.pin_radius)
     return (
         *numbers,
         *lengths,
         *yields,
+        *behind,
+        None if shaft is None or shaft.beam is None else shaft.beam.tip,
         pin,
         roller,
         drive.materials,

@@ -27,6 +27,7 @@ from ltca.laws.beam import PinBeam
 from ltca.laws.line_contact import LineContactLaw
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 
 ANGLES = np.array([0.31, 1.7, 4.4])
 LOAD = 1e-4
@@ -407,3 +408,29 @@ def test_results_of_seats_and_beams(joint):
     assert summary["max_pin_deflection_mm"] == pytest.approx(expected.max(), abs=1e-11)
     assert summary["max_pin_seat_pressure_MPa"] == float(bent["pin_seat_pressure_max"].max())
     assert "max_pin_deflection_mm" not in summarise(analyse(joint, ANGLES))
+
+
+@pytest.mark.parametrize(
+    ("field", "values"),
+    [
+        ("pin_wheel.seat.radius", (2.503, 2.506)),
+        ("pin_wheel.beam.span", (29.0, 33.0)),
+        ("pin_wheel.beam.diameter", (4.9, 5.0)),
+        ("pin_shaft.seat.bore_radius", (4.02, 4.05)),
+        ("pin_shaft.beam.span", (30.0, 31.0)),
+        ("disc.planes", ((-6.0, 6.0), (-7.0, 7.0))),
+        ("materials.sleeve.youngs_modulus", (206e3, 110e3)),
+    ],
+)
+def test_samples_of_seats_and_beams_are_those_of_each_alone(joint, field, values):
+    """Many drives at once have the law of each, not of the first: a study that scatters a seat or a beam."""
+    drives = [with_fields(kind(joint, "everything"), {field: value}) for value in values]
+    settings = BatchSettings(
+        crank_angle=ANGLES[:2], quantities=("mean_transmission_error", "max_pin_load"), engine=HalfSpace(), nominal=None
+    )
+    together = analyse_samples(drives, settings)
+    alone = np.concatenate([analyse_samples([drive], settings).values for drive in drives])
+    assert together.messages == ("", "")
+    # Solved from other starts: 1e-9 of the load
+    np.testing.assert_allclose(together.values, alone, rtol=1e-8)
+    assert np.ptp(alone[:, 0]) > 1e-3 * abs(alone[0, 0]) or field == "disc.planes"
