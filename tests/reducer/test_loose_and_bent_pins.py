@@ -410,6 +410,7 @@ def test_results_of_seats_and_beams(joint):
     assert "max_pin_deflection_mm" not in summarise(analyse(joint, ANGLES))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("field", "values"),
     [
