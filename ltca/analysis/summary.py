@@ -12,6 +12,7 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.reducer import geometries
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 
@@ -181,7 +182,10 @@ def _largest(values: FloatArray) -> float:
 
 def _refined(analysis: LoadedAnalysis) -> dict[str, float]:
     whole = analysis.is_complete and is_full_turn(analysis.full.crank_angle)
-    found = refine_extremes(analysis) if whole else None
+    try:
+        found = refine_extremes(analysis) if whole else None
+    except ConvergenceError:  # one between the positions has no answer; those of the positions stand
+        found = None
     return {
         f"refined_{key}": np.nan if found is None else factor * getattr(found, name)
         for key, (name, factor) in REFINED.items()

@@ -175,7 +175,7 @@ def _solve_and_write(
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
     if any(analysis.pressures.rigid_shaft_pins for analysis in analyses.values()):
         print(RIGID_SHAFT_PINS)
-    print(_sampling(analyses, angles))
+    print(_sampling(analyses, summaries, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         left = 2 * angles.size
@@ -374,7 +374,9 @@ def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
 
-def _sampling(analyses: dict[str, LoadedAnalysis], angles: FloatArray) -> str:
+def _sampling(
+    analyses: dict[str, LoadedAnalysis], summaries: dict[str, dict[str, float | None]], angles: FloatArray
+) -> str:
     """What the values stand for: which positions, whether they see the mesh, and what to know of drive and answer."""
     from ltca.analysis.extremes import is_full_turn, sampling_warning
 
@@ -387,4 +389,7 @@ def _sampling(analyses: dict[str, LoadedAnalysis], angles: FloatArray) -> str:
         for warning in (sampling_warning(analysis.drive, angles), *analysis.warnings)
         if warning is not None
     }
+    for name, case in summaries.items():
+        if whole and analyses[name].is_complete and case["refined_max_pin_load_N"] is None:
+            warnings.add(f"extremes of case {name} are those of its positions: one between them has no answer")
     return "\n".join([*lines, *(f"warning: {text}" for text in sorted(warnings))])

@@ -159,7 +159,14 @@ class Search:
         return np.union1d(active, asked[self.slipped[asked]])
 
     def follow_valley(self, row: int) -> bool:
-        """Balance a position that creeps along one soft mode; tell whether it does.
+        """Balance a position that creeps along one soft mode; tell whether it does."""
+        try:
+            return self._follow_valley(row)
+        except ConvergenceError:  # steps along a valley are long: contacts may be lost on the way
+            return False
+
+    def _follow_valley(self, row: int) -> bool:
+        """Walk along the softest mode.
 
         A disc pressed by pins all around rolls in the wheel almost freely: the valley of Π is curved by the eccentricity,
         and straight steps along it climb its walls. Here every step along the softest mode is followed by steps of all

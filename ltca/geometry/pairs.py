@@ -260,7 +260,12 @@ class ContactGeometry:
         )
         approach, parameter = known.approach.copy(), start.copy()
         point, turning = known.point.copy(), known.turning.copy()
-        bending, effective_radius = np.zeros(near.shape), np.ones(near.shape)
+        bending = np.zeros(near.shape)
+        # Of pins left out some radius of the flank: what no place of it has, laws of profiled pins do not hold.
+        if places.size:
+            effective_radius = np.full(near.shape, found.effective_radius[0, 0])
+        else:
+            effective_radius = self.profile.effective_radius(start, self.placement.wheel_pin_radii)
         gradient, along = (np.zeros((*near.shape, coordinates.size)) for _ in range(2))
         motion = FlankMotion(
             approach=approach,

@@ -219,11 +219,18 @@ def _parts(drive: Drive) -> dict[str, Any]:
 
 
 def _merged(below: Any, value: Any) -> Any:
-    if not isinstance(below, dict) or not isinstance(value, dict):
-        return value
-    return {**below, **{key: _merged(below.get(key), over) for key, over in value.items()}}
+    if (
+        not isinstance(below, dict)
+        or not isinstance(value, dict)
+        or below.get("kind") != value.get("kind", below.get("kind"))
+    ):
+        return value  # a seat of another kind has nothing of the one below
+    kept = {key: over for key, over in below.items() if INSTEAD.get(key) not in value}
+    return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
+INSTEAD = {"stiffness": "beam", "beam": "stiffness"}
+"""Fields of one table that stand for each other: a case that gives one takes the other away."""
 _ADAPTER = TypeAdapter(Drive)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
+from ltca.analysis import summary as summary_module
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
@@ -20,13 +21,16 @@ from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import disc_responses, reducer_of
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import position_angles
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam, wheel_pin_seat
 from ltca.laws.beam import PinBeam
 from ltca.laws.line_contact import LineContactLaw
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 
 ANGLES = np.array([0.31, 1.7, 4.4])
@@ -435,3 +439,51 @@ def test_samples_of_seats_and_beams_are_those_of_each_alone(joint, field, values
     # Solved from other starts: 1e-9 of the load
     np.testing.assert_allclose(together.values, alone, rtol=1e-8)
     assert np.ptp(alone[:, 0]) > 1e-3 * abs(alone[0, 0]) or field == "disc.planes"
+
+
+CASES = """
+[[case]]
+name = "sleeve"
+pin_wheel.seat = { kind = "sleeve", pin_radius = 1.5, bore_radius = 1.51 }
+[[case]]
+name = "fixed"
+pin_wheel.seat = { kind = "fixed" }
+[[case]]
+name = "spring"
+pin_shaft.stiffness = 4e5
+"""
+
+
+def test_a_case_may_have_pins_of_another_kind(joint):
+    """A seat of another kind has nothing of the one it takes the place of, nor a spring of the beam (both were merged)."""
+    base = drive_text(kind(joint, "everything"))
+    cases = parse_drive(base + CASES, "pins").cases
+    assert cases["sleeve"].pin_wheel.seat == SLEEVE
+    assert cases["fixed"].pin_wheel.seat == WheelPinSeat()
+    assert cases["spring"].pin_shaft.beam is None
+    assert cases["spring"].pin_wheel.seat == SLOT
+
+
+def test_discs_may_stand_beside_the_zero_where_something_bends(joint):
+    aside = {"disc.planes": (-4.5, 6.5)}
+    assert with_fields(kind(joint, "bent wheel pins"), aside).disc.planes == (-4.5, 6.5)
+    with pytest.raises(DriveError, match="must be 0 mm, planes are centred on 0 where nothing bends"):
+        with_fields(joint, aside)
+
+
+def test_extremes_between_positions_without_an_answer_cost_no_run(joint, monkeypatch):
+    """One position between those of the run that does not balance threw the whole run away."""
+
+    def fails(_):
+        raise ConvergenceError("between", [1.0])
+
+    monkeypatch.setattr(summary_module, "refine_extremes", fails)
+    values = summarise(analyse(joint, position_angles(2)))
+    assert values["refined_max_pin_load_N"] is None
+    assert values["max_pin_load_N"] > 0.0
+
+
+def test_crowned_pins_that_are_left_out_have_a_radius_of_the_flank(joint):
+    """Their stand-in of 1 mm was none that the table of a profiled pin holds."""
+    crowned = with_fields(joint, {"pin_wheel.pin_profile.crown_drop": 0.002})
+    assert np.all(analyse(crowned, ANGLES).balanced)
