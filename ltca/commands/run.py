@@ -173,7 +173,7 @@ def _solve_and_write(
     print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
     yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
-    if any(analysis.pressures.rigid_shaft_pins for analysis in analyses.values()):
+    if any(one.pressures.rigid_shaft_pins and one.drive.pin_shaft is not None for one in analyses.values()):
         print(RIGID_SHAFT_PINS)
     print(_sampling(analyses, summaries, angles))
     print("results: " + ", ".join(str(out / name) for name in files))
