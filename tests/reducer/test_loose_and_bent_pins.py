@@ -282,6 +282,7 @@ def test_reverse_is_the_mirror_image(joint, name):
         np.testing.assert_allclose(*loads, rtol=0.0, atol=LOAD)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["bent wheel pins", "tied-pinned"])
 def test_turning_the_whole_drive_by_a_hole_pitch(joint, name):
     """As for pins that stand still (`test_several_discs`): the same drive under other numbers."""
@@ -296,6 +297,7 @@ def test_turning_the_whole_drive_by_a_hole_pitch(joint, name):
         np.testing.assert_allclose(np.roll(first.hole_load, 1, axis=1), second.hole_load, rtol=0.0, atol=LOAD)
 
 
+@pytest.mark.slow
 def test_planes_matter_where_pins_bend_and_nowhere_else(joint):
     apart = {"disc.planes": (-8.0, 8.0)}
     bent = kind(joint, "bent wheel pins")
@@ -386,6 +388,7 @@ def test_pin_as_a_beam_of_small_elements():
         np.testing.assert_allclose(beam.flexibility(planes, width), spread @ moved[::2], rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_results_of_seats_and_beams(joint):
     """Loads of the seats are those of the contacts; deflections those of the beam under all discs; what a case lacks is none."""
     drive = kind(joint, "everything")

@@ -60,6 +60,7 @@ def test_rigid_and_central_cranks_have_no_keys_of_their_own(rv):
     assert not any("deflection" in key or "load_crank" in key for key in central)
 
 
+@pytest.mark.slow
 def test_run_prints_what_each_crank_bears(tmp_path, capsys):
     """The table had the torque of each crank alone, and a residual of 0.15 N beside nothing."""
     path, out = tmp_path / "rv.toml", tmp_path / "out"
@@ -142,6 +143,7 @@ def test_a_crank_that_carries_nothing_is_said_to_carry_none(rv):
     assert "N" in rows["disc 0: rollers, on the bore, crank 0"]
 
 
+@pytest.mark.slow
 def test_cranks_are_numbered_in_the_picture(rv, tmp_path, monkeypatch):
     """Which crank is 2 had to be guessed from the angles."""
     drawn = []

@@ -89,6 +89,7 @@ def sleeve_and_law(case, elements):
     return found, expected, float(law.largest_pressure(load, play))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [THIN, WIDE, VERY_THIN, WIDE_SLEEVE])
 def test_sleeves(case):
     """Twenty-four elements over the arc, eight over the patch outside: 0.1 % of the travel (measured).

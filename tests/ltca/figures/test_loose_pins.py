@@ -25,6 +25,7 @@ WHEEL = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", WHEEL)
 def test_drawn_parts_touch(kind, tmp_path):
     drive = parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"]
