@@ -118,10 +118,12 @@ class ContactGeometry:
     def moved_by_ring(self, pose: FloatArray) -> ComplexArray | None:
         """Return how far the ring moves the shaft pins at the disc, shape (positions, z_PS), mm; None without ring."""
         coordinates = self.coordinates_of(pose)
-        if not coordinates.ring:
-            return None
-        by_ring = self.tip_share * self.tips_by_ring
-        return np.asarray(np.matmul(pose[:, None, coordinates.ring_place], by_ring.swapaxes(-1, -2))[:, 0])
+        return _moved(pose[:, coordinates.ring_place], self._by_ring) if coordinates.ring else None
+
+    @property
+    def _by_ring(self) -> ComplexArray:
+        """Displacement of the shaft pins at the disc by the coordinates of the ring, shape (…, z_PS, 3)."""
+        return self.tip_share * self.tips_by_ring
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates that a pose has: those of rigid members where it has no more than four."""
@@ -328,9 +330,9 @@ class ContactGeometry:
         arm = place.hole_centres * unit(pose[:, DISC_ROTATION, None])
         play = place.shaft_pin_centres - disc_centre - arm
         coordinates = self.coordinates_of(pose)
-        ring, tips = self.tip_share * self.tips_by_ring, self.moved_by_ring(pose)
-        if tips is not None:
-            play = play + tips
+        by_ring = self._by_ring if coordinates.ring else None
+        if by_ring is not None:
+            play = play + _moved(pose[:, coordinates.ring_place], by_ring)
         if shifts is not None:
             play = play + shifts
         distance = np.sqrt(play.real**2 + play.imag**2)
@@ -340,9 +342,9 @@ class ContactGeometry:
         gradient[..., DISC_ROTATION] = -cross(arm, direction)
         along[..., X], along[..., Y] = -direction.imag, direction.real
         along[..., DISC_ROTATION] = dot(direction, arm)
-        if tips is not None:
-            gradient[..., coordinates.ring_place] = dot(direction[..., None], ring)
-            along[..., coordinates.ring_place] = cross(ring, direction[..., None])
+        if by_ring is not None:
+            gradient[..., coordinates.ring_place] = dot(direction[..., None], by_ring)
+            along[..., coordinates.ring_place] = cross(by_ring, direction[..., None])
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
 
@@ -368,3 +370,8 @@ class ContactGeometry:
             outermost=place.inner_race_radius + place.roller_radii,
             bore_play=place.bore_radius - place.roller_radii,
         )
+
+
+def _moved(ring: FloatArray, by_ring: ComplexArray) -> ComplexArray:
+    """Displacements at coordinates of the ring, shape (positions, 3), by those of its unit steps."""
+    return np.asarray(np.matmul(ring[:, None], by_ring.swapaxes(-1, -2))[:, 0])
