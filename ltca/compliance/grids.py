@@ -22,7 +22,6 @@ from ltca.compliance.response import (
     Response,
     Start,
     assemble_response,
-    spring_load_and_stiffness,
 )
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.end_pressure import largest_pressure
@@ -33,6 +32,7 @@ from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
+from ltca.laws.series import SpringLaw
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -95,15 +95,15 @@ class GridCompliance:
         What the contacts of each kind share.
     inner_radius, outer_radius : array, shape (n_BR,)
         Effective radii of the rollers, mm.
-    hole_stiffness : float
-        k_PS, N/mm.
+    hole_law : SpringLaw
+        Of the pin holes.
     """
 
     geometry: ContactGeometry
     kinds: ContactKinds
     inner_radius: FloatArray
     outer_radius: FloatArray
-    hole_stiffness: float
+    hole_law: SpringLaw
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> GridCompliance:
@@ -124,7 +124,7 @@ class GridCompliance:
             kinds=kinds,
             inner_radius=place.inner_effective_radii,
             outer_radius=place.outer_effective_radii,
-            hole_stiffness=drive.hole_stiffness,
+            hole_law=SpringLaw(stiffness=drive.hole_stiffness),
         )
 
     @property
@@ -155,7 +155,9 @@ class GridCompliance:
         )
         pin_load, pin_stiffness = pins.load_and_stiffness(flank.approach, flank.effective_radius)
         holes = self.geometry.holes(crank_angle, pose)
-        hole_load, hole_stiffness = spring_load_and_stiffness(holes.approach, self.hole_stiffness)
+        hole_load, hole_stiffness = self.hole_law.load_and_stiffness(
+            holes.approach, self.geometry.placement.hole_effective_radii
+        )
         bores, rays = self.geometry.bores(crank_angle, pose), self.geometry.rollers(crank_angle)
         rollers = balance_rollers(
             rays,

@@ -318,11 +318,6 @@ def split_shifts(
     return shifts[:, :pins], shifts[:, pins:]
 
 
-def spring_load_and_stiffness(approach: FloatArray, stiffness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the load of unilateral springs and its derivative, N and N/mm (Eq. 77)."""
-    return stiffness * np.maximum(approach, 0.0), np.where(approach > 0.0, stiffness, 0.0)
-
-
 def resultant(
     flank: FlankMotion,
     pin_load: FloatArray,

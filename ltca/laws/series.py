@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpringLaw:
-    """Unilateral linear spring; `stiffness` in N/mm, of a batch of drives an array of shape (positions, 1)."""
+    """Unilateral linear spring (Eq. 77); `stiffness` in N/mm, of a batch of drives an array of shape (positions, 1)."""
 
     stiffness: float | FloatArray
 
