@@ -68,8 +68,8 @@ class BackedLaw:
         What the seats yield.
     play : array
         Play of each seat, shape (pairs,) or (positions, pairs), mm.
-    flexibility : float or array, shape (positions, 1)
-        c of the pin's bending, mm/N.
+    flexibility : float
+        c of the pin's bending, mm/N; drives of one batch have the same.
     overlap : float
         What the contact's law counts of a sleeve below half its wall, where the sleeve's own law begins, mm/N: it is taken
         off, up to `MOST` of the contact's approach. Where it would be more the contact is as wide as the wall, and no law holds.
@@ -78,7 +78,7 @@ class BackedLaw:
     contact: EnergyLaw
     seat: SeatLaw | None
     play: FloatArray
-    flexibility: float | FloatArray = 0.0
+    flexibility: float = 0.0
     overlap: float = 0.0
 
     def behind(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -133,10 +133,7 @@ class BackedLaw:
         law = self.contact
         if isinstance(law, SpringLaw) and isinstance(law.stiffness, np.ndarray):
             law = SpringLaw(stiffness=of(law.stiffness))
-        held = self.flexibility
-        return replace(
-            self, contact=law, play=of(self.play), flexibility=of(held) if isinstance(held, np.ndarray) else held
-        )
+        return replace(self, contact=law, play=of(self.play))
 
     def _of_closed(self, delta: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The same of closed pairs: Newton's method between bounds, with the bend of the last two slopes (Halley)."""
@@ -193,13 +190,7 @@ class BackedLaw:
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> BackedLaw:
         """Return the law of some positions of a batch."""
-        held = self.flexibility
-        return replace(
-            self,
-            contact=law_at(self.contact, rows),
-            play=self.play[rows],
-            flexibility=held[rows] if isinstance(held, np.ndarray) else held,
-        )
+        return replace(self, contact=law_at(self.contact, rows), play=self.play[rows])
 
     @property
     def outside(self) -> EnergyLaw:
