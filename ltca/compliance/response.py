@@ -137,10 +137,8 @@ class ComplianceModel(Protocol):
         """The compliance of each disc."""
         ...
 
-    def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> Response:
-        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any."""
+    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
+        """Return the contact forces at the poses of a batch of positions."""
         ...
 
     def pressures(self, response: Response) -> ContactPressures:
@@ -154,6 +152,12 @@ class DiscModel(ComplianceModel, Protocol):
     @property
     def geometry(self) -> ContactGeometry:
         """The contact geometry of the disc in its drive."""
+        ...
+
+    def respond(
+        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
+    ) -> Response:
+        """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any."""
         ...
 
 

@@ -79,9 +79,7 @@ class Reducer:
         discs = tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs)
         return Reducer(discs=discs, supports=supports, pins=None if self.pins is None else self.pins.take(rows))
 
-    def respond(
-        self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> ReducerResponse:
+    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
         """Return the contact forces of all discs.
 
         Parameters
@@ -91,9 +89,7 @@ class Reducer:
         pose : array, shape (positions, coordinates)
             q of `ltca.geometry.coordinates`.
         start : Start, optional
-            Inner unknowns of a neighbouring pose.
-        shifts : array of complex, shape (positions, discs, pairs), optional
-            Displacements of the pins to start from, mm; those of `start` by default.
+            Inner unknowns of a neighbouring pose, displacements of the pins among them.
         """
         count, coordinates = len(self.discs), self.coordinates
         places = [coordinates.columns(number) for number in range(count)]
@@ -102,18 +98,18 @@ class Reducer:
         def respond(moved: ComplexArray | None) -> tuple[Response, ...]:
             each = [None] * count if moved is None else list(moved.swapaxes(0, 1))
             return tuple(
-                disc.respond(crank_angle, pose[:, own], begin, own_shifts)
-                for own, disc, begin, own_shifts in zip(places, self.discs, starts, each, strict=True)
+                disc.respond(crank_angle, pose[:, own], own_start, own_shifts)
+                for own, disc, own_start, own_shifts in zip(places, self.discs, starts, each, strict=True)
             )
 
-        settled, size = None, coordinates.size
+        shifts, settled, size = None, None, coordinates.size
         if self.pins is None:
             parts = respond(None)
         else:
-            shifts = start.shifts if shifts is None and start is not None else shifts
-            if shifts is None:
-                shifts = np.zeros((crank_angle.size, count, self.pins.flexibility.shape[-3]), dtype=complex)
-            parts, shifts, settled = self.pins.settle(respond, coordinates, shifts)
+            begin = None if start is None else start.shifts
+            if begin is None:
+                begin = np.zeros((crank_angle.size, count, self.pins.flexibility.shape[-3]), dtype=complex)
+            parts, shifts, settled = self.pins.settle(respond, coordinates, begin)
         force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
         for own, part in zip(places, parts, strict=True):
             force[:, own] += part.force

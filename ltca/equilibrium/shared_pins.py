@@ -12,9 +12,8 @@ all at once, by Newton's method; the tangent is that of the whole, e turning wit
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +62,10 @@ class SharedPins:
         return SharedPins(flexibility=self.flexibility[rows]) if self.flexibility.ndim > 3 else self
 
     def settle(
-        self, respond: Any, coordinates: Coordinates, shifts: ComplexArray
+        self,
+        respond: Callable[[ComplexArray], tuple[Response, ...]],
+        coordinates: Coordinates,
+        shifts: ComplexArray,
     ) -> tuple[tuple[Response, ...], ComplexArray, SharedTangent]:
         """Return the contacts of all discs with the pins where all forces hold them.
 
