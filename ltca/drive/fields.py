@@ -232,17 +232,14 @@ def element_count(drive: Drive, path: str) -> int | None:
 
 def missing_part(drive: Drive, path: str) -> str | None:
     """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks, beams."""
-    shaft = drive.pin_shaft
-    for part, held in (
-        ("pin_shaft", shaft),
-        ("pin_shaft.beam", None if shaft is None else shaft.beam),
-        ("pin_wheel.beam", drive.pin_wheel.beam),
-        ("crank.support", drive.crank.support),
-    ):
-        if held is None and path.startswith(f"{part}."):
-            return part
     if drive.pin_shaft is None and (path.startswith("disc.hole_errors") or ".hole_errors." in path):
         return "pin_shaft"
+    part: Any = drive
+    tables = path.split(".")[:-1] if numbered(path) is None else []
+    for depth, name in enumerate(tables):
+        part = getattr(part, name)
+        if part is None:
+            return ".".join(tables[: depth + 1])
     return None
 
 
@@ -271,21 +268,10 @@ def absence(drive: Drive, path: str) -> str | None:
     held = {"pin_shaft": drive.pin_shaft, "crank.support": drive.crank.support}
     name = path if found is None else found[2]
     beside = [part for head, part in _OF_PARTS.items() if held[part] is None and name.startswith(head)]
-    if missing := missing_part(drive, path) or _left_out(drive, path) or next(iter(beside), None):
+    if missing := missing_part(drive, path) or next(iter(beside), None):
         return f"there is no {missing} in this drive"
     if drive.crank.number == 1 and (path in _OF_SEVERAL_CRANKS or name.startswith("bore_errors.")):
         return "must be left out with one crank (crank.number = 1), which stands in the centre"
-    return None
-
-
-def _left_out(drive: Drive, path: str) -> str | None:
-    """The table of a field where this drive leaves it out."""
-    value: Any = drive
-    tables = path.split(".")[:-1] if numbered(path) is None else []
-    for depth, name in enumerate(tables):
-        value = getattr(value, name)
-        if value is None:
-            return ".".join(tables[: depth + 1])
     return None
 
 
