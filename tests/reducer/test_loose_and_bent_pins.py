@@ -26,7 +26,6 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import position_angles
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam, wheel_pin_seat
-from ltca.laws.beam import PinBeam
 from ltca.laws.line_contact import LineContactLaw
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
@@ -89,7 +88,7 @@ def test_virtual_work_at_every_position(joint, name, unbalanced_work):
 def test_tangent_is_the_slope_of_the_force(joint, name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(joint, name), ANGLES[:1])
     # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
-    np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=4e-6 * np.abs(scaled).max())
+    np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
 @pytest.mark.parametrize("name", ["slots", "sleeves"])
@@ -308,86 +307,6 @@ def test_planes_matter_where_pins_bend_and_nowhere_else(joint):
     )
 
 
-def test_deflection_of_the_handbook():
-    """Case F: a supported pin, load even over half the span, deflection at l/4 = 31 F l³/(48·64 E J): 14.05 µm at 278.5 N."""
-    pin = PinBeam(span=16.0, ends=("supported", "supported"), diameter=3.0, youngs_modulus=206e3)
-    assert 278.5e3 * pin.deflection(4.0, 4.0, 8.0) == pytest.approx(14.05, abs=0.005)
-    rigidity = 206e3 * np.pi * 3.0**4 / 64.0
-    assert pin.deflection(4.0, 4.0, 8.0) == pytest.approx(31.0 * 16.0**3 / (48.0 * 64.0 * rigidity), rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("tip", "one_disc", "two_discs"),
-    [("free", 74.468085, None), ("supported", 55.075355, 139.221801), ("clamped", 40.336879, 83.789835)],
-)
-def test_bending_moments_of_tied_tips(tip, one_disc, two_discs):
-    """Case H: six pins in the flange, tips in a floating ring; largest moment at the flange for 1 N·m on each disc.
-
-    The discs push evenly by the lever, each on its half of the pins. Ring and reactions are ours (`tip_shape`,
-    `tip_stiffness`); the couple of a clamped tip, F a² (H − a)/H² less 6 E I v/H² of its sway, is Bernoulli's.
-    """
-    width, gap, pins = 6.35, 0.5, np.pi / 3.0 * np.arange(6)
-    for discs, radius, expected in ((1, 32.9, one_disc), (2, 32.3, two_discs)):
-        if expected is None:
-            continue
-        span = discs * (width + gap) + gap
-        planes = gap + 0.5 * width + (width + gap) * np.arange(discs)
-        beam = PinBeam(span=span, ends=("clamped", tip), diameter=4.0, youngs_modulus=2e5)
-        sense = np.array([1.0, -1.0])[:discs, None]
-        loads = sense * np.maximum(0.0, sense * np.cos(pins)) * 1j * 1000.0 / (1.5 * radius)
-        moment = planes @ loads
-        if tip != "free":
-            tips = np.stack([np.ones(6), np.full(6, 1j), 1j * radius * np.exp(1j * pins)], axis=-1)
-            onto = beam.tip_shape(planes.tolist(), 1e-4) @ loads
-            ring = beam.tip_stiffness * (tips.conj().T @ tips).real
-            sway = tips @ np.linalg.solve(ring, (tips.conj().T @ onto).real)
-            moment = moment - span * (onto - beam.tip_stiffness * sway)
-        if tip == "clamped":
-            rigidity = 2e5 * np.pi * 4.0**4 / 64.0
-            moment = moment + planes**2 * (span - planes) / span**2 @ loads - 6.0 * rigidity * sway / span**2
-        # printed to 1e-6
-        assert np.abs(moment).max() == pytest.approx(expected, abs=2e-6)
-
-
-def test_pin_as_a_beam_of_small_elements():
-    """Deflections of a stubby pin under loads along whole discs against Timoshenko elements that lock nowhere: 1e-3."""
-    span, diameter, modulus, ratio, count = 16.0, 5.0, 206e3, 0.3, 320
-    rigidity = modulus * np.pi * diameter**4 / 64.0
-    factor = 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio)
-    shear = factor * modulus / (2.0 * (1.0 + ratio)) * np.pi * diameter**2 / 4.0
-    step = span / count
-    slip = 12.0 * rigidity / (shear * step**2)
-    element = np.array([
-        [12.0, 6.0 * step, -12.0, 6.0 * step],
-        [6.0 * step, (4.0 + slip) * step**2, -6.0 * step, (2.0 - slip) * step**2],
-        [-12.0, -6.0 * step, 12.0, -6.0 * step],
-        [6.0 * step, (2.0 - slip) * step**2, -6.0 * step, (4.0 + slip) * step**2],
-    ]) * rigidity / (step**3 * (1.0 + slip))  # fmt: skip
-    whole = np.zeros((2 * count + 2, 2 * count + 2))
-    for number in range(count):
-        own = slice(2 * number, 2 * number + 4)
-        whole[own, own] += element
-    nodes = np.linspace(0.0, span, count + 1)
-    planes, width = [4.0, 11.0], 6.0
-    spread = np.array(
-        [(np.abs(nodes - z) < 0.5 * width) + 0.5 * (np.abs(np.abs(nodes - z) - 0.5 * width) < 1e-9) for z in planes]
-    )
-    spread = spread / spread.sum(axis=1, keepdims=True)
-    for ends, held in (
-        (("supported", "supported"), [0, 2 * count]),
-        (("clamped", "clamped"), [0, 1, 2 * count, 2 * count + 1]),
-        (("clamped", "free"), [0, 1]),
-        (("clamped", "supported"), [0, 1, 2 * count]),
-    ):
-        free = np.setdiff1d(np.arange(2 * count + 2), held)
-        onto = np.zeros((2 * count + 2, 2))
-        onto[::2] = spread.T
-        moved = np.zeros_like(onto)
-        moved[free] = np.linalg.solve(whole[np.ix_(free, free)], onto[free])
-        beam = PinBeam(span=span, ends=ends, diameter=diameter, youngs_modulus=modulus, poisson_ratio=ratio)
-        np.testing.assert_allclose(beam.flexibility(planes, width), spread @ moved[::2], rtol=1e-3)
-
-
 @pytest.mark.slow
 def test_results_of_seats_and_beams(joint):
     """Loads of the seats are those of the contacts; deflections those of the beam under all discs; what a case lacks is none."""
@@ -484,14 +403,3 @@ def test_extremes_between_positions_without_an_answer_cost_no_run(joint, monkeyp
     values = summarise(analyse(joint, position_angles(2)))
     assert values["refined_max_pin_load_N"] is None
     assert values["max_pin_load_N"] > 0.0
-
-
-def test_pins_that_are_left_out_have_a_radius_of_the_flank(joint):
-    """Their stand-in of 1 mm was none that the table of a crowned pin holds."""
-    model = HalfSpace().prepare(joint).model
-    found = solve_at_output(model, joint, position_angles(12), joint.load.torque, gaps=False).response.flank
-    assert found.left_out.any()
-    turn = np.linspace(0.0, 2.0 * np.pi / 40.0, 2001)
-    radii = FlankProfile.of_drive(single_discs(joint)[0]).effective_radius(turn, joint.pin_wheel.pin_radius)
-    assert radii.min() * (1.0 - 1e-6) < found.effective_radius.min()
-    assert found.effective_radius.max() < radii.max() * (1.0 + 1e-6)

@@ -7,13 +7,19 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from ltca.analysis.engines import HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
 from ltca.drive.deviations import PlacementErrors, ProfileErrors, Runout
 from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.placement import position_angles
+from ltca.reading.drive_file import parse_drive, shipped_drive
 
 ROUND_OFF = 1e-10
 """Of places relative to their size: places on the flank are found to 1e-13 rad from wherever they start, and curvatures,
@@ -134,3 +140,15 @@ def test_balance_without_gaps_is_the_balance_with_them(paper_cases):
     assert_same(found.response.flank, everything.flank, np.ones_like(found.response.flank.left_out))
     # Loads are those of all pins to round-off of places, times the stiffness of some 1e6 N/mm.
     np.testing.assert_allclose(found.response.pin_load, everything.pin_load, rtol=0.0, atol=1e-6)
+
+
+def test_pins_that_are_left_out_have_a_radius_of_the_flank():
+    """Their stand-in of 1 mm was none that the table of a crowned pin holds."""
+    joint = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
+    model = HalfSpace().prepare(joint).model
+    found = solve_at_output(model, joint, position_angles(12), joint.load.torque, gaps=False).response.flank
+    assert found.left_out.any()
+    turn = np.linspace(0.0, 2.0 * np.pi / 40.0, 2001)
+    radii = FlankProfile.of_drive(single_discs(joint)[0]).effective_radius(turn, joint.pin_wheel.pin_radius)
+    assert radii.min() * (1.0 - 1e-6) < found.effective_radius.min()
+    assert found.effective_radius.max() < radii.max() * (1.0 + 1e-6)
