@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,11 @@ ROOT = Path(__file__).parents[1]
 MODULES = sorted(path for package in ("ltca", "fem", "validation") for path in (ROOT / package).rglob("*.py"))
 # Units stand as ", mm" everywhere; "[mm]", "[N/mm, contact cells held]", "[mm, MPa]" are the dialect that is gone.
 BRACKETED_UNIT = re.compile(r"\[(?:1/)?(?:mm|N|MPa|rad|arcsec|arcmin|s)[²³]?(?:[·/,][^\]]*)?\]")
+
+
+@cache
+def tree_of(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
 
 
 def public_definitions(tree):
@@ -76,7 +82,7 @@ def problems_of(tree):
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
 @pytest.mark.filterwarnings("error")
 def test_documented_parameters_equal_the_signature(path):
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = tree_of(path)
     assert ast.get_docstring(tree), "no module docstring"
     assert problems_of(tree) == []
 
@@ -94,7 +100,7 @@ def rows_of(text):
 )
 def test_the_map_of_a_package_has_all_its_modules(path):
     """A merge left one line of equals signs where nine modules of `ltca.output` had stood."""
-    rows = rows_of(ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))))
+    rows = rows_of(ast.get_docstring(tree_of(path)))
     modules = {other.stem for other in path.parent.glob("*.py")} - {"__init__"}
     folders = {other.parent.name for other in path.parent.glob("*/__init__.py")}
     assert modules | folders <= rows
@@ -113,7 +119,7 @@ def bracketed_units(tree):
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_units_follow_a_comma(path):
-    assert bracketed_units(ast.parse(path.read_text(encoding="utf-8"))) == []
+    assert bracketed_units(tree_of(path)) == []
 
 
 def test_the_check_of_units_itself_can_fail():
@@ -131,8 +137,7 @@ def test_examples_of_all_packages_are_run():
     for package in ("ltca", "fem", "validation"):
         assert package in options["testpaths"]
         paths = [path for path in MODULES if path.is_relative_to(ROOT / package)]
-        texts = [text for path in paths for text in docstrings(ast.parse(path.read_text(encoding="utf-8")))]
-        assert any(">>> " in text for text in texts), package
+        assert any(">>> " in text for path in paths for text in docstrings(tree_of(path))), package
 
 
 def test_the_check_itself_can_fail():

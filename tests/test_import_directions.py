@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import tomllib
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -59,6 +60,7 @@ def name_of(path):
 NAMES = {name_of(path): path for path in MODULES}
 
 
+@cache
 def imports(path, tree=None):
     """Every module a file imports, wherever the statement stands; `from ltca.geometry import pairs` is the module."""
     package = path.relative_to(ROOT).with_suffix("").parts[:-1]

@@ -220,7 +220,9 @@ def test_tangent_is_the_slope_of_the_force(small, closed_forms, name):
     check_tangent(drive, PlaneStrain(coefficients=closed_forms(drive)))
 
 
-@pytest.mark.parametrize(("name", "engine"), [("cranks", "hybrid"), ("wheel", "fe")])
+@pytest.mark.parametrize(
+    ("name", "engine"), [("cranks", "hybrid"), pytest.param("wheel", "fe", marks=pytest.mark.slow)]
+)
 def test_tangent_of_bodies_by_finite_elements(small, derived, name, engine):
     check_tangent(kind(small, name), ENGINES[engine](coefficients=derived))
 

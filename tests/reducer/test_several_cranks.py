@@ -60,7 +60,8 @@ def kind(rv, name):
     return replace(rv, crank=replace(rv.crank, angle=np.pi / 3.0), pin_shaft=shaft, clearance=joint.clearance)
 
 
-KINDS = ["rigid", "cranks", "wheel", "carrier", "shaft held", "central crank yields", "holes"]
+SLOWLY = [pytest.param(name, marks=pytest.mark.slow) for name in ("wheel", "carrier", "shaft held")]
+KINDS = ["rigid", "cranks", "central crank yields", "holes", *SLOWLY]
 
 
 @pytest.mark.parametrize("name", KINDS)

@@ -75,6 +75,7 @@ def test_two_equal_discs_are_twice_as_stiff(paper):
         np.testing.assert_allclose(double.stiffness, 2.0 * single.stiffness, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_meshes_half_a_period_apart_even_out_the_order_of_the_teeth(odd):
     """z_P odd: of the TE's harmonics of z_C the odd ones cancel between the discs."""
     two = with_fields(odd, {"disc.number_of_discs": 2})
@@ -107,7 +108,12 @@ def test_two_models_of_one_disc_put_in_parallel_by_hand(odd):
 
 
 @pytest.mark.parametrize(
-    "field", ["disc.of.0.runout.amount", "crank.of.0.phase_error", "crank.of.0.eccentricity_error"]
+    "field",
+    [
+        "disc.of.0.runout.amount",
+        "crank.of.0.phase_error",
+        pytest.param("crank.of.0.eccentricity_error", marks=pytest.mark.slow),
+    ],
 )
 def test_small_errors_share_the_torque_like_two_springs(paper, field):
     """T₀ − T₁ = K (w₁ − w₀): the wheel angles that each disc alone would have differ, and the wheel takes one.
@@ -179,7 +185,7 @@ def test_tangent_is_the_slope_of_the_force(joint, discs):
         )
 
 
-@pytest.mark.parametrize("discs", [2, 3])
+@pytest.mark.parametrize("discs", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_order_of_the_discs_is_a_matter_of_names(joint, discs):
     """Discs in another order: the same loads under other numbers."""
     phases = tuple(2.0 * np.pi * k / discs + 0.1 * k for k in range(discs))
@@ -199,7 +205,7 @@ def test_order_of_the_discs_is_a_matter_of_names(joint, discs):
         np.testing.assert_allclose(*loads, rtol=0.0, atol=LOAD)
 
 
-@pytest.mark.parametrize("discs", [1, 2, 3])
+@pytest.mark.parametrize("discs", [1, 2, pytest.param(3, marks=pytest.mark.slow)])
 def test_reverse_is_the_mirror_image_of_all_discs(joint, discs):
     """result(φ_C, reverse) mirrors result(−φ_C, forward): phases change their sign as every angle does."""
     phases = tuple(2.0 * np.pi * k / discs + 0.1 for k in range(discs))
@@ -214,7 +220,7 @@ def test_reverse_is_the_mirror_image_of_all_discs(joint, discs):
         np.testing.assert_allclose(poses[0], poses[1] * [1.0, -1.0, -1.0, -1.0], rtol=0.0, atol=LENGTH)
 
 
-@pytest.mark.parametrize("discs", [1, 2, 3])
+@pytest.mark.parametrize("discs", [1, 2, pytest.param(3, marks=pytest.mark.slow)])
 def test_turning_the_whole_drive_by_a_phase(joint, discs):
     """A disc at the phase ζ is at φ_C what one at phase 0 is at φ_C + ζ, turned: all phases ζ on is the crank ζ on.
 
@@ -255,7 +261,7 @@ def in_other_units(table, length, stress):
     return changed("", table)
 
 
-@pytest.mark.parametrize("discs", [2, 3])
+@pytest.mark.parametrize("discs", [2, pytest.param(3, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("length", "stress"), [(25.4, 1.0), (1e-2, 1e-3)])
 def test_units_are_a_matter_of_names(discs, length, stress):
     """In inches or GPa a reducer has the same loads in its units, whichever member is held."""

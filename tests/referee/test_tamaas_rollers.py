@@ -64,8 +64,8 @@ def centre_peak(pressure):
     ("length", "load", "counts"),
     [
         pytest.param(11.8, 1500.0, (96, 512), id="long", marks=pytest.mark.slow),
-        pytest.param(2.0, 1500.0, (96, 256), id="short"),
-        pytest.param(0.3, 400.0, (192, 128), id="shorter than wide"),
+        pytest.param(2.0, 1500.0, (96, 256), id="short", marks=pytest.mark.slow),
+        pytest.param(0.3, 400.0, (192, 128), id="shorter than wide", marks=pytest.mark.slow),
     ],
 )
 def test_centre_pressure_and_approach_of_uncrowned_rollers(length, load, counts):

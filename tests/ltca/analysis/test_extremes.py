@@ -121,7 +121,7 @@ def test_thirteen_positions_reach_what_thousands_say(paper_cases, case, many):
         assert getattr(found, name) == pytest.approx(value, rel=0.01), name
 
 
-@pytest.mark.parametrize(("case", "positions"), [("CS-1", 26), ("CS-6", 28)])
+@pytest.mark.parametrize(("case", "positions"), [("CS-1", 26), pytest.param("CS-6", 28, marks=pytest.mark.slow)])
 def test_refined_values_do_not_hang_on_the_positions(paper_cases, case, positions):
     """2.1, 3.0, 5.0, 5.4″ at 13, 26, 28, 360 positions of CS-1 was the fault."""
     given, many = (analyse(paper_cases[case], position_angles(count)) for count in (positions, 360))

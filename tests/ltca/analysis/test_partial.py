@@ -38,7 +38,7 @@ def failing(monkeypatch):
     return fail
 
 
-@pytest.mark.parametrize("discs", [1, 2])
+@pytest.mark.parametrize("discs", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_light_torque_that_fails_keeps_the_full_one(failing, paper_cases, discs):
     drive = ltca.load_drive("paper").cases["CS-4"]
     drive = with_fields(drive, {"disc.number_of_discs": discs})
@@ -81,18 +81,19 @@ def test_positions_without_an_answer_are_no_numbers(failing):
         assert summary[key] is not None, key
 
 
+@pytest.mark.slow
 def test_a_light_torque_without_any_answer_keeps_the_full_one(tmp_path, capsys):
     """So light that round-off is a load: it was "no equilibrium", after minutes, and nothing was written."""
     text = shipped_drive().replace("light_torque = 10000.0", "light_torque = 1e-6").split("[[case]]")[0]
     cases = '[[case]]\nname = "tiny"\n[[case]]\nname = "good"\nload = { light_torque = 1e4 }\n'
     drive, out = tmp_path / "tiny.toml", tmp_path / "out"
     drive.write_text(text + cases)
-    assert main(["run", str(drive), "--angles", "0.3", "1.7", "--no-figures", "--out", str(out)]) == 1
+    assert main(["run", str(drive), "--angles", "0.3", "--no-figures", "--out", str(out)]) == 1
     told = capsys.readouterr().err
-    assert "case tiny: partial: 2 of 4 states have no answer: load.light_torque = 1e-06 N·mm: no equilibrium" in told
+    assert "case tiny: partial: 1 of 2 states have no answer: load.light_torque = 1e-06 N·mm: no equilibrium" in told
     assert "too small to be balanced" in told
     data = xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf")
-    np.testing.assert_array_equal(data["status_light"], [[1, 1], [0, 0]])
+    np.testing.assert_array_equal(data["status_light"], [[1], [0]])
     np.testing.assert_array_equal(data["status"], 0)
     cases = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["cases"]
     assert cases["tiny"]["max_pin_load_N"] == cases["good"]["max_pin_load_N"]

@@ -43,7 +43,9 @@ def assert_farthest(drive, angles, senses=(1, -1)):
             assert -best.fun < 1e-6  # the programme's own tolerance is 1e-7
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case", [case if case in ("CS-1", "CS-5") else pytest.param(case, marks=pytest.mark.slow) for case in CASES]
+)
 def test_poses_of_the_paper_are_the_farthest(paper_cases, case):
     assert_farthest(paper_cases[case], np.linspace(0.0, 6.2, 9))
 

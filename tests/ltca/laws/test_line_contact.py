@@ -75,7 +75,10 @@ def test_arguments_broadcast():
     assert LAW.load_and_stiffness(np.zeros((0, 4)), 2.0)[0].shape == (0, 4)
 
 
-@pytest.mark.parametrize("slenderness", [0.7, 12.0, 400.0, 2e4])
+SLENDERNESS = [0.7, *(pytest.param(value, marks=pytest.mark.slow) for value in (12.0, 400.0)), 2e4]
+
+
+@pytest.mark.parametrize("slenderness", SLENDERNESS)
 def test_different_dimensions_collapse_on_the_table(slenderness):
     """Full grid solutions with other lengths, radii and moduli, all at one λ."""
     for length, radius, modulus in ((11.8, 2.0, 113e3), (3.0, 40.0, 5.0), (250.0, 0.3, 1e7)):

@@ -140,6 +140,7 @@ def test_hover_tells_all_models(visited):
         assert word in text
 
 
+@pytest.mark.slow
 def test_nothing_sticks_out_on_a_narrow_screen(small_report, tmp_path):
     seen, console, _ = visit(small_report, tmp_path, "500,900")  # chromium's narrowest window
     assert seen["errors"] == []
@@ -147,6 +148,7 @@ def test_nothing_sticks_out_on_a_narrow_screen(small_report, tmp_path):
     assert seen["overflow"] <= 0
 
 
+@pytest.mark.slow
 def test_every_crank_is_drawn(crank_study, tmp_path):
     """Its race, its arm, its name; rollers are numbered in every bearing anew; the disc has three openings."""
     page = write_report(crank_study, tmp_path / "report.html")
