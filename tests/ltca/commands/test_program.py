@@ -30,45 +30,40 @@ def python(code):
     return done.stdout.strip().splitlines()[-1]
 
 
-@pytest.fixture(scope="module")
-def quick_run(tmp_path_factory):
-    """One run of three angles and two cases with its figures."""
-    out = tmp_path_factory.mktemp("run")
-    status = main(
-        ["run", "paper", "--case", "CS-3", "--case", "CS-1", "--angles", "0.1", "-1.3", "4.0", "--out", str(out)]
-    )
-    assert status == 0
-    return out
+RUN = ["run", "paper", "--case", "CS-3", "--case", "CS-1", "--angles", "0.1", "-1.3", "4.0"]
 
 
-def test_run_writes_results_summary_and_figures(quick_run):
-    with xr.open_dataset(quick_run / "results.nc", engine="h5netcdf") as data:
+def test_run_writes_results_and_summary(tmp_path):
+    assert main([*RUN, "--no-figures", "--out", str(tmp_path)]) == 0
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
         # to the last bit, whatever the order
         assert data["crank_angle"].values.tolist() == [0.1, -1.3, 4.0]
         assert list(data["case"].values) == ["CS-3", "CS-1"]
         assert data.indexes["position"].dtype.kind == "i"
-    summary = json.loads((quick_run / "summary.json").read_text())
+    summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["drive"] == "paper"
     assert list(summary["cases"]) == ["CS-3", "CS-1"]
     assert summary["cases"]["CS-1"]["mean_tangential_bearing_load_N"] == pytest.approx(6737.5, rel=5e-3)
-    left = {path.name for path in quick_run.iterdir()}
-    assert left == {"results.nc", "summary.json", "figures", MANIFEST}
+    assert {path.name for path in tmp_path.iterdir()} == {"results.nc", "summary.json", MANIFEST}
 
 
-def test_figures_of_the_paper_as_svg_and_png(quick_run):
-    names = {path.name for path in (quick_run / "figures").iterdir()}
+@pytest.mark.slow
+def test_figures_of_the_paper_as_svg_and_png(tmp_path):
+    assert main([*RUN, "--out", str(tmp_path)]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"results.nc", "summary.json", "figures", MANIFEST}
+    names = {path.name for path in (tmp_path / "figures").iterdir()}
     stems = {name.rsplit(".", 1)[0] for name in names}
     assert names == {f"{stem}.{suffix}" for stem in stems for suffix in ("svg", "png")}
     numbers = {int(stem[3:5]) for stem in stems}
     assert numbers == {23, 24, 25, 26, 28, 29, 30, 34, 35, 36}  # issue 2
     for stem in stems:
-        assert (quick_run / "figures" / f"{stem}.png").read_bytes().startswith(b"\x89PNG")
-        svg = (quick_run / "figures" / f"{stem}.svg").read_text()
+        assert (tmp_path / "figures" / f"{stem}.png").read_bytes().startswith(b"\x89PNG")
+        svg = (tmp_path / "figures" / f"{stem}.svg").read_text()
         assert svg.rstrip().endswith("</svg>")  # whole
         for case in ("CS-1", "CS-3"):  # direct labels, as text
             assert case in svg, stem
     for stem, unit in (("fig23_transmission_error", "″"), ("fig24_pin_load", "[N]"), ("fig26_pin_pressure", "[MPa]")):
-        assert unit in (quick_run / "figures" / f"{stem}.svg").read_text()
+        assert unit in (tmp_path / "figures" / f"{stem}.svg").read_text()
 
 
 @pytest.mark.slow
