@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fem.contact.hertz import hertz_half_width
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import require_fixed_pins, require_rigid_members
+from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
@@ -322,6 +322,7 @@ def expect_contacts(
     _refuse_wheel_axis(drive)
     require_rigid_members(drive, "full finite elements")
     require_fixed_pins(drive, "full finite elements")
+    require_frictionless(drive, "full finite elements")
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length

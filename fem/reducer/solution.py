@@ -23,7 +23,7 @@ from fem.drive.solution import solve_disc, solve_moment
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_fixed_pins, require_rigid_members
+from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
@@ -237,6 +237,7 @@ def solve_reducer(
     """
     require_rigid_members(drive, "full finite elements")
     require_fixed_pins(drive, "full finite elements")
+    require_frictionless(drive, "full finite elements")
     singles = single_discs(drive)
     task = _Task(
         drive=drive,

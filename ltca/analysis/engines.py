@@ -23,9 +23,15 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel, Start
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_fixed_pins, require_one_bore, require_rigid_members
+from ltca.drive.plane_strain import (
+    require_fixed_pins,
+    require_frictionless,
+    require_one_bore,
+    require_rigid_members,
+)
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
 from ltca.equilibrium.reducer import reducer_of
@@ -185,9 +191,11 @@ class HalfSpace:
         """Return the engine built for a drive."""
         if self.method != "tables":
             require_fixed_pins(drive, f"method {self.method}")
+            require_frictionless(drive, f"method {self.method}")
         singles = single_discs(drive)
         supports, pins = support_stiffness(drive), SharedPins.of_drive(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
+        friction = TurningFriction.of_drive(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins, friction)
         model = tables
         if self.contacts == "grids":
             model = reducer_of([GridCompliance.of_drive(single) for single in singles], supports)
@@ -207,7 +215,8 @@ class HalfSpace:
         """Return the tables of several drives, each at the same number of positions."""
         discs = zip(*(single_discs(drive) for drive in drives), strict=True)
         supports, pins = support_stiffnesses(drives, positions), SharedPins.of_drives(drives, positions)
-        return reducer_of([HalfSpaceCompliance.of_drives(each, positions) for each in discs], supports, pins)
+        parts = [HalfSpaceCompliance.of_drives(each, positions) for each in discs]
+        return reducer_of(parts, supports, pins, TurningFriction.of_drives(drives))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -297,13 +306,14 @@ class _Coupled:
             ],
             support_stiffness(drive),
             SharedPins.of_drive(drive),
+            TurningFriction.of_drive(drive),
         )
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         singles, supports = single_discs(drive), support_stiffness(drive)
-        pins = SharedPins.of_drive(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins)
+        pins, friction = SharedPins.of_drive(drive), TurningFriction.of_drive(drive)
+        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins, friction)
         return _FromTables(drive=drive, tables=tables, model=self.model(drive))
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:

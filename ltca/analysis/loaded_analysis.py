@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.half_width_guard import (
     check_half_widths,
     separation_warning,
@@ -24,13 +25,16 @@ from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
-from ltca.equilibrium.output_torque import crank_moments
-from ltca.equilibrium.partial_balance import balance_what_can_be, nothing_balanced
+from ltca.equilibrium.friction.turning import TurningFriction
+from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.partial_balance import PartlyBalanced, balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import (
     bearing_forces,
     disc_pressures,
     disc_responses,
     disc_torques,
+    friction_of,
+    with_friction,
 )
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.frozen_arrays import freeze
@@ -69,6 +73,8 @@ class LoadedAnalysis:
         Stresses along the walls of each disc at that torque; empty where bodies are half-spaces and have no walls.
     balanced, balanced_light : array of bool, shape (positions,)
         Where that torque and the light torque have an answer; elsewhere numbers are none.
+    back : Equilibrium or None
+        At that torque with the motion reversed, poses that are no numbers where there is no answer; None without friction.
     """
 
     drive: Drive
@@ -83,6 +89,7 @@ class LoadedAnalysis:
     wall_stresses: tuple[WallStresses, ...]
     balanced: NDArray[np.bool_]
     balanced_light: NDArray[np.bool_]
+    back: Equilibrium | None = None
 
     @property
     def is_complete(self) -> bool:
@@ -121,8 +128,35 @@ class LoadedAnalysis:
 
     @property
     def crank_torques(self) -> FloatArray:
-        """External moment that holds each crank, ccw positive, shape (positions, cranks), N·mm."""
+        """External moment that holds each crank, ccw positive, shape (positions, cranks), N·mm.
+
+        Of a central crank, which is the input, with what seals and oil take.
+        """
+        found = self.losses
+        if found is not None and self.drive.crank.number == 1:
+            return found.input_torque[:, None]
         return crank_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+
+    @property
+    def losses(self) -> Losses | None:
+        """What friction costs; None without."""
+        return None if self.back is None else losses(self.model, self.drive, self.full, self.torque)
+
+    @property
+    def losses_back(self) -> Losses | None:
+        """The same with the motion reversed."""
+        friction = friction_of(self.model)
+        if self.back is None or not isinstance(friction, TurningFriction):
+            return None
+        return losses(with_friction(self.model, friction.reversed()), self.drive, self.back, self.torque)
+
+    @property
+    def moves_back(self) -> NDArray[np.bool_]:
+        """Where the load at the output turns the input without help, shape (positions,); everywhere without friction."""
+        found = self.losses if self.drive.load.driven_by == "output" else self.losses_back
+        if found is None:
+            return np.ones(self.full.crank_angle.shape, dtype=bool)
+        return np.asarray(found.at_input < 0.0)
 
     @property
     def crank_deflections(self) -> ComplexArray:
@@ -176,6 +210,8 @@ class LoadedAnalysis:
                 "that it is light against"
             )
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
+        if self.back is not None and np.any(lost := np.isnan(self.back.pose[self.balanced, 0])):
+            found.append(f"with the motion reversed {np.count_nonzero(lost)} of {lost.size} positions have no equilibrium")
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             if isinstance(disc.model, HalfSpaceCompliance):
@@ -242,6 +278,7 @@ def analyse(
         light = balance_what_can_be(at_light_torque, angle.size, start)
     except ConvergenceError as error:
         light = nothing_balanced(full.found, angle.size, error)
+    back = _turned_back(prepared.model, drive, full, angle, torque)
     if light.failure is not None:
         light.failure.add(f"load.light_torque = {drive.load.light_torque:g} N·mm")
     push = bearing_forces(prepared.model, angle[full.rows], full.found.response)
@@ -258,12 +295,33 @@ def analyse(
         wall_stresses=freeze(full.spread(_wall_stresses(prepared.model, full.found, pressures))),
         balanced=freeze(full.balanced),
         balanced_light=freeze(light.balanced),
+        back=None if back is None else freeze(back),
     )
     for failure in (full.failure, light.failure):
         if failure is not None:
             failure.partial = analysis
             raise failure
     return analysis
+
+
+def _turned_back(
+    model: ComplianceModel, drive: Drive, full: PartlyBalanced, angle: FloatArray, torque: float
+) -> Equilibrium | None:
+    """The positions of a drive with friction, its motion reversed."""
+    friction = friction_of(model)
+    if not isinstance(friction, TurningFriction):
+        return None
+    other, near = with_friction(model, friction.reversed()), full.found
+
+    def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
+        return solve_at_output(other, drive, near.crank_angle[rows], torque, near.pose[rows])
+
+    try:
+        found = balance_what_can_be(at_torque, near.crank_angle.size)
+    except ConvergenceError as error:
+        found = nothing_balanced(near, near.crank_angle.size, error)
+    of_these: Equilibrium = replace(found.spread(found.found), crank_angle=near.crank_angle)
+    return replace(full.spread(of_these), crank_angle=angle)
 
 
 def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: ContactPressures) -> tuple[WallStresses, ...]:

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from ltca.analysis.friction.variables import VARIABLES as FRICTION_VARIABLES, friction_values
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ContactPressures, split_shifts
@@ -123,6 +124,7 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
     full, light = analysis.full, analysis.light
     per_disc = [_disc_values(disc) for disc in analysis.discs]
     values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]}
+    rubbed = friction_values(analysis, values)
     cranks = analysis.drive.crank.number
     return {
         name: _by_crank(value, VARIABLES.get(name) or WALL_VARIABLES[name], cranks) for name, value in values.items()
@@ -136,6 +138,7 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "iterations": full.iterations,
         "crank_torque": analysis.crank_torques.T,
         **_supports(analysis),
+        **rubbed,
         "status": (~analysis.balanced).astype(np.int32),
         "status_light": (~analysis.balanced_light).astype(np.int32),
     }
@@ -376,7 +379,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     named = {name: value for values in per_case for name, value in values.items()}
     first = next(iter(analyses.values()))
     variables = {}
-    for name, (kind, unit, description) in (VARIABLES | WALL_VARIABLES).items():
+    for name, (kind, unit, description) in (VARIABLES | FRICTION_VARIABLES | WALL_VARIABLES).items():
         if name not in named:
             continue
         # What one case has and another has not, as sleeves, is no number there.

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
+from ltca.analysis.friction.variables import friction_scalars
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
@@ -114,7 +115,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
-    values |= _of_cranks(analysis) | _of_pins(analysis)
+    values |= _of_cranks(analysis) | _of_pins(analysis) | _of_friction(analysis)
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     if analysis.wall_stresses:
         for wall in ("root", "bore", "hole"):
@@ -141,6 +142,17 @@ def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:
         )
         if name in each[0]
     }
+
+
+def _of_friction(analysis: LoadedAnalysis) -> dict[str, float]:
+    """What friction costs; nothing without."""
+    if analysis.losses is None:
+        return {}
+    seats = [seat_values(disc) for disc in analysis.discs]
+    pressures = {name: np.stack([values[name] for values in seats]) for name in seats[0]}
+    for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
+        pressures[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
+    return friction_scalars(analysis, pressures)
 
 
 def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:

@@ -64,6 +64,9 @@ class Response:
         Of several discs shape (positions, discs, pairs).
     slopes : PairSlopes or None
         Where they were given.
+    friction : array, shape (positions, pairs), or None
+        Forces of wheel pins and shaft pins along their tangents, N; None without friction. Of several discs they are those
+        of its parts.
     """
 
     force: FloatArray
@@ -76,6 +79,7 @@ class Response:
     warm_start: NDArray[np.object_]
     shifts: ComplexArray | None = None
     slopes: PairSlopes | None = None
+    friction: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import field, replace
 from math import gcd, pi
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
@@ -33,6 +33,7 @@ from ltca.drive.materials import (
     contact_modulus as contact_modulus,
 )
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
+from ltca.drive.members.operation import Friction as Friction, Installation as Installation, Load as Load
 from ltca.drive.members.pins import (
     PinShaft as PinShaft,
     PinWheel as PinWheel,
@@ -42,7 +43,7 @@ from ltca.drive.members.pins import (
     WheelPinSeat as WheelPinSeat,
 )
 from ltca.drive.names import Name
-from ltca.drive.units.quantities import COUNT, quantity
+from ltca.drive.units.quantities import COUNT
 from ltca.errors import DriveError
 
 SAME_PART = 1e-9
@@ -130,41 +131,6 @@ class Clearance:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class Load:
-    """Load on the output.
-
-    Attributes
-    ----------
-    torque : float
-        Output torque T_out, on the pin wheel or, where that is held, on the pin shaft, all discs together, N·mm.
-    light_torque : float
-        Torque whose transmission error stands for the unloaded one, N·mm.
-    direction : {"ccw", "cw"}
-        Sense in which the crank drives; the load opposes it.
-    """
-
-    torque: Annotated[float, quantity("N*mm", gt=0.0)]
-    light_torque: Annotated[float, quantity("N*mm", gt=0.0)] = 10_000.0
-    direction: Literal["ccw", "cw"] = "ccw"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
-class Installation:
-    """How the drive is built in.
-
-    Attributes
-    ----------
-    held : {"pin-shaft", "pin-wheel"}
-        The member that stands still; ``load.torque`` acts on the other one, which is the output.
-    first_stage_ratio : float or None
-        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are turned in the carrier.
-    """
-
-    held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"
-    first_stage_ratio: Annotated[float, quantity("dimensionless", gt=0.0)] | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Drive:
     """One drive in one case, complete.
 
@@ -184,6 +150,8 @@ class Drive:
         Bearing and pin-hole clearance.
     materials : Materials
         Material of each part.
+    friction : Friction or None
+        Coefficients of friction; frictionless when left out.
     """
 
     name: Name = "drive"
@@ -196,6 +164,7 @@ class Drive:
     installation: Installation = field(default_factory=Installation)
     clearance: Clearance = field(default_factory=Clearance)
     materials: Materials = field(default_factory=Materials)
+    friction: Friction | None = None
 
     @property
     def tooth_number_difference(self) -> int:
@@ -211,6 +180,11 @@ class Drive:
     def driving_sign(self) -> int:
         """+1 for a crank driving counter-clockwise, −1 clockwise."""
         return 1 if self.load.direction == "ccw" else -1
+
+    @property
+    def motion_sign(self) -> int:
+        """Sense in which the crank turns, +1 for counter-clockwise: against `driving_sign` where the load drives."""
+        return self.driving_sign if self.load.driven_by == "input" else -self.driving_sign
 
     @property
     def wheel_is_held(self) -> bool:
@@ -231,6 +205,20 @@ class Drive:
             return -self.reduction_ratio if self.wheel_is_held else self.reduction_ratio
         teeth = self.disc.number_of_teeth if self.wheel_is_held else self.pin_wheel.number_of_pins
         return (-1.0 if self.wheel_is_held else 1.0) * teeth / self.tooth_number_difference
+
+    @property
+    def crank_turns_per_input(self) -> float:
+        """Turns of the cranks against the pin shaft for one of the input.
+
+        The wheel turns against the shaft by 1/u of them; with the wheel held that is the output's turning back.
+        """
+        return (-1.0 if self.wheel_is_held else 1.0) * self.reduction_ratio / self.transmission_ratio
+
+    @property
+    def crank_speed(self) -> float | None:
+        """Speed of the cranks against the pin shaft, rad/s, its size; None without `Load.speed`."""
+        speed = self.load.speed
+        return None if speed is None else abs(self.crank_turns_per_input) * speed * 2.0 * pi / 60.0
 
     @property
     def input_per_crank_moment(self) -> float:

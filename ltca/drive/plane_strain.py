@@ -1,4 +1,4 @@
-"""What some models cannot say about a drive: what varies along rollers and pins, several cranks, supports, loose pins."""
+"""What some models cannot say about a drive: what varies along parts, several cranks, supports, loose pins, friction."""
 
 from __future__ import annotations
 
@@ -115,6 +115,27 @@ def require_fixed_pins(drive: Drive, model: str) -> None:
             )
     if problems:
         raise DriveError(problems)
+
+
+def require_frictionless(drive: Drive, model: str) -> None:
+    """Refuse a drive with friction.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    model : str
+        What it is refused by, for the message.
+
+    Raises
+    ------
+    DriveError
+        With the fields of the table.
+    """
+    if drive.friction is not None:
+        raise DriveError(
+            [f"{_told('friction', drive.friction)}: must be left out for {model}, where nothing rubs"]
+        )
 
 
 def _told(path: str, part: Any) -> str:

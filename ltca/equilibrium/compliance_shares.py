@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ltca.compliance.response import ComplianceModel, Start, bearing_pushes
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.reducer import Reducer, disc_responses
+from ltca.equilibrium.reducer import Reducer, disc_responses, friction_of, with_friction
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
@@ -37,17 +37,21 @@ def compliance_shares(model: ComplianceModel, found: Equilibrium) -> dict[str, F
     dict of str to array, shape (positions,)
         By `PARTS`; they add up to one. Not a number where nothing resists a free motion.
     """
-    tangent, size = found.response.tangent, found.pose.shape[1]
+    response, size = found.response, found.pose.shape[1]
+    if friction_of(model) is not None:  # what bodies yield, not what rubs
+        model = with_friction(model, None)
+        response = model.respond(found.crank_angle, found.pose, Start.after(response))
+    tangent = response.tangent
     one = np.zeros((found.pose.shape[0], size, 1))
     one[:, WHEEL_ANGLE] = STEP * found.wheel_moment[:, None]
     try:
         moved: FloatArray = np.asarray(np.linalg.solve(tangent, one)[..., 0], dtype=float)
     except np.linalg.LinAlgError:  # a disc that carries nothing floats
         return dict.fromkeys(PARTS, np.full(found.pose.shape[0], np.nan))
-    start = Start.after(found.response)
+    start = Start.after(response)
     ends = [model.respond(found.crank_angle, found.pose + side * moved, start) for side in (0.5, -0.5)]
     work = {part: np.zeros(found.pose.shape[0]) for part in PARTS}
-    for number, here in enumerate(disc_responses(found.response)):
+    for number, here in enumerate(disc_responses(response)):
         own = moved[:, model.coordinates.columns(number)]
         up, down = (disc_responses(end)[number] for end in ends)
         work["pins"] += _taken(here.flank.gradient, own, up.pin_load - down.pin_load)

@@ -19,7 +19,7 @@ from ltca.compliance.response import (
     put_positions,
     take_positions,
 )
-from ltca.equilibrium.reducer import at_rows
+from ltca.equilibrium.reducer import at_rows, friction_of
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -86,6 +86,7 @@ class Search:
         """The wheel's places are those of every disc."""
         self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
         self.batch = self.place.is_batch
+        self.symmetric = friction_of(model) is None
         self.half_pitch = np.pi / self.place.reduction_ratio
         self.rotations = model.coordinates.rotations
         self.history: list[FloatArray] = []
@@ -147,7 +148,9 @@ class Search:
             if active.size == 0:
                 break
             self.iterations[active] += 1
-            step, slope = _damped_step(tangent, gradient, damping[active], bound[active])
+            step, slope = _damped_step(
+                tangent, gradient, damping[active], bound[active], self.symmetric
+            )
             taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.onward(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
@@ -262,14 +265,14 @@ class Search:
 
 
 def _damped_step(
-    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray
+    tangent: FloatArray, gradient: FloatArray, damping: FloatArray, bound: FloatArray, symmetric: bool = True
 ) -> tuple[FloatArray, FloatArray]:
     """Return the step of every mode, −g/(|λ| + μ tr(H)/n) within the bound, and the slope g·step.
 
     With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
     downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
     direction still corrects the others. Where all modes are stiff and none is bounded that is −(H + μ tr(H)/n)⁻¹g, found
-    without them.
+    without them. With friction H is not symmetric: modes are those of its symmetric part.
     """
     stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / tangent.shape[1]
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
@@ -278,7 +281,8 @@ def _damped_step(
     step, stiff = _stiff_step(tangent, gradient, floor)
     others = np.nonzero(~(stiff & (np.einsum("bi,bi->b", step, step) <= bound**2)))[0]
     if others.size:
-        values, modes = np.linalg.eigh(tangent[others])
+        part = tangent[others]
+        values, modes = np.linalg.eigh(part if symmetric else 0.5 * (part + part.swapaxes(1, 2)))
         along, most = np.einsum("bij,bi->bj", modes, gradient[others]), bound[others, None]
         lengths = np.clip(-along / (np.abs(values) + floor[others, None]), -most, most)
         step[others] = np.einsum("bij,bj->bi", modes, lengths)

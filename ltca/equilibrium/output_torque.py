@@ -24,7 +24,8 @@ from ltca.compliance.response import (
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.equilibrium.reducer import at_rows, disc_responses
+from ltca.equilibrium.friction.turning import TurningFriction
+from ltca.equilibrium.reducer import at_rows, disc_responses, friction_of, with_friction
 from ltca.errors import ConvergenceError
 
 FloatArray = NDArray[np.float64]
@@ -43,7 +44,7 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
 
     It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, and that of its cage, which
     turns by the part `cage_speed` of the crank's angle: cage and inner race are concentric, so the cage's moment is that of
-    the bearing's force at the displaced centre of the bore.
+    the bearing's force at the displaced centre of the bore. What rubs at the crank comes on top.
 
     Parameters
     ----------
@@ -57,7 +58,7 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
         Contacts there.
     """
     cranks = model.discs[0].geometry.placement.cranks
-    total = np.zeros((crank_angle.size, cranks))
+    total, pushes, friction = np.zeros((crank_angle.size, cranks)), [], friction_of(model)
     for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
         place = disc.geometry.placement
         push = bearing_pushes(part.rollers, cranks)
@@ -65,13 +66,14 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
         total += (lever.conjugate() * push).imag
         bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
         total += place.cage_speed * (bores.displacement.conjugate() * push).imag
-    return total
+        pushes.append(push)
+    return total if friction is None else total + friction.of_cranks(pushes)
 
 
 def input_moment(
     model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response, part: FloatArray
 ) -> FloatArray:
-    """Return the external moment of the input, ccw positive, N·mm.
+    """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
 
     Parameters
     ----------
@@ -81,6 +83,10 @@ def input_moment(
         `Drive.input_per_crank_moment`.
     """
     return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
+
+
+STRENGTHS = (0.25, 0.5, 0.75, 1.0)
+"""Parts of the friction through which positions are followed that do not balance at once."""
 
 
 def solve_at_output(
@@ -93,6 +99,8 @@ def solve_at_output(
     gaps: bool = True,
 ) -> Equilibrium:
     """Balance positions at output torques.
+
+    With friction they start from the answer without, and are followed through growing coefficients where that is too far.
 
     Parameters
     ----------
@@ -120,6 +128,34 @@ def solve_at_output(
     ConvergenceError
         When a position does not balance.
     """
+    friction = friction_of(model)
+    if not isinstance(friction, TurningFriction):
+        return _solve(model, drives, crank_angle, torque, start, inner, gaps)
+    smooth = _solve(with_friction(model, None), drives, crank_angle, torque, start, inner, gaps=False)
+    try:
+        return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
+    except ConvergenceError as error:
+        failure = error
+    found = smooth
+    for strength in STRENGTHS:
+        try:
+            part = with_friction(model, friction.scaled(strength))
+            found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
+        except ConvergenceError:
+            raise failure from None
+    return found
+
+
+def _solve(
+    model: ComplianceModel,
+    drives: Drive | Sequence[Drive],
+    crank_angle: FloatArray,
+    torque: FloatArray | float,
+    start: FloatArray | None,
+    inner: Start | None,
+    gaps: bool,
+) -> Equilibrium:
+    """Balance positions at output torques, the way `solve_at_output` says."""
     each = [drives] if isinstance(drives, Drive) else list(drives)
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from ltca.compliance.response import (
     bearing_pushes,
     split_shifts,
 )
+from ltca.equilibrium.friction.turning import Rubbing
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
@@ -33,6 +34,33 @@ from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+
+class JointFriction(Protocol):
+    """Friction of the joints at a pose."""
+
+    @property
+    def by_position(self) -> bool:
+        """Whether every position has something of its own."""
+        ...
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> JointFriction:
+        """Return the friction of some positions."""
+        ...
+
+    def of_disc(
+        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response, disc: int
+    ) -> Rubbing:
+        """Return what friction does to a disc."""
+        ...
+
+    def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
+        """Return the moment by which the wheel's bearing rubs, N·mm."""
+        ...
+
+    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+        """Return the moment that rubbing takes at every crank, N·mm, shape (positions, cranks)."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,11 +88,14 @@ class Reducer:
         Stiffness of the supports (`ltca.equilibrium.supports`), N/mm; None where nothing yields.
     pins : SharedPins or None
         Pins that several discs bend.
+    friction : JointFriction or None
+        What rubs.
     """
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = None
     pins: SharedPins | None = None
+    friction: JointFriction | None = None
 
     @property
     def coordinates(self) -> Coordinates:
@@ -77,7 +108,9 @@ class Reducer:
         if supports is not None and supports.ndim > 2:
             supports = supports[rows]
         discs = tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs)
-        return Reducer(discs=discs, supports=supports, pins=None if self.pins is None else self.pins.take(rows))
+        pins = None if self.pins is None else self.pins.take(rows)
+        friction = None if self.friction is None else self.friction.take(rows)
+        return Reducer(discs=discs, supports=supports, pins=pins, friction=friction)
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
         """Return the contact forces of all discs.
@@ -96,10 +129,18 @@ class Reducer:
         starts = [None] * count if start is None else _split_start(start, count)
 
         def respond(moved: ComplexArray | None) -> tuple[Response, ...]:
+            if moved is None and self.friction is not None:
+                moved = self._unmoved(crank_angle.size)  # with which slopes come
             each = [None] * count if moved is None else list(moved.swapaxes(0, 1))
-            return tuple(
+            found = tuple(
                 disc.respond(crank_angle, pose[:, own], own_start, own_shifts)
                 for own, disc, own_start, own_shifts in zip(places, self.discs, starts, each, strict=True)
+            )
+            if self.friction is None:
+                return found
+            return tuple(
+                _rubbed(self.friction, self.discs[disc].geometry, crank_angle, pose[:, own], part, disc)
+                for disc, (own, part) in enumerate(zip(places, found, strict=True))
             )
 
         shifts, settled, size = None, None, coordinates.size
@@ -108,7 +149,7 @@ class Reducer:
         else:
             begin = None if start is None else start.shifts
             if begin is None:
-                begin = np.zeros((crank_angle.size, count, self.pins.flexibility.shape[-3]), dtype=complex)
+                begin = self._unmoved(crank_angle.size)
             parts, shifts, settled = self.pins.settle(respond, coordinates, begin)
         force, tangent = np.zeros((crank_angle.size, size)), np.zeros((crank_angle.size, size, size))
         for own, part in zip(places, parts, strict=True):
@@ -119,6 +160,8 @@ class Reducer:
         if self.supports is not None:
             force += np.matmul(self.supports, pose[..., None])[..., 0]
             tangent += self.supports
+        if self.friction is not None:
+            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, self.discs[0].geometry.placement.reduction_ratio)
         return ReducerResponse(
             force=force,
             tangent=tangent,
@@ -132,6 +175,12 @@ class Reducer:
             shifts=shifts,
         )
 
+    def _unmoved(self, positions: int) -> ComplexArray:
+        """Pins that stand where they stand without load, shape (positions, discs, pairs)."""
+        place = self.discs[0].geometry.placement
+        pairs = place.wheel_pin_radii.shape[-1] + place.hole_radii.shape[-1]
+        return np.zeros((positions, len(self.discs), pairs), dtype=complex)
+
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures of all discs behind a response of this model."""
         parts = disc_responses(response)
@@ -141,8 +190,26 @@ class Reducer:
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
 
 
+def _rubbed(
+    friction: JointFriction,
+    geometry: ContactGeometry,
+    crank_angle: FloatArray,
+    pose: FloatArray,
+    part: Response,
+    disc: int,
+) -> Response:
+    """Contacts of a disc with their friction."""
+    found = friction.of_disc(geometry, crank_angle, pose, part, disc)
+    return replace(
+        part, force=part.force + found.force, tangent=part.tangent + found.tangent, friction=found.tangential
+    )
+
+
 def reducer_of(
-    discs: Sequence[DiscModel], supports: FloatArray | None = None, pins: SharedPins | None = None
+    discs: Sequence[DiscModel],
+    supports: FloatArray | None = None,
+    pins: SharedPins | None = None,
+    friction: JointFriction | None = None,
 ) -> ComplianceModel:
     """Return the model of a drive from those of its discs: of one disc on members that do not yield its own.
 
@@ -150,12 +217,24 @@ def reducer_of(
     ----------
     discs : sequence of DiscModel
         One for each disc.
-    supports, pins : optional
-        Stiffness of the supports, and pins that several discs bend, see `Reducer`.
+    supports, pins, friction : optional
+        Stiffness of the supports, pins that several discs bend, and what rubs, see `Reducer`.
     """
-    if len(discs) == 1 and supports is None:
+    if len(discs) == 1 and supports is None and friction is None:
         return discs[0]
-    return Reducer(discs=tuple(discs), supports=supports, pins=pins)
+    return Reducer(discs=tuple(discs), supports=supports, pins=pins, friction=friction)
+
+
+def friction_of(model: ComplianceModel) -> JointFriction | None:
+    """Return what rubs in a model."""
+    return model.friction if isinstance(model, Reducer) else None
+
+
+def with_friction(model: ComplianceModel, friction: JointFriction | None) -> ComplianceModel:
+    """Return a model with other friction, or none: of a `Reducer` one, whose answers have the same arrays."""
+    if isinstance(model, Reducer):
+        return replace(model, friction=friction)
+    return reducer_of(model.discs, friction=friction)
 
 
 def disc_responses(response: Response) -> tuple[Response, ...]:
@@ -251,7 +330,8 @@ def geometries(model: ComplianceModel) -> tuple[ContactGeometry, ...]:
 
 def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ComplianceModel:
     """Return the model at some positions: these rows of a batch, itself where all are of one drive."""
-    if not model.discs[0].geometry.placement.is_batch:
+    friction = friction_of(model)
+    if not model.discs[0].geometry.placement.is_batch and (friction is None or not friction.by_position):
         return model  # as every position of one drive has the same supports
     return cast(BatchModel, model).take(rows)
 

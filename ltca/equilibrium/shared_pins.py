@@ -141,6 +141,11 @@ class SharedTangent:
         # A pin moves against a disc as the disc moves the other way against it; shape (positions, pairs, discs, 2).
         self.normal = -gradient.swapaxes(1, 2)
         self.slip = -along.swapaxes(1, 2)
+        force = self.load.swapaxes(1, 2)[..., None] * self.normal
+        if parts[0].friction is not None:
+            rubbed = np.stack([part.friction for part in parts if part.friction is not None], axis=2)
+            force = force + rubbed[..., None] * self.slip
+        self.force: ComplexArray = np.ascontiguousarray(force).view(complex)[..., 0]
         self.bend = (self.load * sense * bending).swapaxes(1, 2)
         self.on_flank = (self.load * (sense < 0.0)).swapaxes(1, 2)
         positions, pairs, discs = self.bend.shape
@@ -164,8 +169,7 @@ class SharedTangent:
 
     def left_over(self, shifts: ComplexArray) -> ComplexArray:
         """Return displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
-        force = (self.load.swapaxes(1, 2)[..., None] * self.normal).view(complex)[..., 0]
-        moved = np.matmul(self.flexibility.astype(complex), force[..., None])[..., 0]
+        moved = np.matmul(self.flexibility.astype(complex), self.force[..., None])[..., 0]
         return np.asarray(shifts + moved.swapaxes(1, 2))
 
     def step(self, left: ComplexArray) -> ComplexArray:

@@ -253,6 +253,10 @@ class Placement:
         """
         return np.asarray(self.race_centres(crank_angle).mean(axis=-1))
 
+    def race_velocity(self, crank_angle: FloatArray) -> ComplexArray:
+        """Return how `race_centre` moves by the crank angle, mm/rad, shape (…,)."""
+        return np.asarray((1j * self.eccentricity * self.eccentric_directions(crank_angle)).mean(axis=-1))
+
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, cranks · n_BR)."""
         return np.asarray(self.cage_speed * np.asarray(crank_angle)[..., None] + self.roller_cage_angles)

@@ -1,0 +1,84 @@
+"""How the drive is built in and used: the member that is held, load, speed, and what rubs."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import STRICT, NonNegativeLength
+from ltca.drive.units.quantities import quantity
+
+Coefficient = Annotated[float, quantity("dimensionless", ge=0.0, le=1.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Load:
+    """Load on the output.
+
+    Attributes
+    ----------
+    torque : float
+        Output torque T_out, on the pin wheel or, where that is held, on the pin shaft, all discs together, N·mm.
+    light_torque : float
+        Torque whose transmission error stands for the unloaded one, N·mm.
+    direction : {"ccw", "cw"}
+        Sense in which the crank drives; the load opposes it.
+    speed : float or None
+        Of the input, turns a minute; powers and speeds of slip are not told without it.
+    driven_by : {"input", "output"}
+        Which side moves the drive: "output" is the same loaded flank, its motion reversed.
+    """
+
+    torque: Annotated[float, quantity("N*mm", gt=0.0)]
+    light_torque: Annotated[float, quantity("N*mm", gt=0.0)] = 10_000.0
+    direction: Literal["ccw", "cw"] = "ccw"
+    speed: Annotated[float, quantity("rpm", gt=0.0)] | None = None
+    driven_by: Literal["input", "output"] = "input"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Installation:
+    """How the drive is built in.
+
+    Attributes
+    ----------
+    held : {"pin-shaft", "pin-wheel"}
+        The member that stands still; ``load.torque`` acts on the other one, which is the output.
+    first_stage_ratio : float or None
+        z₂/z₁ of a spur stage between a central input and several cranks; left out, the cranks are turned in the carrier.
+    """
+
+    held: Literal["pin-shaft", "pin-wheel"] = "pin-shaft"
+    first_stage_ratio: Annotated[float, quantity("dimensionless", gt=0.0)] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Friction:
+    """What rubs; each entry is 0 when left out.
+
+    Attributes
+    ----------
+    pin : float
+        μ of the flank on wheel pins, or on their sleeves.
+    seat : float
+        μ of pins in their slots, and of sleeves on the pins of wheel and shaft.
+    hole : float
+        μ of the holes on shaft pins, or on their sleeves.
+    roller : float
+        Rolling resistance f of the crank bearings, whose moment is f·|F_b|·(r_i + r_BR).
+    support_bearing : float
+        f of the bearings of cranks and wheel, whose moment is f times the load of each times `support_bearing_radius`.
+    support_bearing_radius : float
+        Radius at which these rub, mm.
+    no_load_torque : float
+        What seals and oil take at the input, N·mm.
+    """
+
+    pin: Coefficient = 0.0
+    seat: Coefficient = 0.0
+    hole: Coefficient = 0.0
+    roller: Coefficient = 0.0
+    support_bearing: Coefficient = 0.0
+    support_bearing_radius: NonNegativeLength = 0.0
+    no_load_torque: Annotated[float, quantity("N*mm", ge=0.0)] = 0.0

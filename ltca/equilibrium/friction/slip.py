@@ -1,0 +1,64 @@
+r"""How contacts slip by the pose and by the crank angle.
+
+The friction of a contact acts where the bodies touch, along their common tangent t. Its virtual work takes the displacement
+of the pin against the disc there, :math:`\delta s = s_q \cdot \delta q + s_\varphi\,\delta\varphi_C`. The derivatives that
+`ltca.geometry.pair_motion.PairMotion.along` holds are those of the pin's centre; the point of contact lies by the radius of
+the pin, or of the hole, aside, and turning bodies move it by so much more.
+
+By the crank angle alone the disc goes around with its eccentric and the wheel turns by 1/u: about a point at e·u from the
+wheel's axis, the pitch point, they roll on each other, and a flank contact slips by 1/u times its distance from there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import Response
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.geometry.pairs import ContactGeometry
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slip:
+    """Slip of the contacts of one disc, wheel pins before shaft pins: of the pin against the disc along the tangent.
+
+    Attributes
+    ----------
+    by_pose : array, shape (positions, pairs, coordinates)
+        ∂s/∂q, in mm/mm and mm/rad.
+    by_crank : array, shape (positions, pairs)
+        ∂s/∂φ_C of the drive that turns, mm/rad.
+    """
+
+    by_pose: FloatArray
+    by_crank: FloatArray
+
+    @classmethod
+    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, part: Response) -> Slip:
+        """Return the slip of the contacts of one disc.
+
+        Parameters
+        ----------
+        geometry : ContactGeometry
+            Of the disc in its drive.
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        part : Response
+            Its contacts.
+        """
+        place = geometry.placement
+        flank, holes = part.flank.along.copy(), part.holes.along.copy()
+        # The flank lies a pin radius nearer to the disc than the pin's centre, the wall a hole radius beyond the hole's.
+        flank[..., DISC_ROTATION] += place.wheel_pin_radii
+        flank[..., WHEEL_ANGLE] -= place.wheel_pin_radii
+        holes[..., DISC_ROTATION] += place.hole_radii
+        by_pose = np.concatenate((flank, holes), axis=1)
+        centre = place.race_velocity(crank_angle)[:, None]
+        by_crank = by_pose[..., X] * centre.real + by_pose[..., Y] * centre.imag
+        by_crank += by_pose[..., WHEEL_ANGLE] / place.reduction_ratio
+        return cls(by_pose=by_pose, by_crank=by_crank)

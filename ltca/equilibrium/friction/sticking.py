@@ -1,0 +1,158 @@
+r"""Friction of contacts that stick or slip while the input is locked.
+
+Nothing turns, so slip is the contacts' own: what bodies yield under the torque moves them along their tangents by
+:math:`s_q \cdot \Delta q`. Every contact is a spring behind a slider (Jenkins): from one balanced state to the next its
+friction force grows with the tangential stiffness of the contact and slips at μF,
+
+.. math:: T = \mathrm{clip}(T_0 + k_t\, s_q \cdot (q - q_0),\ \pm\mu F).
+
+Bodies in line contact yield along the tangent as they do along the normal (a half-plane's displacements under either load
+differ by what is far away alone), so :math:`k_t = \partial F/\partial\delta` of the pair. Contacts that were open begin
+without force. Crank bearings and those of cranks and wheel roll by a µm there, less than a contact is wide: they resist
+elastically, and nothing is counted for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import ComplianceModel, Response
+from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.friction.slip import Slip
+from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
+from ltca.equilibrium.reducer import disc_responses
+from ltca.geometry.pairs import ContactGeometry
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+def stick_or_slip(
+    before: FloatArray, stiffness: FloatArray, moved: FloatArray, bound: FloatArray
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return the force of sliders behind springs, and which of them stick.
+
+    Parameters
+    ----------
+    before : array
+        Force in the state before, N.
+    stiffness : array
+        Of the spring, N/mm.
+    moved : array
+        Displacement since, mm.
+    bound : array
+        μF, N.
+
+    Examples
+    --------
+    >>> stick_or_slip(np.array([0.0, 0.0]), np.array(100.0), np.array([0.01, -0.1]), np.array(5.0))
+    (array([ 1., -5.]), array([ True, False]))
+    """
+    elastic = before + stiffness * moved
+    return np.clip(elastic, -bound, bound), np.abs(elastic) < bound
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StickingFriction:
+    """Friction of a drive whose input is locked, since a balanced state.
+
+    Attributes
+    ----------
+    pin, hole : float
+        Coefficients with which wheel pins and shaft pins rub.
+    pose : array, shape (positions, discs, coordinates of one)
+        q of each disc in that state.
+    tangential : array, shape (positions, discs, pairs)
+        Friction forces there, N.
+    closed : array of bool, shape (positions, discs, pairs)
+        Contacts that carried there.
+    """
+
+    pin: float
+    hole: float
+    pose: FloatArray
+    tangential: FloatArray
+    closed: NDArray[np.bool_]
+
+    @classmethod
+    def at_rest(cls, friction: TurningFriction, model: ComplianceModel, found: Equilibrium) -> StickingFriction:
+        """Return the friction of a drive without any force along a tangent yet.
+
+        Parameters
+        ----------
+        friction : TurningFriction
+            Of the drive that turns, for its coefficients.
+        model : ComplianceModel
+            Whose poses those are.
+        found : Equilibrium
+            Balanced without friction.
+        """
+        return cls(pin=friction.pin, hole=friction.hole, **_state(model, found, rubbed=False))
+
+    def after(self, model: ComplianceModel, found: Equilibrium) -> StickingFriction:
+        """Return the friction since a state that was found with this one."""
+        return StickingFriction(pin=self.pin, hole=self.hole, **_state(model, found, rubbed=True))
+
+    @property
+    def by_position(self) -> bool:
+        """Whether every position has something of its own: its state."""
+        return True
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> StickingFriction:
+        """Return the friction of some positions."""
+        return StickingFriction(
+            pin=self.pin,
+            hole=self.hole,
+            pose=self.pose[rows],
+            tangential=self.tangential[rows],
+            closed=self.closed[rows],
+        )
+
+    def of_disc(
+        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response, disc: int
+    ) -> Rubbing:
+        """Return what friction does to a disc; arguments as for `ltca.equilibrium.friction.turning.TurningFriction`."""
+        if part.slopes is None:
+            raise AssertionError("friction follows loads by their slopes")
+        slip, pins = Slip.of_disc(geometry, crank_angle, part), part.pin_load.shape[1]
+        load = np.concatenate((part.pin_load, part.hole_load), axis=1)
+        coefficient = np.r_[np.full(pins, self.pin), np.full(load.shape[1] - pins, self.hole)]
+        own = part.slopes.by_approach
+        stiffness = own if own.ndim == 2 else np.diagonal(own, axis1=1, axis2=2)
+        stiffness = np.where(self.closed[:, disc], stiffness, 0.0)
+        moved = np.einsum("bpj,bj->bp", slip.by_pose, pose - self.pose[:, disc])
+        tangential, sticks = stick_or_slip(self.tangential[:, disc], stiffness, moved, coefficient * load)
+        change = np.where(
+            sticks[..., None],
+            stiffness[..., None] * slip.by_pose,
+            (np.sign(tangential) * coefficient)[..., None] * part.slopes.by_pose,
+        )
+        return Rubbing(
+            tangential=tangential,
+            force=np.einsum("bp,bpj->bj", tangential, slip.by_pose),
+            tangent=np.matmul(slip.by_pose.swapaxes(1, 2), change),
+            slip=slip,
+        )
+
+    def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
+        """Return the moment by which the wheel's bearing rubs: none."""
+        return np.zeros(parts[0].pin_load.shape[0])
+
+    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+        """Return the moment that rubbing takes at every crank: none."""
+        return np.zeros(pushes[0].shape)
+
+
+def _state(model: ComplianceModel, found: Equilibrium, *, rubbed: bool) -> dict[str, NDArray[np.generic]]:
+    parts = disc_responses(found.response)
+    load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
+    held = [part.friction for part in parts if part.friction is not None]
+    return {
+        "pose": np.stack([found.pose[:, model.coordinates.columns(disc)] for disc in range(len(parts))], axis=1),
+        "tangential": np.stack(held, axis=1) if rubbed else np.zeros(load.shape),
+        "closed": load > 0.0,
+    }

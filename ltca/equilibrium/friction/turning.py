@@ -1,0 +1,229 @@
+r"""Coulomb friction and rolling resistance of a drive that turns.
+
+Slip of the turning drive follows from kinematics (`ltca.equilibrium.friction.slip`), so every contact rubs with μF against
+it: the generalised force :math:`Q = \sum \mu F \sigma s_q` with the sense σ of its slip. A pin that is free to turn slips
+where that takes less: loose in a slot with the smaller of both coefficients, under a sleeve of bore r_i and outside R with
+:math:`\min(\mu, \mu_{seat} r_i/R)`, to first order in μ (the total forces on a free pin pass through both its contacts).
+Crank bearings roll with the moment :math:`f |F_b| (r_i + r_{BR})` between crank and disc; the bearings of cranks and wheel rub
+with f times their load at a radius of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import Response, bearing_pushes
+from ltca.drive.parts import Drive, PinShaft, PinWheel
+from ltca.equilibrium.friction.slip import Slip
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.pairs import ContactGeometry
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+ROLLING = 1e-4
+"""Slip by the crank angle, as a part of the eccentricity, below which friction fades out: about the pitch point the sense of
+the slip turns over, and a contact that lies there neither slips one way nor the other."""
+
+
+def rubbing(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
+    """Return the coefficient with which pins rub, free ones where they slip more easily.
+
+    Parameters
+    ----------
+    contact, seat : float
+        μ at the flank or hole, and in slot or sleeve.
+    part : PinWheel or PinShaft
+        How the pins sit.
+
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import load_drive
+    >>> rubbing(0.05, 0.02, load_drive("paper").cases["CS-1"].pin_wheel)
+    0.05
+    """
+    if part.seat.kind == "fixed":
+        return contact
+    return min(contact, seat * seat_travel(part))
+
+
+def seat_travel(part: PinWheel | PinShaft) -> float:
+    """Return how far a pin slips in its seat while the surface of what is loose moves by one: r_i/R of a sleeve, 1 in a slot."""
+    if part.seat.kind != "sleeve":
+        return 1.0
+    return (part.seat.bore_radius or 0.0) / part.pin_radius
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rubbing:
+    """What friction does to one disc.
+
+    Attributes
+    ----------
+    tangential : array, shape (positions, pairs)
+        Force of each contact along its tangent, wheel pins before shaft pins, N.
+    force : array, shape (positions, coordinates)
+        Generalised force that has to overcome it, N and N·mm.
+    tangent : array, shape (positions, coordinates, coordinates)
+        Its derivative by the pose, but for what turns with the contacts.
+    slip : Slip
+        Of the contacts.
+    """
+
+    tangential: FloatArray
+    force: FloatArray
+    tangent: FloatArray
+    slip: Slip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TurningFriction:
+    """Friction of a drive that turns.
+
+    Attributes
+    ----------
+    pin, hole : float
+        Coefficients with which wheel pins and shaft pins rub (`rubbing`).
+    rolling : float
+        f·(r_i + r_BR) of the crank bearings, mm.
+    support : float
+        f of the bearings of cranks and wheel times their radius, mm.
+    crank_bearings : array, shape (bearings, discs)
+        Load of each bearing of a crank by the forces of the discs on it.
+    motion : int
+        +1 where the crank turns counter-clockwise, −1 clockwise.
+    strength : float
+        Part of all coefficients that counts, for continuation.
+    """
+
+    pin: float
+    hole: float
+    rolling: float
+    support: float
+    crank_bearings: FloatArray
+    motion: int
+    strength: float = 1.0
+
+    @classmethod
+    def of_drive(cls, drive: Drive) -> TurningFriction | None:
+        """Return the friction of a drive; None where it has none."""
+        found, shaft, bearing = drive.friction, drive.pin_shaft, drive.crank_bearing
+        if found is None:
+            return None
+        return cls(
+            pin=rubbing(found.pin, found.seat, drive.pin_wheel),
+            hole=0.0 if shaft is None else rubbing(found.hole, found.seat, shaft),
+            rolling=found.roller * (bearing.inner_race_radius + bearing.roller_radius),
+            support=found.support_bearing * found.support_bearing_radius,
+            crank_bearings=_bearing_loads(drive),
+            motion=drive.motion_sign,
+        )
+
+    @classmethod
+    def of_drives(cls, drives: Sequence[Drive]) -> TurningFriction | None:
+        """Return the friction that all drives of a batch have (`ltca.compliance.half_space.batch_signature`)."""
+        return cls.of_drive(drives[0])
+
+    @property
+    def by_position(self) -> bool:
+        """Whether every position has something of its own: they have not."""
+        return False
+
+    def scaled(self, strength: float) -> TurningFriction:
+        """Return a part of this friction."""
+        return replace(self, strength=strength)
+
+    def reversed(self) -> TurningFriction:
+        """Return the friction of the same drive as it turns the other way."""
+        return replace(self, motion=-self.motion)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> TurningFriction:
+        """Return the friction of some positions: itself."""
+        return self
+
+    def of_disc(
+        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response, disc: int
+    ) -> Rubbing:
+        """Return what friction does to a disc.
+
+        Parameters
+        ----------
+        geometry : ContactGeometry
+            Of the disc in its drive.
+        crank_angle : array, shape (positions,)
+            φ_C, rad.
+        pose : array, shape (positions, coordinates)
+            q of the disc.
+        part : Response
+            Its contacts, with slopes.
+        disc : int
+            Its number.
+
+        Raises
+        ------
+        AssertionError
+            When the contacts come without slopes.
+        """
+        slip, pins = Slip.of_disc(geometry, crank_angle, part), part.pin_load.shape[1]
+        soft = ROLLING * geometry.placement.mean_eccentricity
+        sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
+        sense[:, :pins] *= self.pin
+        sense[:, pins:] *= self.hole
+        tangential = sense * np.concatenate((part.pin_load, part.hole_load), axis=1)
+        force = np.einsum("bp,bpj->bj", tangential, slip.by_pose)
+        if part.slopes is None:
+            raise AssertionError("friction follows loads by their slopes")
+        # F ∂s_q/∂q is left out: approaches are short against the radii about which contacts turn.
+        tangent = np.matmul(slip.by_pose.swapaxes(1, 2), sense[..., None] * part.slopes.by_pose)
+        push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks)).sum(axis=1)
+        force[:, DISC_ROTATION] -= self.motion * self.strength * self.rolling * push
+        return Rubbing(tangential=tangential, force=force, tangent=tangent, slip=slip)
+
+    def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
+        """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
+
+        Parameters
+        ----------
+        parts : sequence of Response
+            Contacts of each disc, friction in them.
+        reduction_ratio : float
+            u: the wheel turns against the shaft by 1/u of the crank.
+        """
+        load = np.abs(sum(wheel_force(part) for part in parts))
+        return np.asarray(self.motion * self.strength * self.support * np.sign(reduction_ratio) * load)
+
+    def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
+        """Return the moment that rubbing takes at every crank, ccw positive, N·mm, shape (positions, cranks).
+
+        Parameters
+        ----------
+        pushes : sequence of array of complex, shape (positions, cranks)
+            Force of each crank on every disc, N.
+        """
+        forces = np.stack(pushes, axis=-1)
+        reactions = np.abs(np.matmul(forces, self.crank_bearings.T.astype(complex))).sum(axis=-1)
+        rolled = np.abs(forces).sum(axis=-1)
+        return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
+
+
+def wheel_force(part: Response) -> ComplexArray:
+    """Return the force of the disc on the wheel, its friction included, N, shape (positions,)."""
+    pins = part.pin_load.shape[1]
+    total = np.einsum("bp,bpi->bi", part.pin_load, part.flank.gradient[..., DISC_PLACE])
+    if part.friction is not None:
+        total += np.einsum("bp,bpi->bi", part.friction[:, :pins], part.flank.along[..., DISC_PLACE])
+    return np.asarray(total[:, 0] + 1j * total[:, 1])
+
+
+def _bearing_loads(drive: Drive) -> FloatArray:
+    """Load of the bearings of a crank by the forces of the discs: two supports in balance, or a bearing beside each disc."""
+    planes, support = np.array(drive.disc.disc_planes), drive.crank.support
+    if support is None:
+        return np.eye(planes.size)
+    first, second = support.positions
+    part = (planes - first) / (second - first)
+    return np.stack([1.0 - part, part])
