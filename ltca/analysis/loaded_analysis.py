@@ -211,7 +211,9 @@ class LoadedAnalysis:
             )
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
         if self.back is not None and np.any(lost := np.isnan(self.back.pose[self.balanced, 0])):
-            found.append(f"with the motion reversed {np.count_nonzero(lost)} of {lost.size} positions have no equilibrium")
+            found.append(
+                f"with the motion reversed {np.count_nonzero(lost)} of {lost.size} positions have no equilibrium"
+            )
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             if isinstance(disc.model, HalfSpaceCompliance):

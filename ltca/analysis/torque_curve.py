@@ -1,8 +1,9 @@
 """Torque against wind-up over both directions, and what is read from it: backlash, lost motion, torsional stiffness.
 
 The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; what remains
-between the branches at vanishing torque is the play of all clearances together. Torques and angles are those of the
-output, whichever member that is.
+between the branches at vanishing torque is the play of all clearances together. With friction the curve is what the bodies
+yield, and the loop about it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output,
+whichever member that is.
 """
 
 from __future__ import annotations
@@ -13,10 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.friction.hysteresis import HysteresisLoop, hysteresis_loop
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import with_friction
+from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
@@ -24,7 +28,9 @@ FloatArray = NDArray[np.float64]
 SMALLEST = 1e-4
 """Smallest torque as a part of the rated one: elastic wind-up is some 1e-4 of its rated value there."""
 LOST_MOTION = 0.03
-"""Lost motion is read between ± this part of the rated torque, as makers of precision reducers do."""
+"""Lost motion is read between ± this part of the rated torque unless another is asked for, as makers of precision reducers do."""
+LEAST_PART, MOST_PART = 0.001, 0.5
+"""Bounds of that part: where clearances are taken up, and where the wind-up is that of the stiffness."""
 STIFF_FROM = 0.5
 """Torsional stiffness is the mean slope from this part of the rated torque to the whole."""
 
@@ -46,9 +52,13 @@ class TorqueCurve:
     backlash : array, shape (angles,)
         Between the branches at the smallest torques, rad.
     lost_motion : array, shape (angles,)
-        Between ±3 % of the rated torque, rad.
+        Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
         Of the whole drive, from half the rated torque to all of it, clockwise and counter-clockwise, N·mm/rad.
+    lost_motion_part : float
+        Part of the rated torque at which lost motion is read.
+    loop : HysteresisLoop or None
+        Of a drive with friction.
     """
 
     crank_angle: FloatArray
@@ -58,6 +68,8 @@ class TorqueCurve:
     backlash: FloatArray
     lost_motion: FloatArray
     stiffness: FloatArray
+    lost_motion_part: float = LOST_MOTION
+    loop: HysteresisLoop | None = None
 
 
 @names_unit_mistakes
@@ -67,6 +79,7 @@ def torque_curve(
     *,
     points: int = 40,
     engine: Engine | None = None,
+    lost_motion: float = LOST_MOTION,
 ) -> TorqueCurve:
     """Load the output both ways at held crank angles.
 
@@ -80,6 +93,8 @@ def torque_curve(
         Torques of each direction, evenly spaced in their square root (dense where the curve bends).
     engine : Engine, optional
         How bodies yield; half-spaces by default.
+    lost_motion : float
+        Part of the rated torque at which lost motion is read, from 0.001 to 0.5.
 
     Returns
     -------
@@ -89,11 +104,17 @@ def torque_curve(
     ------
     ConvergenceError
         When a position does not balance.
+    DriveError
+        When the lost motion is to be read elsewhere.
     """
+    if not LEAST_PART <= lost_motion <= MOST_PART:
+        raise DriveError(
+            [f"lost_motion = {lost_motion:g}: must be from {LEAST_PART:g} to {MOST_PART:g} of the rated torque"]
+        )
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rated = drive.load.torque
     parts = np.unique(
-        np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, LOST_MOTION, STIFF_FROM]])
+        np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [SMALLEST, lost_motion, STIFF_FROM]])
     )
     torque = rated * np.concatenate([-parts[::-1], parts])
     held = np.repeat(angles, torque.size)
@@ -101,9 +122,9 @@ def torque_curve(
     # other way, and so does what opposes it.
     opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
     loads = np.tile(opposing * torque, angles.size)
-    tables = HalfSpace().prepare(drive).model
+    tables = with_friction(HalfSpace().prepare(drive).model, None)
     found = solve_at_output(tables, drive, held, loads)
-    model = tables if engine is None else engine.prepare(drive).model
+    model = tables if engine is None else with_friction(engine.prepare(drive).model, None)
     if not isinstance(model.discs[0], HalfSpaceCompliance):
         found = solve_at_output(model, drive, held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
@@ -112,6 +133,9 @@ def torque_curve(
     def at(part: float) -> FloatArray:
         return np.asarray(output[:, int(np.argmin(np.abs(torque - part * rated)))])
 
+    loop = None
+    if drive.friction is not None:
+        loop = hysteresis_loop(drive, angles, lost_motion=lost_motion, engine=engine)
     half = (1.0 - STIFF_FROM) * rated
     return TorqueCurve(
         crank_angle=angles,
@@ -119,6 +143,8 @@ def torque_curve(
         wheel_angle=wheel,
         output_angle=output,
         backlash=at(SMALLEST) - at(-SMALLEST),
-        lost_motion=at(LOST_MOTION) - at(-LOST_MOTION),
+        lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),
+        lost_motion_part=lost_motion,
+        loop=loop,
     )

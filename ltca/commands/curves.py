@@ -17,6 +17,7 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
+    from ltca.analysis.friction.hysteresis import HysteresisLoop
     from ltca.analysis.engines import Engine
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.rating_life import RatingLife
@@ -55,11 +56,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="permissible flank pressure in MPa (or a text such as '1.5 GPa'); default 1500",
     )
     parser.add_argument(
+        "--lost-motion",
+        metavar="PART",
+        type=quantity_argument("--lost-motion", "dimensionless", ge=0.001, le=0.5),
+        default=0.03,
+        help="part of the rated torque at which lost motion is read, as '3%%' or 0.03; default 3%%",
+    )
+    parser.add_argument(
         "--speed",
         metavar="N",
         type=quantity_argument("--speed", "rpm", gt=0.0),
         help="crank speed in turns a minute (or a text such as '1500 rpm'), for the life in hours: of a central crank "
-        "against the held member, of several cranks against the carrier (what that is of the input is printed)",
+        "against the held member, of several cranks against the carrier (what that is of the input is printed); default from "
+        "load.speed, if the drive has it",
     )
     parser.add_argument(
         "--load-rating",
@@ -83,11 +92,14 @@ class Limits(NamedTuple):
         Of the crank bearing, N; by ISO 281 otherwise.
     speed : float or None
         Of the crank, turns a minute: of a central one against the held member, of several against the carrier.
+    lost_motion : float
+        Part of the rated torque at which lost motion is read.
     """
 
     pressure: float
     load_rating: float | None
     speed: float | None
+    lost_motion: float
 
 
 class CaseCurves(NamedTuple):
@@ -142,7 +154,12 @@ def execute(arguments: argparse.Namespace) -> int:
     require_folder(out)
     from ltca.analysis.memory_need import require_room_for
 
-    limits = Limits(pressure=arguments.pressure_limit, load_rating=arguments.load_rating, speed=arguments.speed)
+    limits = Limits(
+        pressure=arguments.pressure_limit,
+        load_rating=arguments.load_rating,
+        speed=arguments.speed,
+        lost_motion=arguments.lost_motion,
+    )
     engine = compliance_of(arguments)
     for drive in cases.values():
         turns = arguments.turns or drive.pin_wheel.number_of_pins
@@ -210,6 +227,13 @@ def _solve_and_write(
     return 0
 
 
+def _crank_speed(drive: Drive, limits: Limits) -> float | None:
+    """Speed of the crank: the one asked for, or that of the input in the drive file."""
+    if limits.speed is not None or drive.load.speed is None:
+        return limits.speed
+    return drive.load.speed * (1.0 if drive.crank.number == 1 else abs(drive.crank_turns_per_input))
+
+
 def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurves:
     import numpy as np
 
@@ -222,7 +246,9 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
 
     engine = engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
-    curve = torque_curve(drive, mesh * np.arange(ANGLES) / ANGLES, engine=engine)
+    limits = limits._replace(speed=_crank_speed(drive, limits))
+    angles = mesh * np.arange(ANGLES) / ANGLES
+    curve = torque_curve(drive, angles, engine=engine, lost_motion=limits.lost_motion)
     each = positions_per_turn(drive)
     angle = 2.0 * np.pi * np.arange(turns * each) / each
     analysis = loaded_analysis.analyse(drive, angle, engine=engine)
@@ -284,7 +310,12 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     )
     floating = f"backlash at the {output}, disc{'s' * (discs > 1)} floating"
     print(f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′")
-    print(f"  lost motion at ±3 % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′")
+    print(
+        f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′"
+    )
+    if curve.loop is not None:
+        print(f"  width of the loop there                   {_range(curve.loop.width * ARCMIN)}′")
+        print(f"  energy lost in a loop at the rated torque {_range(curve.loop.energy / 1e3)} J")
     print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
     print(f"orders of the transmission error {over}")
     for number in np.argsort(-spectrum.amplitude)[:8]:
@@ -299,7 +330,7 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     print(f"rating life of the crank bearing{which} ({stands})")
     print(f"  C {life.dynamic_load_rating:.0f} N, P {life.equivalent_load:.0f} N, L10r {life.life:.1f} million turns")
     if found.hours is not None:
-        print(f"  {found.hours:.0f} h at {_speed_words(drive, limits.speed)}")
+        print(f"  {found.hours:.0f} h at {_speed_words(drive, _crank_speed(drive, limits))}")
     print(
         f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limits.pressure:g} MPa, largest {over}"
     )
@@ -340,6 +371,18 @@ def _draw(found: CaseCurves, title: str, discs: int, folder: Path, ending: str) 
     ]
 
 
+def _loop(loop: HysteresisLoop | None) -> dict[str, Any] | None:
+    if loop is None:
+        return None
+    return {
+        "torque_N_mm": loop.torque.tolist(),
+        "rising_output_angle_rad": loop.rising.tolist(),
+        "falling_output_angle_rad": loop.falling.tolist(),
+        "width_rad": loop.width.tolist(),
+        "energy_N_mm": loop.energy.tolist(),
+    }
+
+
 def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
     curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
     return {
@@ -351,8 +394,10 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
             "wheel_angle_rad": curve.wheel_angle.tolist(),
             "output_angle_rad": curve.output_angle.tolist(),
             "backlash_rad": curve.backlash.tolist(),
+            "lost_motion_part": curve.lost_motion_part,
             "lost_motion_rad": curve.lost_motion.tolist(),
             "stiffness_N_mm_per_rad": curve.stiffness.tolist(),
+            "hysteresis": _loop(curve.loop),
         },
         "transmission_error_orders": {
             "turns": found.turns,

@@ -302,6 +302,21 @@ SEAT_ROWS = (
     ("largest deflection of a wheel pin", "max_pin_deflection_mm", "mm", "{:.4f}"),
     ("largest deflection of a shaft pin", "max_shaft_pin_deflection_mm", "mm", "{:.4f}"),
 )
+FRICTION_ROWS = (
+    ("efficiency, mean", "mean_efficiency", "", "{:.4f}"),
+    ("  with the motion reversed", "mean_efficiency_back", "", "{:.4f}"),
+    ("  moves back (1) or locks itself (0)", "moves_back", "", "{:.0f}"),
+    ("torque of the cranks, mean", "mean_crank_torque_Nmm", "N·mm", "{:.1f}"),
+    ("power lost", "power_loss_W", "W", "{:.3g}"),
+    ("  flank on wheel pins", "power_loss_pin_W", "W", "{:.3g}"),
+    ("  seats of pins and sleeves", "power_loss_seat_W", "W", "{:.3g}"),
+    ("  holes on shaft pins", "power_loss_hole_W", "W", "{:.3g}"),
+    ("  rolling of the crank bearings", "power_loss_roller_W", "W", "{:.3g}"),
+    ("  bearings of cranks and wheel", "power_loss_support_bearing_W", "W", "{:.3g}"),
+    ("  seals and oil", "power_loss_no_load_W", "W", "{:.3g}"),
+    ("largest p·v at the flank", "max_pin_pv_MPa_m_s", "MPa m/s", "{:.4g}"),
+    ("largest p·v at the holes", "max_pin_shaft_pv_MPa_m_s", "MPa m/s", "{:.4g}"),
+)
 WALL_ROWS = (
     ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
     ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),
@@ -326,7 +341,9 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str],
         else ()
     )
     pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
-    seats = [row for row in SEAT_ROWS if any(row[1] in case for case in summaries.values())]
+    seats = [
+        row for row in (*SEAT_ROWS, *FRICTION_ROWS) if any(case.get(row[1]) is not None for case in summaries.values())
+    ]
     for title, key, unit, form in (*ROWS, *output, *seats, *shares, *RESIDUAL_ROWS, *pressed, *walls):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) if key in case else None for case in summaries.values()]

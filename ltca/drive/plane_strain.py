@@ -133,9 +133,7 @@ def require_frictionless(drive: Drive, model: str) -> None:
         With the fields of the table.
     """
     if drive.friction is not None:
-        raise DriveError(
-            [f"{_told('friction', drive.friction)}: must be left out for {model}, where nothing rubs"]
-        )
+        raise DriveError([f"{_told('friction', drive.friction)}: must be left out for {model}, where nothing rubs"])
 
 
 def _told(path: str, part: Any) -> str:

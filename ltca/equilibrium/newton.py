@@ -148,9 +148,7 @@ class Search:
             if active.size == 0:
                 break
             self.iterations[active] += 1
-            step, slope = _damped_step(
-                tangent, gradient, damping[active], bound[active], self.symmetric
-            )
+            step, slope = _damped_step(tangent, gradient, damping[active], bound[active], self.symmetric)
             taken, response, gradient, tangent, fraction = self.walk(active, step, slope, Start.onward(response))
             self.pose[active] = taken
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ltca.analysis.pressure_safety import PressureSafety
-from ltca.analysis.torque_curve import LOST_MOTION, TorqueCurve
+from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.figures.labelled_curves import COLOURS, STYLE
@@ -43,17 +43,23 @@ def draw_torque_curve(curve: TorqueCurve, title: str, stem: Path) -> Path:
         for number, angle in enumerate(curve.crank_angle):
             colour = COLOURS[number % len(COLOURS)]
             for axis in (axes, close):
-                axis.plot(curve.output_angle[number] * ARCMIN, torque, color=colour, label=f"{np.degrees(angle):.0f}°")
+                label = f"{np.degrees(angle):.0f}°"
+                if curve.loop is None:
+                    axis.plot(curve.output_angle[number] * ARCMIN, torque, color=colour, label=label)
+                    continue
+                for branch in (curve.loop.rising, curve.loop.falling):
+                    axis.plot(branch[number] * ARCMIN, curve.loop.torque / 1e3, color=colour, label=label)
+                    label = "_"
         for axis in (axes, close):
             axis.axhline(0.0, color="#7a7a7a", linewidth=0.6)
             axis.set_xlabel("angle of the output [′]")
         axes.set_ylabel("torque on the output [N m]")
         axes.legend(title="crank angle", frameon=False, fontsize=8.0)
-        part = LOST_MOTION * float(np.max(torque))
+        part = curve.lost_motion_part * float(np.max(torque))
         close.set_ylim(-2.0 * part, 2.0 * part)
         for side in (-part, part):
             close.axhline(side, color=COLOURS[2], linewidth=0.8, linestyle=(0, (4, 2)))
-        close.set_title("play; dashed ±3 % of the rated torque", fontsize=8.5)
+        close.set_title(f"play; dashed ±{100.0 * curve.lost_motion_part:g} % of the rated torque", fontsize=8.5)
         axes.set_title(title)
         return _save(figure, stem)
 

@@ -387,7 +387,27 @@ def _bores(drive: Drive) -> Iterator[str]:
         )
 
 
+def _friction(drive: Drive) -> Iterator[str]:
+    """Coefficients of joints that are not there, and support bearings without radius."""
+    friction, shaft = drive.friction, drive.pin_shaft
+    if friction is None:
+        return
+    seats = {drive.pin_wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
+    if friction.seat and seats == {"fixed"}:
+        yield (
+            f"friction.seat = {friction.seat:g}: must be left out, or 0, where no pin lies loose or carries a sleeve "
+            "(pin_wheel.seat, pin_shaft.seat)"
+        )
+    if friction.hole and shaft is None:
+        yield f"friction.hole = {friction.hole:g}: must be left out, or 0, without a pin shaft"
+    if bool(friction.support_bearing) != bool(friction.support_bearing_radius):
+        yield (
+            f"friction.support_bearing = {friction.support_bearing:g}, friction.support_bearing_radius = "
+            f"{friction.support_bearing_radius:g} mm: must be given together, or neither"
+        )
+
+
 FIRST = (find_deviation_problems, _tooth_numbers)
 """What the geometry needs."""
-BESIDE = (_pins, _bearing, _holes, _bores, _length_profiles)
+BESIDE = (_pins, _bearing, _holes, _bores, _length_profiles, _friction)
 """What is looked at whatever the flank is."""

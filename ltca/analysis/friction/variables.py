@@ -23,7 +23,11 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "pin_seat_slip_speed": ("pin", "mm/s", "the same at the speed of the drive"),
     "pin_seat_pv": ("pin", "MPa m/s", "largest pressure times slip speed in the seat"),
     "pin_shaft_friction_force": ("hole", "N", "friction force of hole and shaft pin, its size"),
-    "pin_shaft_slip": ("hole", "mm", "slip of the hole on the shaft pin by radian of the crank; 0 where it rolls there"),
+    "pin_shaft_slip": (
+        "hole",
+        "mm",
+        "slip of the hole on the shaft pin by radian of the crank; 0 where it rolls there",
+    ),
     "pin_shaft_slip_speed": ("hole", "mm/s", "the same at the speed of the drive"),
     "pin_shaft_friction_power": ("hole", "W", "power that the shaft pin takes, at hole and seat"),
     "pin_shaft_pv": ("hole", "MPa m/s", "pressure at mid-width times slip speed at the hole"),
