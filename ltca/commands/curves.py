@@ -17,8 +17,8 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
-    from ltca.analysis.friction.hysteresis import HysteresisLoop
     from ltca.analysis.engines import Engine
+    from ltca.analysis.friction.hysteresis import HysteresisLoop
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.rating_life import RatingLife
     from ltca.analysis.torque_curve import TorqueCurve

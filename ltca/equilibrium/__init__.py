@@ -6,6 +6,7 @@ Modules in the order data passes:
 reducer          A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel
                  for all
 shared_pins      Pins that bend under several discs: each disc finds the pins where the forces of the others have moved them
+friction         Friction of the joints: what slips, and the forces that follow
 supports         Springs on coordinates: crankshafts on their bearings, and the wheel on its own
 newton           Damped Newton iteration for the pose in which a batch of positions balances
 neighbours       Which positions of many are balanced first, and the poses of those between them: seen from the crank they

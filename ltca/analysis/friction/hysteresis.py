@@ -7,6 +7,7 @@ so the output comes back another way. Makers read lost motion in the middle of t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -88,7 +89,7 @@ def locked_path(
     found = solve_at_output(smooth, drive, angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [found.pose[:, WHEEL_ANGLE]]
-    for before, value in zip(path[:-1], path[1:], strict=True):
+    for before, value in pairwise(path):
         try:
             found = solve_at_output(with_friction(model, state), drive, angles, float(value), found.pose)
         except ConvergenceError as error:

@@ -130,7 +130,10 @@ def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: flo
         raise ValueError("losses are those of a drive with friction that turns")
     angle, parts = found.crank_angle, disc_responses(found.response)
     force = np.stack([np.zeros(0) if part.friction is None else np.abs(part.friction) for part in parts])
-    slips = [Slip.of_disc(disc.geometry, angle, part).by_crank for disc, part in zip(model.discs, parts, strict=True)]
+    slips = [
+        Slip.of_disc(disc.geometry, angle, found.pose[:, model.coordinates.columns(number)], part).by_crank
+        for number, (disc, part) in enumerate(zip(model.discs, parts, strict=True))
+    ]
     slip, pins = np.abs(np.stack(slips)), parts[0].pin_load.shape[1]
     wheel = _joint(force[..., :pins], slip[..., :pins], drive.pin_wheel, coefficients.pin, coefficients.seat)
     shaft = _joint(force[..., pins:], slip[..., pins:], drive.pin_shaft, coefficients.hole, coefficients.seat)

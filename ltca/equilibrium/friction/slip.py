@@ -5,8 +5,9 @@ of the pin against the disc there, :math:`\delta s = s_q \cdot \delta q + s_\var
 `ltca.geometry.pair_motion.PairMotion.along` holds are those of the pin's centre; the point of contact lies by the radius of
 the pin, or of the hole, aside, and turning bodies move it by so much more.
 
-By the crank angle alone the disc goes around with its eccentric and the wheel turns by 1/u: about a point at e·u from the
-wheel's axis, the pitch point, they roll on each other, and a flank contact slips by 1/u times its distance from there.
+As the drive turns the disc goes around with its eccentric and the wheel turns by 1/u: about a point at e·u from the wheel's
+axis, the pitch point, they roll on each other, and a flank contact slips by 1/u times its distance from there. The load goes
+around with the crank, and with it what plays and yielding displace the members by: e is that of the disc as it stands.
 """
 
 from __future__ import annotations
@@ -32,14 +33,14 @@ class Slip:
     by_pose : array, shape (positions, pairs, coordinates)
         ∂s/∂q, in mm/mm and mm/rad.
     by_crank : array, shape (positions, pairs)
-        ∂s/∂φ_C of the drive that turns, mm/rad.
+        ds/dφ_C of the drive that turns, mm/rad.
     """
 
     by_pose: FloatArray
     by_crank: FloatArray
 
     @classmethod
-    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, part: Response) -> Slip:
+    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response) -> Slip:
         """Return the slip of the contacts of one disc.
 
         Parameters
@@ -48,6 +49,8 @@ class Slip:
             Of the disc in its drive.
         crank_angle : array, shape (positions,)
             φ_C, rad.
+        pose : array, shape (positions, coordinates)
+            q of the disc.
         part : Response
             Its contacts.
         """
@@ -58,7 +61,10 @@ class Slip:
         flank[..., WHEEL_ANGLE] -= place.wheel_pin_radii
         holes[..., DISC_ROTATION] += place.hole_radii
         by_pose = np.concatenate((flank, holes), axis=1)
-        centre = place.race_velocity(crank_angle)[:, None]
-        by_crank = by_pose[..., X] * centre.real + by_pose[..., Y] * centre.imag
-        by_crank += by_pose[..., WHEEL_ANGLE] / place.reduction_ratio
-        return cls(by_pose=by_pose, by_crank=by_crank)
+        centre, rate = place.race_velocity(crank_angle), np.zeros(pose.shape)
+        for x in geometry.coordinates_of(pose).displacements:
+            rate[:, x], rate[:, x + 1] = -pose[:, x + 1], pose[:, x]
+        rate[:, X] += centre.real
+        rate[:, Y] += centre.imag
+        rate[:, WHEEL_ANGLE] = 1.0 / place.reduction_ratio
+        return cls(by_pose=by_pose, by_crank=np.einsum("bpj,bj->bp", by_pose, rate))

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -118,7 +119,7 @@ class StickingFriction:
         """Return what friction does to a disc; arguments as for `ltca.equilibrium.friction.turning.TurningFriction`."""
         if part.slopes is None:
             raise AssertionError("friction follows loads by their slopes")
-        slip, pins = Slip.of_disc(geometry, crank_angle, part), part.pin_load.shape[1]
+        slip, pins = Slip.of_disc(geometry, crank_angle, pose, part), part.pin_load.shape[1]
         load = np.concatenate((part.pin_load, part.hole_load), axis=1)
         coefficient = np.r_[np.full(pins, self.pin), np.full(load.shape[1] - pins, self.hole)]
         own = part.slopes.by_approach
@@ -147,7 +148,7 @@ class StickingFriction:
         return np.zeros(pushes[0].shape)
 
 
-def _state(model: ComplianceModel, found: Equilibrium, *, rubbed: bool) -> dict[str, NDArray[np.generic]]:
+def _state(model: ComplianceModel, found: Equilibrium, *, rubbed: bool) -> dict[str, Any]:
     parts = disc_responses(found.response)
     load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
     held = [part.friction for part in parts if part.friction is not None]

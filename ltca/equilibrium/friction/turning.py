@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ltca.compliance.response import Response, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
@@ -168,7 +168,7 @@ class TurningFriction:
         AssertionError
             When the contacts come without slopes.
         """
-        slip, pins = Slip.of_disc(geometry, crank_angle, part), part.pin_load.shape[1]
+        slip, pins = Slip.of_disc(geometry, crank_angle, pose, part), part.pin_load.shape[1]
         soft = ROLLING * geometry.placement.mean_eccentricity
         sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
         sense[:, :pins] *= self.pin
