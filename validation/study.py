@@ -10,7 +10,12 @@ from typing import Literal
 import numpy as np
 
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_plane_strain, require_rigid_members
+from ltca.drive.plane_strain import (
+    require_fixed_pins,
+    require_frictionless,
+    require_plane_strain,
+    require_rigid_members,
+)
 from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
@@ -111,8 +116,8 @@ def plan_study(
     for drive in drives.values():
         require_plane_strain(drive, "validation by full finite elements")
         require_rigid_members(drive, "validation by full finite elements")
-        require_fixed_pins(drive, "validation by full finite elements")
         require_frictionless(drive, "validation by full finite elements")
+        require_fixed_pins(drive, "validation by full finite elements")
     if not crank_angles:
         count = QUICK_ANGLES if level == "quick" else FULL_ANGLES
         teeth = next(iter(drives.values())).disc.number_of_teeth

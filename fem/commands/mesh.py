@@ -63,8 +63,8 @@ def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Name
     from ltca.drive.single_discs import single_discs
 
     require_rigid_members(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
     require_frictionless(drive, "full finite elements")
+    require_fixed_pins(drive, "full finite elements")
     print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
     singles = single_discs(drive)

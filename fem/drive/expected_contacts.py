@@ -321,8 +321,8 @@ def expect_contacts(
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
     _refuse_wheel_axis(drive)
     require_rigid_members(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
     require_frictionless(drive, "full finite elements")
+    require_fixed_pins(drive, "full finite elements")
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length

@@ -30,7 +30,12 @@ from fem.errors import MeshError
 from fem.mesh.element_size import DEFAULT_GROWTH
 from fem.shapes import DriveShapes
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_plane_strain, require_rigid_members
+from ltca.drive.plane_strain import (
+    require_fixed_pins,
+    require_frictionless,
+    require_plane_strain,
+    require_rigid_members,
+)
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
@@ -285,8 +290,8 @@ def solve_disc(
     """
     require_plane_strain(drive, "full finite elements")
     require_rigid_members(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
     require_frictionless(drive, "full finite elements")
+    require_fixed_pins(drive, "full finite elements")
     say, watch = progress or _silent, _Stopwatch()
     shapes = DriveShapes.of_drive(drive)
     guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)

@@ -236,8 +236,8 @@ def solve_reducer(
         When the meshes would not fit into memory.
     """
     require_rigid_members(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
     require_frictionless(drive, "full finite elements")
+    require_fixed_pins(drive, "full finite elements")
     singles = single_discs(drive)
     task = _Task(
         drive=drive,

@@ -190,8 +190,8 @@ class HalfSpace:
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         if self.method != "tables":
-            require_fixed_pins(drive, f"method {self.method}")
             require_frictionless(drive, f"method {self.method}")
+            require_fixed_pins(drive, f"method {self.method}")
         singles = single_discs(drive)
         supports, pins = support_stiffness(drive), SharedPins.of_drive(drive)
         friction = TurningFriction.of_drive(drive)

@@ -242,7 +242,8 @@ def batch_signature(drive: Drive) -> tuple[object, ...]:
     if shaft is not None and shaft.seat.kind != "fixed":
         behind += (shaft.seat, shaft.pin_radius)
     if drive.friction is not None:
-        behind += (drive.friction, drive.motion_sign, disc.disc_planes, drive.crank.support)
+        behind += (drive.friction, drive.motion_sign, drive.load.driven_by, drive.installation)
+        behind += (disc.disc_planes, drive.crank.support)
         behind += (wheel.seat, None if shaft is None else shaft.seat, wheel.pin_radius, shaft and shaft.pin_radius)
         behind += (bearing.inner_race_radius, bearing.roller_radius)
     return (

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from functools import cache, lru_cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_hints
 
 from pydantic.functional_validators import BeforeValidator
 
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
 from ltca.drive.units.quantities import QuantityCheck
 from ltca.errors import DriveError, nearest
@@ -231,11 +231,14 @@ def element_count(drive: Drive, path: str) -> int | None:
 
 
 def missing_part(drive: Drive, path: str) -> str | None:
-    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks, beams."""
+    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks, beams.
+
+    Coefficients of friction are zero where there is no friction: none of them is missing.
+    """
     if drive.pin_shaft is None and (path.startswith("disc.hole_errors") or ".hole_errors." in path):
         return "pin_shaft"
     part: Any = drive
-    tables = path.split(".")[:-1] if numbered(path) is None else []
+    tables = path.split(".")[:-1] if numbered(path) is None and not path.startswith("friction.") else []
     for depth, name in enumerate(tables):
         part = getattr(part, name)
         if part is None:
@@ -247,6 +250,7 @@ _OF_SEVERAL_CRANKS = ("crank.circle_radius", "crank.angle", "installation.first_
 _OF_PARTS = {
     "materials.shaft_pin.": "pin_shaft",
     "clearance.pin_hole": "pin_shaft",
+    "friction.hole": "pin_shaft",
     "materials.crankshaft.": "crank.support",
 }
 """What belongs to a part that may be left out without being in it."""
@@ -318,6 +322,7 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
 MAY_BE_LEFT_OUT = (
     "crank.circle_radius",
     "installation.first_stage_ratio",
+    "load.speed",
     "pin_shaft.seat.bore_radius",
     "pin_shaft.seat.pin_radius",
     "pin_shaft.stiffness",
@@ -368,7 +373,7 @@ def read_field(drive: Drive, path: str) -> Any:
     drive, path = _of_disc(drive, path)
     if (place := numbered(path)) is not None:
         return _own_value(drive, place[1], place[2], count)
-    value: Any = drive
+    value: Any = drive if drive.friction is not None else replace(drive, friction=Friction())
     for name in (_FOLLOWS.get(path) or path).split("."):
         value = getattr(value, name)
     if value is None and path in MAY_BE_LEFT_OUT:

@@ -121,8 +121,8 @@ def analyse_without_clearance(
 
 def _refuse_clearance(drive: Drive) -> None:
     require_rigid_members(drive, "the clearance-free analysis")
-    require_fixed_pins(drive, "the clearance-free analysis")
     require_frictionless(drive, "the clearance-free analysis")
+    require_fixed_pins(drive, "the clearance-free analysis")
     require_one_bore(drive, "the clearance-free analysis")
     problems = [
         f"clearance.{name} = {value:g} mm: must be 0 mm for the clearance-free analysis"

@@ -84,6 +84,7 @@ _NEEDED = {
     "pin_shaft.beam": ("span", "tip"),
     "pin_wheel.beam": ("span", "ends"),
     "crank.support": ("diameter", "positions", "stiffness"),
+    "friction": (),
 }
 """What a part that may be left out is made of."""
 

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ComplianceModel, ContactPressures
 from ltca.drive.parts import Drive
@@ -65,6 +66,22 @@ class SampleBatch:
         push = bearing_forces(self.model, self.full.crank_angle, self.full.response)
         shape = (self.samples, push.shape[0] // self.samples, -1)
         return push.real.reshape(shape), push.imag.reshape(shape)
+
+    def losses(self) -> Losses:
+        """What friction costs, of all rows; the speed of the cranks is that of the first sample (`power_loss`)."""
+        each = self.full.crank_angle.size // self.samples
+        torque = np.repeat([drive.load.torque for drive in self.drives], each)
+        return losses(self.model, self.drives[0], self.full, torque)
+
+    def efficiency(self) -> FloatArray:
+        """1 − mean loss/mean input of each sample."""
+        found = self.losses()
+        return np.asarray(1.0 - self.by_sample(found.total).mean(axis=1) / self.by_sample(found.driving).mean(axis=1))
+
+    def power_loss(self) -> FloatArray:
+        """Mean power of all losses of each sample, W; not a number without speed."""
+        speed = np.array([np.nan if drive.crank_speed is None else drive.crank_speed for drive in self.drives])
+        return np.asarray(self.by_sample(self.losses().total).mean(axis=1) * speed * 1e-3)
 
     def _at_output(self, pose: FloatArray) -> FloatArray:
         """Deviation of the output, arcsec."""
@@ -177,6 +194,11 @@ QUANTITIES: dict[str, Quantity] = {
     "mean_loaded_pin_shaft_pins": _quantity(
         "1", "loaded shaft pins, mean", lambda b: b.loaded(b.full.response.hole_load)
     ),
+    "mean_efficiency": _quantity("1", "efficiency, mean", lambda b: b.efficiency()),
+    "mean_input_torque": _quantity(
+        "N mm", "torque of the input, mean", lambda b: b.by_sample(b.losses().input_torque).mean(axis=1)
+    ),
+    "power_loss": _quantity("W", "power lost, mean", lambda b: b.power_loss()),
     "ptp_transmission_error_light": _quantity(
         "arcsec",
         "transmission error at the light torque, peak to peak",
@@ -197,6 +219,8 @@ DEFAULT_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quan
 
 OF_THE_PIN_SHAFT = ("max_pin_shaft_load", "max_pin_shaft_pressure_mid", "mean_loaded_pin_shaft_pins")
 """What a drive without pin shaft has not."""
+OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
+"""What a drive without friction has not; the last needs a speed as well."""
 
 
 def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
@@ -207,14 +231,18 @@ def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ..
     DriveError
         When a name is not one of them, or none of this drive.
     """
-    missing = OF_THE_PIN_SHAFT if drive.pin_shaft is None else ()
+    missing = dict.fromkeys(OF_THE_PIN_SHAFT, "pin shaft (pin_shaft)") if drive.pin_shaft is None else {}
+    if drive.friction is None:
+        missing |= dict.fromkeys(OF_FRICTION, "friction ([friction])")
+    elif drive.load.speed is None:
+        missing |= {"power_loss": "speed (load.speed)"}
     if names is not None:
         names = check_quantities(names)
     if names is None or names == tuple(QUANTITIES):
         return tuple(name for name in (names or DEFAULT_QUANTITIES) if name not in missing)
     absent = [name for name in names if name in missing]
     if absent:
-        raise DriveError([f"{name}: {drive.name} has no pin shaft" for name in absent])
+        raise DriveError([f"{name}: {drive.name} has no {missing[name]}" for name in absent])
     return names
 
 

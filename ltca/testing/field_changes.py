@@ -56,13 +56,22 @@ GOES_WITH = {
     "materials.crankshaft": "crank.support",
     "materials.sleeve": "pin_wheel.seat",
     "materials.wheel_seat": "pin_wheel.seat",
+    "load.speed": "friction",
+    "load.driven_by": "friction",
+    "friction": "friction",
 }
-"""Materials of what a drive may have not: with what they are refused."""
-_LEFT_OUT = {"pin_wheel.support_stiffness": 5e5, "installation.first_stage_ratio": 2.0, "crank.circle_radius": 6.0}
+"""What goes with something that a drive may have not, or a model not know: with what it is refused."""
+_LEFT_OUT = {
+    "load.speed": 1500.0,
+    "pin_wheel.support_stiffness": 5e5,
+    "installation.first_stage_ratio": 2.0,
+    "crank.circle_radius": 6.0,
+}
 """What may be left out, and a value that a person could give."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _OTHER_WORD = {
     "load.direction": {"ccw": "cw", "cw": "ccw"},
+    "load.driven_by": {"input": "output", "output": "input"},
     "installation.held": {"pin-shaft": "pin-wheel", "pin-wheel": "pin-shaft"},
     "pin_wheel.beam.ends": {"supported": "clamped", "clamped": "supported"},
     "pin_shaft.beam.tip": {"free": "tied-clamped", "tied-clamped": "tied-pinned", "tied-pinned": "free"},
@@ -200,6 +209,13 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
     kinds |= {f"materials.{part}.{name}": kind for part, kind in (("wheel_seat", "slot"), ("sleeve", "sleeve"))}
     if path in kinds and wheel.seat.kind != kinds[path]:
         return _seat(drive, "pin_wheel", kinds[path])
+    if path.startswith("friction.") or path in ("load.driven_by", "load.speed"):
+        needed = {} if drive.friction is not None else {"friction.pin": 0.05, "friction.hole": 0.04 * bool(shaft)}
+        if path.startswith("friction.support_bearing"):
+            needed |= {"friction.support_bearing": 0.002, "friction.support_bearing_radius": 10.0}
+        if path == "friction.seat" and wheel.seat.kind == "fixed":
+            needed |= _seat(drive, "pin_wheel", "slot") | {path: 0.02}
+        return needed
     if path in ("pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius") and shaft and shaft.seat.kind == "fixed":
         return _seat(drive, "pin_shaft", "sleeve")
     if path.startswith("pin_wheel.beam.") and wheel.beam is None:
@@ -212,7 +228,12 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
 def is_refused_by_name(path: str, told: str) -> bool:
     """Tell whether a refusal names a field, its table, or what a material goes with."""
     table = path.rpartition(".")[0]
-    return path in told or table in told or GOES_WITH.get(table, path) in told
+    return path in told or table in told or goes_with(path) in told
+
+
+def goes_with(path: str) -> str:
+    """Return what a refusal of a field names: the field, or what it goes with."""
+    return GOES_WITH.get(path) or GOES_WITH.get(path.rpartition(".")[0], path)
 
 
 def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:

@@ -26,7 +26,7 @@ from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
-from ltca.testing.field_changes import EXCEPTIONS, GOES_WITH, change_of, leaf_fields, moves, sensible_change
+from ltca.testing.field_changes import EXCEPTIONS, change_of, goes_with, leaf_fields, moves, sensible_change
 
 BASE = load_drive(Path(__file__).parent / "drive.toml").cases["nominal"]
 ANGLES = np.array([0.5])
@@ -42,6 +42,9 @@ def numbers(analysis):
     arrays = [analysis.full.pose, analysis.light.pose, contacts.pin_load, contacts.hole_load]
     arrays += [contacts.rollers.outer_load, contacts.rollers.inner_load]
     arrays += [array for kind in kinds for array in (kind.mid, kind.largest, kind.half_width)]
+    if analysis.losses is not None:
+        found = analysis.losses
+        arrays += [found.watts(found.total), found.input_torque, found.efficiency, analysis.losses_back.input_torque]
     return np.concatenate([array.ravel() for array in arrays])
 
 
@@ -143,8 +146,7 @@ def test_every_field_is_used_or_refused(model, path, models, answers):
         refused = str(error)
     if refused:
         # What a part is made of goes with what the drive has it for.
-        named = GOES_WITH.get(path.rpartition(".")[0], path)
-        assert named in refused, f"{path} is refused without its name: {refused}"
+        assert goes_with(path) in refused, f"{path} is refused without its name: {refused}"
         return
     before = known(answers, model, base, answer)
     if path in EXCEPTIONS[model]:

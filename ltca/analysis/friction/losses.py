@@ -106,7 +106,7 @@ class Losses:
         return np.asarray(per_radian * self.crank_speed * 1e-3)
 
 
-def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: float) -> Losses:
+def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: float | FloatArray) -> Losses:
     """Return what friction costs.
 
     Parameters
@@ -114,10 +114,10 @@ def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: flo
     model : ComplianceModel
         What balanced, with the friction of a drive that turns.
     drive : Drive
-        The drive.
+        The drive, or one of a batch of drives that agree in what friction and installation are.
     found : Equilibrium
         Balanced positions.
-    torque : float
+    torque : float or array, shape (positions,)
         Output torque they balance, N·mm.
 
     Raises
@@ -152,7 +152,7 @@ def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: flo
     part = drive.input_per_crank_moment or 1.0
     moments = part * crank_moments(model, angle, found.pose, found.response).sum(axis=1)
     moments += friction.motion * np.sign(input_turns) * coefficients.no_load_torque
-    at_output = np.full(angle.shape, torque / abs(drive.reduction_ratio))
+    at_output = np.broadcast_to(torque / np.abs(drive.reduction_ratio), angle.shape)
     driven_by_input = friction.motion == drive.driving_sign
     speed = drive.crank_speed
     return Losses(

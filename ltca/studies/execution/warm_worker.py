@@ -7,10 +7,10 @@ from threadpoolctl import threadpool_limits
 
 from ltca.reading.drive_file import load_drive
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
-from ltca.studies.quantities import DEFAULT_QUANTITIES
+from ltca.studies.quantities import quantities_for
 
 threadpool_limits(1)
 
 # The tables of line contact do not depend on the drive; solving one position of any drive builds them all.
 _ANY = next(iter(load_drive("paper").cases.values()))
-analyse_samples([_ANY], BatchSettings(crank_angle=np.zeros(1), quantities=DEFAULT_QUANTITIES))
+analyse_samples([_ANY], BatchSettings(crank_angle=np.zeros(1), quantities=quantities_for(_ANY, None)))

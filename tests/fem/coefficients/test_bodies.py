@@ -305,7 +305,7 @@ def test_cases_share_their_nominal_shape(paper_cases):
     assert nominal_shape(paper_cases["CS-6"]).bore_radius == pytest.approx(29.515)
 
 
-LEFT_OUT = ("pin_wheel.support_stiffness", "installation.first_stage_ratio", "crank.circle_radius")
+LEFT_OUT = ("pin_wheel.support_stiffness", "installation.first_stage_ratio", "crank.circle_radius", "load.speed")
 TABLES_LEFT_OUT = ("crank.support", "pin_wheel.seat", "pin_wheel.beam", "pin_shaft.seat", "pin_shaft.beam")
 
 
