@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from ltca.analysis.engines import Engine
     from ltca.analysis.loaded_analysis import LoadedAnalysis
+    from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
     from ltca.reading.drive_file import DriveFile
@@ -172,6 +173,7 @@ def _solve_and_write(
         files.append("pressure.nc")
     print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
     yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
+    print(_verdicts(analyses, summaries, file.limits))
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
     if any(one.pressures.rigid_shaft_pins and one.drive.pin_shaft is not None for one in analyses.values()):
         print(RIGID_SHAFT_PINS)
@@ -186,6 +188,22 @@ def _solve_and_write(
     if figures:
         _draw(dataset, fields, cases, out / "figures")
     return ConvergenceError.exit_status if failures else 0
+
+
+def _verdicts(
+    analyses: dict[str, LoadedAnalysis], summaries: dict[str, dict[str, float | None]], limits: dict[str, Limits]
+) -> str:
+    """The checks that have a limit, case by case; nothing of cases without an answer everywhere."""
+    from ltca.analysis.verdict.judgement import judge
+    from ltca.analysis.verdict.values import find_values
+    from ltca.commands.check import verdict_table
+
+    told = []
+    for name, analysis in analyses.items():
+        if analysis.is_complete:
+            checks = judge(analysis.drive, find_values(analysis, summaries[name]), limits[name])
+            told += [f"verdict on {name}" if len(analyses) > 1 else "verdict", verdict_table(checks, limited=True)]
+    return "\n".join([*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"])
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:

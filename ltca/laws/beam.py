@@ -162,6 +162,47 @@ class PinBeam:
         """
         return np.asarray(-self._held(np.asarray(planes, dtype=float), width)[2])
 
+    def moments(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
+        """Return bending moments under unit forces of the discs, mm, shape (places, discs + 1).
+
+        The last column is that of the far end moved by one, N (by mm).
+
+        Parameters
+        ----------
+        at : array, shape (places,)
+            From the start of the pin, mm.
+        planes, width
+            As for `flexibility`.
+
+        Examples
+        --------
+        >>> pin = PinBeam(span=20.0, ends=("supported", "supported"), diameter=10.0, youngs_modulus=2e5)
+        >>> print(f"{abs(pin.moments(np.array([10.0]), [10.0], 1e-3)[0, 0]):.3f}")  # F L/4
+        5.000
+        """
+        held, low, high = self._internal(planes, width)
+        place = np.asarray(at, dtype=float)[:, None]
+        covered = np.clip(place - low, 0.0, high - low)
+        spread = np.zeros((place.shape[0], held.shape[1]))
+        spread[:, :-1] = covered * (place - low - 0.5 * covered) / width
+        return np.asarray(held[0] * place + held[1] + spread)
+
+    def shears(self, at: FloatArray, planes: Sequence[float], width: float) -> FloatArray:
+        """Return shear forces in the place of the moments of `moments`, N by N, and N/mm for the far end."""
+        held, low, high = self._internal(planes, width)
+        place = np.asarray(at, dtype=float)[:, None]
+        spread = np.zeros((place.shape[0], held.shape[1]))
+        spread[:, :-1] = np.clip(place - low, 0.0, high - low) / width
+        return np.asarray(held[0] + spread)
+
+    def _internal(self, planes: Sequence[float], width: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What holds the start, disc by disc and for the far end moved by one; where each force begins and ends."""
+        middle, moved = np.asarray(planes, dtype=float), np.zeros(6)
+        moved[4] = 1.0
+        tip = np.linalg.solve(self._conditions(), moved) if self.ends[1] != "free" else np.zeros(6)
+        held = np.concatenate([self._held(middle, width), tip[:, None]], axis=1)
+        return held, middle - 0.5 * width, middle + 0.5 * width
+
     @property
     def tip_stiffness(self) -> float:
         """Force that moves the far end by one where no disc presses, N/mm."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
@@ -20,6 +21,8 @@ from ltca.reading.physical_checks import find_contradictions
 from ltca.reading.toml_text import parse_toml, read_text
 
 NOMINAL_CASE = "nominal"
+BESIDE_THE_DRIVE = ("tolerances", "limits")
+"""Tables of a drive file that are no part of a drive."""
 MOST_NAMES = 10
 """Names of cases in one message."""
 MANY_CASES = 300
@@ -42,6 +45,8 @@ class DriveFile:
         One complete drive for each case, in the order of the file.
     tolerances : dict of str to Distribution
         How fields scatter, by dotted path; for studies alone.
+    limits : dict of str to dict of str to Limit
+        What results of each case may reach, by case and key (`ltca.drive.members.limits`).
     text : str
         What was read.
     """
@@ -50,6 +55,7 @@ class DriveFile:
     source: str
     cases: dict[str, Drive]
     tolerances: Tolerances
+    limits: dict[str, Limits]
     text: str
 
     def select(self, names: list[str] | None) -> dict[str, Drive]:
@@ -115,7 +121,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     """Validate the text of a drive file; see `load_drive`."""
     table = parse_toml(text, source)
     cases = table.pop("case", [])
-    scatter = table.pop("tolerances", {})
+    scatter, bounds = table.pop("tolerances", {}), table.pop("limits", {})
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
     # Mistakes of the common part come back in every case: the base is validated alone, first.
@@ -123,6 +129,8 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     base = _validate(table, base_problems)
     tolerances = parse_tolerances(scatter, problems, base)
     named = _named_cases(cases, problems)
+    limits = parse_limits(bounds, problems)
+    own = {name: parse_limits(overrides.pop("limits", {}), problems) for name, overrides in named.items()}
     if base_problems or base is None:
         raise DriveError(problems + base_problems, source)
     drives: dict[str, Drive] = {}
@@ -141,7 +149,10 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     problems = problems or find_absent(tolerances, drives.values())
     if problems:
         raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
-    return DriveFile(name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, text=text)
+    each = {name: {**limits, **own.get(name, {})} for name in drives}
+    return DriveFile(
+        name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, limits=each, text=text
+    )
 
 
 def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], int]:
@@ -237,7 +248,7 @@ _ADAPTER = TypeAdapter(Drive)
 def build_drive(table: dict[str, Any]) -> Drive:
     """Return the drive of nested plain tables (as in a drive file without cases), fully checked.
 
-    Tolerances are no part of a drive and are passed over.
+    Tolerances and limits are no part of a drive and are passed over.
 
     Raises
     ------
@@ -245,7 +256,7 @@ def build_drive(table: dict[str, Any]) -> Drive:
         With every mistake.
     """
     problems: list[str] = []
-    drive = _validate({name: value for name, value in table.items() if name != "tolerances"}, problems)
+    drive = _validate({name: value for name, value in table.items() if name not in BESIDE_THE_DRIVE}, problems)
     if drive is not None:
         problems += explain_contradictions(drive, find_contradictions(drive))
     if problems or drive is None:

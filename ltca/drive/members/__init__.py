@@ -5,6 +5,7 @@ Modules in the order data passes:
 ==========  ============================================================
 operation   How the drive is built in and used: the member that is held, load, speed, and what rubs
 crank       Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
+limits      ``[limits]`` of a drive file: what its results may reach, by the names of the summary, each with its source
 pins        Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
 pin_checks  What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of bounds
 ==========  ============================================================

@@ -1,0 +1,203 @@
+"""Which inputs drive a value, and how much of which would mend it.
+
+Every input is changed by a little, with what belongs to it, and the drive is solved again, on half-spaces: elasticities
+d ln v/d ln x of all values come from one solution for each input. What a change would have to be follows from a power law,
+so it is about as much as said, and nothing is said of changes beyond `FARTHEST`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, isfinite, log
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.summary import summarise
+from ltca.analysis.verdict.judgement import Check
+from ltca.analysis.verdict.values import Value, find_values
+from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.parts import Drive
+from ltca.drive.units.table import label
+from ltca.errors import CycloError
+from ltca.reading.changes import with_fields
+
+FloatArray = NDArray[np.float64]
+
+STEP = 0.01
+"""Change of an input, as a part of it; half of it where the whole makes no drive."""
+FARTHEST = 3.0
+"""Factor on an input up to which a power law is followed."""
+LEAST = 0.02
+"""Elasticity below which an input is not said to drive a value."""
+TOLD = 3
+"""Inputs that are told of each value."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Driver:
+    """An input that drives a value.
+
+    Attributes
+    ----------
+    input : str
+        Field, or the name of a group of fields that belong together.
+    elasticity : float
+        d ln value/d ln input.
+    change : str
+        What would bring the value to its limit, in words; empty where nothing within `FARTHEST` does.
+    factor : float or None
+        The same as a factor.
+    """
+
+    input: str
+    elasticity: float
+    change: str
+    factor: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Input:
+    name: str
+    start: float | None
+    unit: str
+    changed: Callable[[float], dict[str, Any]]
+
+
+def advise(
+    drive: Drive, checks: Sequence[Check], crank_angle: FloatArray, torque: float | None = None
+) -> dict[str, list[Driver]]:
+    """Return what drives every value that has a limit, the strongest first, by quantity.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    checks : sequence of Check
+        Of it (`ltca.analysis.verdict.judgement`).
+    crank_angle : array, shape (positions,)
+        φ_C at which values are compared, rad.
+    torque : float, optional
+        Output torque, N·mm; the drive's own by default.
+    """
+    wanted = {check.value.quantity: check for check in checks if check.limit is not None and check.value.value}
+    if not wanted:
+        return {}
+    base = _values(drive, crank_angle, torque)
+    found: dict[str, list[Driver]] = {quantity: [] for quantity in wanted}
+    for one in _inputs(drive):
+        for step in (STEP, -STEP, 0.5 * STEP, -0.5 * STEP):
+            try:
+                changed = _values(with_fields(drive, one.changed(1.0 + step)), crank_angle, torque)
+            except CycloError:
+                continue
+            break
+        else:
+            continue
+        for quantity, check in wanted.items():
+            before, after = base.get(quantity), changed.get(quantity)
+            if not before or not after or before * after <= 0.0:
+                continue
+            elasticity = log(after / before) / log(1.0 + step)
+            if abs(elasticity) >= LEAST:
+                found[quantity].append(_driver(one, elasticity, check))
+    return {
+        quantity: sorted(drivers, key=lambda driver: -abs(driver.elasticity)) for quantity, drivers in found.items()
+    }
+
+
+def _driver(one: _Input, elasticity: float, check: Check) -> Driver:
+    safety = check.safety
+    if safety is None or safety <= 0.0 or check.verdict == "pass" or check.limit is None:
+        return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
+    wanted = log(safety) / elasticity * (1.0 if check.limit.sense == "max" else -1.0)
+    if not isfinite(wanted) or abs(wanted) > log(FARTHEST):
+        return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
+    factor = exp(wanted)
+    told = f"× {factor:.3g}"
+    if one.start is not None:
+        told = f"{one.start:.4g} → {factor * one.start:.4g}{f' {label(one.unit)}' if label(one.unit) else ''}"
+    return Driver(input=one.name, elasticity=elasticity, change=told, factor=factor)
+
+
+def _values(drive: Drive, crank_angle: FloatArray, torque: float | None) -> dict[str, float | None]:
+    analysis = analyse(drive, crank_angle, torque)
+    found: list[Value] = find_values(analysis, summarise(analysis))
+    return {value.quantity: value.value for value in found}
+
+
+def _inputs(drive: Drive) -> list[_Input]:
+    """What a designer turns: sizes with what belongs to them, torque, materials, friction."""
+
+    def field(path: str, beside: Mapping[str, Callable[[float, float], Any]] | None = None) -> _Input | None:
+        try:
+            start = read_field(drive, path)
+        except CycloError:
+            return None
+        if not start:
+            return None
+
+        def changed(factor: float) -> dict[str, Any]:
+            extra = {other: how(read_field(drive, other), (factor - 1.0) * start) for other, how in (beside or {}).items()}
+            return {path: factor * start, **extra}
+
+        return _Input(name=path, start=float(start), unit=field_kinds()[path].unit, changed=changed)
+
+    def grown(value: float, more: float) -> float:
+        return value + more
+
+    def shrunk(value: float, more: float) -> float:
+        return value - 2.0 * more
+
+    shaft = drive.pin_shaft is not None
+    wide = drive.crank_bearing.roller_length
+    thickness = drive.disc.thickness
+    hole = {"pin_shaft.hole_radius": grown} if shaft else {}
+    chosen = [
+        field("load.torque"),
+        field("disc.thickness", {"crank_bearing.roller_length": lambda value, more: value * (1.0 + more / thickness)}),
+        field("crank_bearing.roller_length") if wide < 0.98 * thickness else None,
+        field("crank_bearing.roller_radius", {"crank_bearing.inner_race_radius": shrunk}),
+        field("pin_wheel.pin_radius"),
+        field("crank.eccentricity", hole),
+        field("pin_shaft.pin_radius", hole) if shaft else None,
+        field("pin_shaft.pin_circle_radius") if shaft else None,
+        field("pin_shaft.stiffness") if shaft and drive.pin_shaft is not None and drive.pin_shaft.stiffness else None,
+        field("materials.disc.youngs_modulus"),
+        field("disc.equidistant_offset"),
+        field("disc.shifting_offset"),
+        field("clearance.bearing"),
+        field("clearance.pin_hole"),
+        field("pin_wheel.beam.diameter"),
+        field("pin_shaft.beam.diameter"),
+        field("load.speed"),
+        *(field(f"friction.{name}") for name in ("pin", "seat", "hole", "roller", "support_bearing", "no_load_torque")),
+    ]
+    return [_all_sizes(drive), *(one for one in chosen if one is not None)]
+
+
+def _all_sizes(drive: Drive) -> _Input:
+    """Every length of pins, disc, bearing and eccentricity alike; clearances, offsets and deviations stay."""
+    paths = (
+        "crank.eccentricity", "pin_wheel.pin_circle_radius", "pin_wheel.pin_radius", "disc.thickness",
+        "crank_bearing.inner_race_radius", "crank_bearing.outer_race_radius", "crank_bearing.roller_radius",
+        "crank_bearing.roller_length", "crank.circle_radius", "pin_shaft.pin_circle_radius", "pin_shaft.pin_radius",
+        "pin_shaft.hole_radius", "pin_wheel.beam.span", "pin_wheel.beam.diameter", "pin_shaft.beam.span",
+        "pin_shaft.beam.diameter", "pin_wheel.seat.radius", "pin_wheel.seat.pin_radius", "pin_wheel.seat.bore_radius",
+        "pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius", "disc.planes",
+    )  # fmt: skip
+
+    def changed(factor: float) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for path in paths:
+            try:
+                value = read_field(drive, path)
+            except CycloError:
+                continue
+            found[path] = tuple(factor * one for one in value) if isinstance(value, tuple) else factor * value
+        return found
+
+    return _Input(name="all sizes", start=None, unit="", changed=changed)

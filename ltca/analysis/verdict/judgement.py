@@ -1,0 +1,224 @@
+"""Limits of each value, from the drive file or its materials, safety and verdict.
+
+A limit of the drive file stands before that of a material. What geometry itself demands (a wall of more than nothing) is a
+limit of zero, what a theory demands (half-spaces, sampling) is that theory's bound: these move with no design, and say so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from ltca.analysis.extremes import RESOLVED
+from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
+from ltca.analysis.verdict.values import Value
+from ltca.drive.materials import Material
+from ltca.drive.members.limits import Limit
+from ltca.drive.parts import Drive
+
+Verdict = Literal["pass", "fail", "no limit", "not known"]
+
+TITLES = {
+    "undercut_margin": "undercut: pin radius to spare",
+    "wall": "thinnest wall",
+    "pin_hollow_margin": "hollow of the flank against the pin",
+    "roller_gap": "gap between rollers",
+    "interference": "assembly: overlap at rest",
+    "mean_loaded_pins": "contact ratio: loaded wheel pins, mean",
+    "backlash_disc": "backlash at the disc",
+    "backlash_wheel": "backlash at the wheel",
+    "backlash_output": "backlash at the output",
+    "ptp_transmission_error": "transmission error, peak to peak",
+    "pin_load": "largest load of a wheel pin",
+    "roller_load": "largest load of a roller",
+    "pin_shaft_load": "largest load of a shaft pin",
+    "bearing_load": "largest load of a crank bearing",
+    "pin_pressure_mid": "flank pressure",
+    "pin_shaft_pressure_mid": "hole pressure",
+    "roller_pressure_mid": "roller pressure",
+    "pin_seat_pressure": "pressure in wheel-pin seats",
+    "hole_seat_pressure": "pressure in shaft-pin sleeves",
+    "disc_shear": "shear below the surface of the disc",
+    "shear_depth": "depth of that shear",
+    "wheel_pin_bending_stress": "bending of wheel pins",
+    "wheel_pin_shear_stress": "shear of wheel pins",
+    "shaft_pin_bending_stress": "bending of shaft pins",
+    "shaft_pin_shear_stress": "shear of shaft pins",
+    "root_stress": "stress along lobe roots",
+    "bore_stress": "stress along bores",
+    "hole_stress": "stress along holes (ligaments)",
+    "bearing_life_hours": "life of the crank bearings, L10",
+    "bearing_life_million_turns": "life of the crank bearings, L10",
+    "static_safety": "static safety S0 of the crank bearings",
+    "mean_efficiency": "efficiency, mean",
+    "mean_efficiency_back": "efficiency, motion reversed",
+    "moves_back": "moves back",
+    "power_loss": "power lost",
+    "pin_pv": "p·v at the flank",
+    "pin_shaft_pv": "p·v at the holes",
+    "pin_seat_pv": "p·v in wheel-pin seats",
+    "hole_seat_pv": "p·v in shaft-pin sleeves",
+    "half_width_ratio": "half-width by radius",
+    "contact_strain": "strain of the flank contact, p/E",
+    "distinct_mesh_phases": "different places in a mesh period",
+    "pin_deflection": "deflection of wheel pins",
+    "shaft_pin_deflection": "deflection of shaft pins",
+    "crank_deflection": "deflection of cranks",
+    "wheel_deflection": "deflection of the wheel on its bearing",
+}
+"""What each quantity is called in tables."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Check:
+    """A value, its limit and the verdict.
+
+    Attributes
+    ----------
+    value : Value
+        What is judged.
+    limit : Limit or None
+        By what.
+    """
+
+    value: Value
+    limit: Limit | None
+
+    @property
+    def title(self) -> str:
+        """What is looked at, in words."""
+        return TITLES[self.value.quantity]
+
+    @property
+    def safety(self) -> float | None:
+        """Limit by value where the value is to be less, value by limit where it is to be more; None where neither counts."""
+        value, limit = self.value.value, self.limit
+        if value is None or limit is None or limit.value == 0.0 or value == 0.0:
+            return None
+        return limit.value / value if limit.sense == "max" else value / limit.value
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the value keeps its limit."""
+        value, limit = self.value.value, self.limit
+        if limit is None:
+            return "not known" if value is None else "no limit"
+        if value is None:
+            return "not known"
+        kept = value <= limit.value if limit.sense == "max" else value >= limit.value
+        return "pass" if kept else "fail"
+
+
+def judge(drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit]) -> list[Check]:
+    """Return a check for every value and limit; one without a limit for values that have none.
+
+    Parameters
+    ----------
+    drive : Drive
+        For its materials.
+    values : sequence of Value
+        Of one case.
+    limits : mapping of str to Limit
+        Of the drive file.
+    """
+    checks = []
+    for value in values:
+        own = [limits[key] for key in (f"max_{value.quantity}", f"min_{value.quantity}") if key in limits]
+        found = own or [*_of_materials(drive, value), *_of_nature(value)]
+        checks += [Check(value=value, limit=limit) for limit in found] or [Check(value=value, limit=None)]
+    told = {value.quantity for value in values}
+    for limit in limits.values():
+        if limit.quantity not in told:
+            reason = "there is none in this drive, or this engine cannot say it"
+            checks.append(Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit))
+    return checks
+
+
+def _of_nature(value: Value) -> list[Limit]:
+    """What geometry and theories demand."""
+    least = {name: 0.0 for name in ("undercut_margin", "wall", "pin_hollow_margin", "roller_gap")}
+    if value.quantity in least:
+        return [_limit(value, "min", 0.0, "geometry: less is no part")]
+    if value.quantity == "half_width_ratio":
+        return [_limit(value, "max", HALF_WIDTH_BOUND, "theory of half-spaces (ltca.analysis.half_width_guard)")]
+    if value.quantity == "distinct_mesh_phases":
+        return [_limit(value, "min", float(RESOLVED), "sampling (ltca.analysis.extremes)")]
+    return []
+
+
+def _of_materials(drive: Drive, value: Value) -> list[Limit]:
+    """The lowest allowable of the materials that a value is one of."""
+    parts, quantity = drive.materials, value.quantity
+    disc, flank_pin, hole_pin = ("disc", parts.disc), _flank_pin(drive), _hole_pin(drive)
+    pressed = {
+        "pin_pressure_mid": (disc, flank_pin),
+        "pin_shaft_pressure_mid": (disc, hole_pin),
+        "roller_pressure_mid": (disc, ("roller", parts.roller), ("inner_race", parts.inner_race)),
+        "pin_seat_pressure": (("wheel_pin", parts.wheel_pin), _seat(drive)),
+        "hole_seat_pressure": (("shaft_pin", parts.shaft_pin), ("sleeve", parts.sleeve)),
+    }
+    if quantity in pressed:
+        given = [(part.allowable_pressure, name) for name, part in pressed[quantity] if part.allowable_pressure is not None]
+        return _lowest(value, given, "allowable_pressure")
+    bent = {"wheel": ("wheel_pin", parts.wheel_pin), "shaft": ("shaft_pin", parts.shaft_pin)}
+    which, _, rest = quantity.partition("_pin_")
+    if rest in ("bending_stress", "shear_stress"):
+        name, part = bent[which]
+        factor, how = (1.0, "yield_strength") if rest.startswith("bending") else (3.0**-0.5, "yield_strength/√3")
+        return [] if part.yield_strength is None else _lowest(value, [(factor * part.yield_strength, name)], how)
+    if quantity in ("root_stress", "bore_stress", "hole_stress"):
+        given = [] if parts.disc.yield_strength is None else [(parts.disc.yield_strength, "disc")]
+        return _lowest(value, given, "yield_strength")
+    if quantity == "contact_strain":
+        given = [
+            (part.yield_strength / part.youngs_modulus, name)
+            for name, part in (disc, flank_pin)
+            if part.yield_strength is not None
+        ]
+        return [
+            _limit(value, "max", 1.67 * strain, f"{FIRST_YIELD} of materials.{name}.yield_strength / youngs_modulus")
+            for strain, name in sorted(given)[:1]
+        ]
+    if quantity == "shear_depth" and parts.disc.hardness_depth is not None:
+        return [_limit(value, "max", parts.disc.hardness_depth, "materials.disc.hardness_depth")]
+    if quantity == "disc_shear":
+        return _shear(value, parts.disc)
+    return []
+
+
+FIRST_YIELD = "1.67: first yield below a line contact (Johnson, Contact Mechanics, 1985, sect. 4.2)"
+SHEAR_BY_HARDNESS = 0.4
+"""Shear strength by Vickers hardness, MPa by HV (ISO/TS 6336-4)."""
+
+
+def _shear(value: Value, disc: Material) -> list[Limit]:
+    if disc.hardness is not None:
+        return [_limit(value, "max", SHEAR_BY_HARDNESS * disc.hardness, "0.4 HV of materials.disc.hardness (ISO/TS 6336-4)")]
+    if disc.yield_strength is not None:
+        return [_limit(value, "max", 0.5 * disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")]
+    return []
+
+
+def _lowest(value: Value, given: list[tuple[float, str]], field: str) -> list[Limit]:
+    return [_limit(value, "max", number, f"materials.{name}.{field}") for number, name in sorted(given)[:1]]
+
+
+def _limit(value: Value, sense: str, number: float, source: str) -> Limit:
+    return Limit(quantity=value.quantity, sense=sense, value=number, source=source)
+
+
+def _flank_pin(drive: Drive) -> tuple[str, Material]:
+    sleeved = drive.pin_wheel.seat.kind == "sleeve"
+    return ("sleeve", drive.materials.sleeve) if sleeved else ("wheel_pin", drive.materials.wheel_pin)
+
+
+def _hole_pin(drive: Drive) -> tuple[str, Material]:
+    shaft = drive.pin_shaft
+    sleeved = shaft is not None and shaft.seat.kind == "sleeve"
+    return ("sleeve", drive.materials.sleeve) if sleeved else ("shaft_pin", drive.materials.shaft_pin)
+
+
+def _seat(drive: Drive) -> tuple[str, Material]:
+    slot = drive.pin_wheel.seat.kind == "slot"
+    return ("wheel_seat", drive.materials.wheel_seat) if slot else ("sleeve", drive.materials.sleeve)

@@ -1,0 +1,242 @@
+"""What is judged: values with the part and the crank angle where they are reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.friction.variables import friction_values
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.results import seat_values
+from ltca.analysis.summary import refined_value
+from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
+from ltca.analysis.verdict.pin_stress import pin_stress
+from ltca.contact.subsurface import line_contact_shear
+from ltca.drive.members.limits import LIMITED
+from ltca.drive.single_discs import single_discs
+
+FloatArray = NDArray[np.float64]
+
+DEEPEST_SHEAR = 0.786
+"""Depth of the largest shear stress below a line contact, in half-widths (Johnson, Contact Mechanics, 1985, sect. 4.2)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """One quantity of a case.
+
+    Attributes
+    ----------
+    quantity : str
+        One of `ltca.drive.members.limits.LIMITED`.
+    value : float or None
+        In its unit there; None where it cannot be said.
+    part : str
+        Where it is reached: pin, roller or hole with its number and disc; empty for the whole drive.
+    crank_angle : float or None
+        φ_C there, rad.
+    reason : str
+        Why it cannot be said.
+    """
+
+    quantity: str
+    value: float | None
+    part: str = ""
+    crank_angle: float | None = None
+    reason: str = ""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return LIMITED[self.quantity]
+
+
+def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> list[Value]:
+    """Return everything that may be judged of one case.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        The case.
+    summary : mapping of str to (float or None)
+        Its scalars (`ltca.analysis.summary.summarise`).
+    """
+    found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
+    return [*found, *_of_theory(analysis, summary), *_of_supports(analysis), *_of_friction(analysis, summary)]
+
+
+def _of_shape(analysis: LoadedAnalysis) -> Iterator[Value]:
+    singles = single_discs(analysis.drive)
+    yield _least("undercut_margin", [(_disc(number, singles), undercut_margin(one)) for number, one in enumerate(singles)])
+    yield _least("pin_hollow_margin", [(_disc(number, singles), pin_hollow_margin(one)) for number, one in enumerate(singles)])
+    yield _least(
+        "wall",
+        [(" ".join((name, _disc(number, singles))).strip(), wall) for number, one in enumerate(singles) for name, wall in walls(one)],
+    )
+    yield Value(quantity="roller_gap", value=roller_gap(analysis.drive), part="between neighbouring rollers")
+
+
+def _least(quantity: str, named: list[tuple[str, float]]) -> Value:
+    part, value = min(named, key=lambda item: item[1])
+    if not isfinite(value):
+        return Value(quantity=quantity, value=None, reason="the flank has no hollow")
+    return Value(quantity=quantity, value=value, part=part)
+
+
+def _disc(number: int, discs: list[object] | tuple[object, ...]) -> str:
+    return "" if len(discs) == 1 else f"of disc {number}"
+
+
+def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
+    contacts, pressures, angle = analysis.full.response, analysis.pressures, analysis.full.crank_angle
+    for key in ("backlash_disc_arcmin", "backlash_wheel_arcmin", "backlash_output_arcmin", "interference_mm"):
+        yield Value(quantity=key.rpartition("_")[0], value=summary[key])
+    yield Value(quantity="mean_loaded_pins", value=summary["mean_loaded_pins"])
+    yield Value(quantity="ptp_transmission_error", value=refined_value(summary, "ptp_transmission_error_arcsec"))
+    roller = np.maximum(pressures.outer.mid, pressures.inner.mid)
+    bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)
+    for quantity, key, each, name in (
+        ("pin_load", "max_pin_load_N", contacts.pin_load, "wheel pin"),
+        ("roller_load", "max_roller_load_N", contacts.rollers.outer_load, "roller"),
+        ("pin_shaft_load", "max_pin_shaft_load_N", contacts.hole_load, "shaft pin"),
+        ("bearing_load", "max_bearing_load_N", bearing, "bearing"),
+        ("pin_pressure_mid", "max_pin_pressure_mid_MPa", pressures.pins.mid, "wheel pin"),
+        ("roller_pressure_mid", "max_roller_pressure_mid_MPa", roller, "roller"),
+        ("pin_shaft_pressure_mid", "max_pin_shaft_pressure_mid_MPa", pressures.holes.mid, "shaft pin"),
+    ):
+        if each.shape[1]:
+            yield _largest(analysis, quantity, each, name, refined_value(summary, key))
+
+
+def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
+    """Stress and deflection of pins, pressure of their seats."""
+    for pins, name in (("wheel", "wheel pin"), ("shaft", "shaft pin")):
+        stress = pin_stress(analysis, "wheel" if pins == "wheel" else "shaft")
+        for kind in ("bending", "shear"):
+            quantity = f"{pins}_pin_{kind}_stress"
+            if stress is None:
+                yield Value(quantity=quantity, value=None, reason=f"{name}s are no beams (pin_{pins}.beam)")
+            else:
+                yield _largest(analysis, quantity, getattr(stress, kind), name, discs=1)
+    each = [seat_values(disc) for disc in analysis.discs]
+    for quantity, variable, name in (
+        ("pin_seat_pressure", "pin_seat_pressure_max", "wheel pin"),
+        ("hole_seat_pressure", "hole_seat_pressure_max", "shaft pin"),
+        ("pin_deflection", "pin_deflection", "wheel pin"),
+        ("shaft_pin_deflection", "shaft_pin_deflection", "shaft pin"),
+    ):
+        if variable in each[0]:
+            yield _largest(analysis, quantity, np.concatenate([one[variable] for one in each], axis=1), name)
+
+
+def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
+    """Stresses of the disc: along its walls where the engine knows them, and below its contacts."""
+    for wall in ("root", "bore", "hole"):
+        if not analysis.wall_stresses:
+            told = "half-spaces have no walls (--compliance fe or hybrid)"
+            yield Value(quantity=f"{wall}_stress", value=None, reason=told)
+            continue
+        parts = [np.asarray(getattr(walls_of, wall)) for walls_of in analysis.wall_stresses]
+        each = np.concatenate([part.reshape(part.shape[0], -1) for part in parts], axis=1)
+        if np.any(np.isfinite(each)):
+            yield _largest(analysis, f"{wall}_stress", each, {"root": "lobe", "bore": "bore", "hole": "hole"}[wall])
+    pressures = analysis.pressures
+    shear = [
+        (line_contact_shear(kind.mid, np.zeros_like(kind.mid)), name)
+        for kind, name in ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
+        if kind.mid.size
+    ]
+    yield _most(_largest(analysis, "disc_shear", each, f"below {name}") for each, name in shear)
+    kinds = ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
+    yield _most(
+        _largest(analysis, "shear_depth", DEEPEST_SHEAR * kind.half_width, f"below {name}")
+        for kind, name in kinds
+        if kind.half_width.size
+    )
+
+
+def _of_theory(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
+    """How far half-spaces and samples stand for what they stand for."""
+    drive, pressures = analysis.drive, analysis.pressures
+    radius = np.minimum(analysis.full.response.flank.effective_radius, drive.pin_wheel.pin_radius)
+    ratios = (
+        (pressures.pins.half_width / radius, "wheel pin"),
+        (np.maximum(pressures.outer.half_width, pressures.inner.half_width) / drive.crank_bearing.roller_radius, "roller"),
+    )
+    yield _most(_largest(analysis, "half_width_ratio", each, name) for each, name in ratios)
+    softer = min(drive.materials.disc.youngs_modulus, drive.flank_pin.youngs_modulus)
+    yield _largest(analysis, "contact_strain", pressures.pins.mid / softer, "wheel pin")
+    yield Value(quantity="distinct_mesh_phases", value=summary["distinct_mesh_phases"])
+
+
+def _of_supports(analysis: LoadedAnalysis) -> Iterator[Value]:
+    moved, coordinates = np.abs(analysis.crank_deflections), analysis.model.coordinates
+    if moved.shape[2]:
+        yield _largest(analysis, "crank_deflection", moved.reshape(moved.shape[0], -1), "crank")
+    if coordinates.wheel:
+        place = analysis.full.pose[:, coordinates.wheel_place]
+        yield _largest(analysis, "wheel_deflection", np.hypot(place[:, :1], place[:, 1:]), "", discs=1)
+
+
+def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
+    if analysis.losses is None:
+        for quantity in ("mean_efficiency", "pin_pv"):
+            yield Value(quantity=quantity, value=None, reason="nothing rubs ([friction] is left out)")
+        return
+    for quantity, key in (
+        ("mean_efficiency", "mean_efficiency"),
+        ("mean_efficiency_back", "mean_efficiency_back"),
+        ("moves_back", "moves_back"),
+        ("power_loss", "power_loss_W"),
+    ):
+        missing = "there is no speed (load.speed)" if summary[key] is None else ""
+        yield Value(quantity=quantity, value=summary[key], reason=missing)
+    seats = [seat_values(disc) for disc in analysis.discs]
+    given = {name: np.stack([one[name] for one in seats]) for name in seats[0]}
+    for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
+        given[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
+    values = friction_values(analysis, given)
+    for quantity, part in (("pin_pv", "wheel pin"), ("pin_seat_pv", "wheel pin"), ("pin_shaft_pv", "shaft pin"), ("hole_seat_pv", "shaft pin")):
+        if quantity not in values or not values[quantity].size:
+            continue
+        each = np.concatenate(list(values[quantity]), axis=1)
+        if np.any(np.isfinite(each)):
+            yield _largest(analysis, quantity, each, part)
+        else:
+            yield Value(quantity=quantity, value=None, reason="there is no speed (load.speed)")
+
+
+def _most(values: Iterable[Value]) -> Value:
+    """The largest of one quantity at several kinds of contacts."""
+    return max(values, key=lambda one: -1.0 if one.value is None else one.value)
+
+
+def _largest(
+    analysis: LoadedAnalysis,
+    quantity: str,
+    values: FloatArray,
+    name: str,
+    refined: float | None = None,
+    discs: int | None = None,
+) -> Value:
+    """Largest of values by position and pair; the refined one where there is one, at the place of the sampled."""
+    if not np.any(np.isfinite(values)):
+        return Value(quantity=quantity, value=None, reason="the engine cannot say it")
+    position, pair = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    count = len(analysis.model.discs) if discs is None else discs
+    disc, number = divmod(int(pair), values.shape[1] // count)
+    alone = values.shape[1] == count
+    part = name if alone else f"{name} {number}"
+    if count > 1:
+        part = f"{part} of disc {disc}"
+    largest = float(values[position, pair])
+    return Value(
+        quantity=quantity,
+        value=largest if refined is None else max(refined, largest),
+        part=part,
+        crank_angle=float(analysis.full.crank_angle[position]),
+    )

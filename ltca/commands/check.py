@@ -1,0 +1,200 @@
+"""``cyclo check``: a verdict on a design, with what drives each value and what would mend it."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+    torque_argument,
+)
+from ltca.commands.compliance_arguments import add_compliance_arguments
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ltca.analysis.verdict.advice import Driver
+    from ltca.analysis.verdict.judgement import Check
+    from ltca.drive.members.limits import Limits
+    from ltca.drive.parts import Drive
+
+SUMMARY = "judge a design: value, limit and safety of every check, what drives it and what would mend it"
+DEFAULT_POSITIONS = 360
+ADVICE_POSITIONS = 60
+"""Positions at which changed drives are compared."""
+BESIDE = 1e-3
+FAILED = 1
+WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_drive_argument(parser)
+    add_case_argument(parser, "case, repeatable; default all")
+    parser.add_argument(
+        "--positions",
+        metavar="N",
+        type=count_argument("--positions", 2, 100_000),
+        default=DEFAULT_POSITIONS,
+        help=f"crank positions of a turn; default {DEFAULT_POSITIONS}",
+    )
+    parser.add_argument(
+        "--torque", metavar="T", type=torque_argument, help="output torque in N mm (or a text such as '377.3 N m')"
+    )
+    parser.add_argument("--no-advice", action="store_true", help="verdicts alone, without what drives each value")
+    add_compliance_arguments(parser)
+    add_out_argument(parser, "check")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Judge every case, print and write the checks; exit status 1 when one fails."""
+    from ltca.commands.compliance_arguments import check_compliance, compliance_of, find_coefficients_of
+    from ltca.output.files import write_json
+    from ltca.output.progress import progress
+    from ltca.output.run_folder import claimed_folder, require_folder
+    from ltca.reading.drive_file import load_drive
+
+    check_compliance(arguments)
+    file = load_drive(arguments.drive)
+    cases = file.select(arguments.case)
+    out = arguments.out or default_folder(file.name, "check")
+    require_folder(out)
+    from ltca.analysis.memory_need import require_room_for
+
+    require_room_for(cases.values(), arguments.positions, out, f"--positions {arguments.positions}")
+    engine, contents, failed = compliance_of(arguments), {}, 0
+    with claimed_folder(out, "check", writes=["check.json"]):
+        find_coefficients_of(cases, arguments)
+        with progress("cases", len(cases)) as advance:
+            for name, drive in cases.items():
+                checks, drivers = _judge(drive, file.limits[name], engine, arguments)
+                contents[name] = [_entry(check, name, drivers) for check in checks]
+                failed += sum(check.verdict == "fail" for check in checks)
+                print(f"{file.name} {name}, {drive.load_words(arguments.torque)}")
+                print(verdict_table(checks))
+                print(_advice(checks, drivers), end="")
+                advance(name)
+        write_json(
+            out / "check.json", {"drive": file.name, "verdict": "fail" if failed else "pass", "cases": contents}
+        )
+    print(f"results: {out / 'check.json'}")
+    return FAILED if failed else 0
+
+
+def _judge(
+    drive: Drive, limits: Limits, engine: Any, arguments: argparse.Namespace
+) -> tuple[list[Check], dict[str, list[Driver]]]:
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis.summary import summarise
+    from ltca.analysis.verdict.advice import advise
+    from ltca.analysis.verdict.judgement import judge
+    from ltca.analysis.verdict.values import find_values
+    from ltca.geometry.placement import position_angles
+
+    analysis = analyse(drive, position_angles(arguments.positions), arguments.torque, engine.with_coefficients(drive))
+    checks = judge(drive, find_values(analysis, summarise(analysis)), limits)
+    if arguments.no_advice:
+        return checks, {}
+    # Between those of a turn, so that nothing is refined.
+    angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + BESIDE
+    return checks, advise(drive, checks, angles, arguments.torque)
+
+
+def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
+    """Return the checks as a table.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        Of one case.
+    limited : bool
+        Whether those without a limit are counted only.
+    """
+    shown = [check for check in checks if check.limit is not None or not limited]
+    rows = [("check", "value", "limit", "safety", "verdict", "where")]
+    for check in shown:
+        value, limit = check.value, check.limit
+        unit = "" if value.unit == "1" else f" {_symbol(value.unit)}"
+        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
+        safety = "" if check.safety is None else f"{check.safety:.3f}"
+        told = "–" if value.value is None else f"{value.value:.5g}{unit}"
+        rows.append((check.title, told, bound, safety, WORDS[check.verdict], _where(check)))
+    widths = [max(len(row[column]) for row in rows) for column in range(5)]
+    lines = [
+        f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]:>{widths[3]}}  "
+        f"{row[4]:<{widths[4]}}  {row[5]}".rstrip()
+        for row in rows
+    ]
+    counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
+    lines.append(
+        f"  {counts['pass']} passed, {counts['fail']} failed, {counts['no limit']} without a limit, {counts['not known']} not known"
+    )
+    return "\n".join(lines)
+
+
+def _symbol(unit: str) -> str:
+    return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
+
+
+def _where(check: Check) -> str:
+    from math import degrees
+
+    value = check.value
+    if value.value is None:
+        return value.reason
+    at = "" if value.crank_angle is None else f"φ_C = {degrees(value.crank_angle):.4g}°"
+    return ", ".join(part for part in (value.part, at) if part)
+
+
+def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:
+    """What drives what fails, and what would mend it."""
+    from ltca.analysis.verdict.advice import TOLD
+
+    lines = []
+    for check in checks:
+        if check.verdict != "fail":
+            continue
+        limit = check.limit
+        source = "" if limit is None else f" (limit: {limit.source})"
+        lines.append(f"  {check.title} fails{source}")
+        each = drivers.get(check.value.quantity, ())
+        helping = [driver for driver in each if driver.change]
+        for driver in helping[: 2 * TOLD]:
+            lines.append(f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+.2f})")
+        if each and not helping:
+            named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:TOLD])
+            lines.append(f"    driven by {named}; no single change by a factor of three mends it")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _entry(check: Check, case: str, drivers: Mapping[str, Sequence[Driver]]) -> dict[str, Any]:
+    value, limit = check.value, check.limit
+    return {
+        "check": check.title,
+        "quantity": value.quantity,
+        "unit": value.unit,
+        "value": value.value,
+        "limit": None if limit is None else limit.value,
+        "sense": None if limit is None else limit.sense,
+        "source": None if limit is None else limit.source,
+        "safety": check.safety,
+        "verdict": check.verdict,
+        "case": case,
+        "part": value.part,
+        "crank_angle_rad": value.crank_angle,
+        "reason": value.reason,
+        "drivers": [
+            {
+                "input": driver.input,
+                "elasticity": driver.elasticity,
+                "change": driver.change,
+                "factor": driver.factor,
+            }
+            for driver in drivers.get(value.quantity, ())
+        ],
+    }
