@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from ltca.commands.compliance_arguments import add_compliance_arguments
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
@@ -13,7 +14,6 @@ from ltca.reading.arguments import (
     default_folder,
     torque_argument,
 )
-from ltca.commands.compliance_arguments import add_compliance_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -79,9 +79,7 @@ def execute(arguments: argparse.Namespace) -> int:
                 print(verdict_table(checks))
                 print(_advice(checks, drivers), end="")
                 advance(name)
-        write_json(
-            out / "check.json", {"drive": file.name, "verdict": "fail" if failed else "pass", "cases": contents}
-        )
+        write_json(out / "check.json", {"drive": file.name, "verdict": "fail" if failed else "pass", "cases": contents})
     print(f"results: {out / 'check.json'}")
     return FAILED if failed else 0
 
@@ -131,9 +129,8 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
         for row in rows
     ]
     counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
-    lines.append(
-        f"  {counts['pass']} passed, {counts['fail']} failed, {counts['no limit']} without a limit, {counts['not known']} not known"
-    )
+    words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
+    lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
     return "\n".join(lines)
 
 
@@ -164,8 +161,10 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
         lines.append(f"  {check.title} fails{source}")
         each = drivers.get(check.value.quantity, ())
         helping = [driver for driver in each if driver.change]
-        for driver in helping[: 2 * TOLD]:
-            lines.append(f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+.2f})")
+        lines += [
+            f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+.2f})"
+            for driver in helping[: 2 * TOLD]
+        ]
         if each and not helping:
             named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:TOLD])
             lines.append(f"    driven by {named}; no single change by a factor of three mends it")

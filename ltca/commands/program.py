@@ -22,7 +22,20 @@ from ltca.errors import CycloError, did_you_mean, printable
 from ltca.output.terminal import prepare_streams
 
 GROUP = "cyclo.commands"
-ORDER = ("run", "check", "show", "init", "curves", "tolerance", "sweep", "optimise", "mesh", "fem", "derive", "validate")
+ORDER = (
+    "run",
+    "check",
+    "show",
+    "init",
+    "curves",
+    "tolerance",
+    "sweep",
+    "optimise",
+    "mesh",
+    "fem",
+    "derive",
+    "validate",
+)
 USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
 DEBUG = "--debug"

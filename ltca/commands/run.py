@@ -203,7 +203,9 @@ def _verdicts(
         if analysis.is_complete:
             checks = judge(analysis.drive, find_values(analysis, summaries[name]), limits[name])
             told += [f"verdict on {name}" if len(analyses) > 1 else "verdict", verdict_table(checks, limited=True)]
-    return "\n".join([*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"])
+    return "\n".join(
+        [*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"]
+    )
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:

@@ -16,6 +16,7 @@ from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_h
 
 from pydantic.functional_validators import BeforeValidator
 
+from ltca.drive.materials import MAY_BE_UNKNOWN, PARTS
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
 from ltca.drive.units.quantities import QuantityCheck
@@ -320,6 +321,7 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
 
 
 MAY_BE_LEFT_OUT = (
+    *(f"materials.{part}.{name}" for part in PARTS for name in MAY_BE_UNKNOWN),
     "crank.circle_radius",
     "installation.first_stage_ratio",
     "load.speed",

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.deviations import STRICT, NonNegativeLength
+from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength
 from ltca.drive.units.quantities import quantity
 
 
@@ -21,10 +21,32 @@ class Material:
         MPa.
     poisson_ratio : float
         Between 0 and 0.5.
+    allowable_pressure : float or None
+        Largest pressure of a contact that the surface endures, MPa.
+    yield_strength : float or None
+        MPa.
+    hardness : float or None
+        Of the surface, HV.
+    hardness_depth : float or None
+        Depth of the case that is so hard, mm; hard throughout when left out.
+    density : float or None
+        kg/m³.
+    thermal_expansion : float or None
+        By length, 1/K; counts where the drive has temperatures.
+
+    Notes
+    -----
+    What may be left out moves no load: strength, hardness and density are what results are judged by.
     """
 
     youngs_modulus: Annotated[float, quantity("MPa", gt=0.0)] = 206_000.0
     poisson_ratio: Annotated[float, quantity("dimensionless", ge=0.0, lt=0.5)] = 0.3
+    allowable_pressure: Annotated[float, quantity("MPa", gt=0.0)] | None = None
+    yield_strength: Annotated[float, quantity("MPa", gt=0.0)] | None = None
+    hardness: Annotated[float, quantity("dimensionless", gt=0.0)] | None = None
+    hardness_depth: PositiveLength | None = None
+    density: Annotated[float, quantity("kg/m³", gt=0.0)] | None = None
+    thermal_expansion: Annotated[float, quantity("1/K", gt=-1e-3, lt=1e-3)] | None = None
 
     @property
     def plane_strain_compliance(self) -> float:
@@ -44,6 +66,14 @@ class Materials:
     crankshaft: Material = field(default_factory=Material)
     wheel_seat: Material = field(default_factory=Material)
     sleeve: Material = field(default_factory=Material)
+
+
+PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin", "crankshaft", "wheel_seat", "sleeve")
+"""Fields of `Materials`."""
+JUDGED_BY = ("allowable_pressure", "yield_strength", "hardness", "hardness_depth", "density")
+"""Fields of a material that move no load."""
+MAY_BE_UNKNOWN = (*JUDGED_BY, "thermal_expansion")
+"""Fields of a material that may be left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

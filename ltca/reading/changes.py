@@ -10,9 +10,11 @@ from pydantic import ValidationError
 
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
 from ltca.drive.fields import field_kind, is_element, missing_part, no_entry, not_a_field, numbered, read_field
+from ltca.drive.materials import PARTS
+from ltca.drive.members.named_materials import named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import DriveError, shortened
 from ltca.reading.physical_checks import find_contradictions
 
 
@@ -24,7 +26,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     drive : Drive
         The drive to start from.
     values : mapping of str to value
-        New values by dotted path, see `read_field`.
+        New values by dotted path, see `read_field`; ``materials.disc`` and the like take a material's name.
     check : bool
         Whether to look for physical contradictions as well.
 
@@ -43,6 +45,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     tree: dict[str, Any] = {}
     arrays: dict[str, list[Any]] = {}
     whole = {}
+    values = _without_names(values)
     for path, value in values.items():
         parent, _, last = path.rpartition(".")
         if is_element(last) and field_kind(parent) is not None:
@@ -77,6 +80,22 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     if problems:
         raise DriveError(problems)
     return changed
+
+
+def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Named materials as their numbers, which numbers given beside them replace."""
+    named = {f"materials.{part}" for part in PARTS} & values.keys()
+    if not named:
+        return values
+    found: dict[str, Any] = {}
+    for path in sorted(named):
+        if not isinstance(values[path], str):
+            raise DriveError([f"{path} = {shortened(values[path])}: must be the name of a material"])
+        try:
+            found |= {f"{path}.{name}": number for name, number in numbers_of(named_material(values[path])).items()}
+        except DriveError as error:
+            raise DriveError([f"{path} = {problem}" for problem in error.problems]) from error
+    return found | {path: value for path, value in values.items() if path not in named}
 
 
 _NEEDED = {

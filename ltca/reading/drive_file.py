@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from ltca.drive.members.limits import Limits, parse_limits
+from ltca.drive.members.named_materials import LIKE, with_named_materials
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
@@ -230,6 +231,10 @@ def _parts(drive: Drive) -> dict[str, Any]:
 
 
 def _merged(below: Any, value: Any) -> Any:
+    if isinstance(value, dict) and LIKE in value:
+        return value  # a named material has all of its own
+    if isinstance(below, str) and isinstance(value, dict):
+        return {LIKE: below, **value}  # numbers beside the name below
     if (
         not isinstance(below, dict)
         or not isinstance(value, dict)
@@ -265,8 +270,12 @@ def build_drive(table: dict[str, Any]) -> Drive:
 
 
 def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
+    unnamed: list[str] = []
+    table = with_named_materials(table, unnamed)
+    problems += unnamed
     try:
-        return _ADAPTER.validate_python(table)
+        drive = _ADAPTER.validate_python(table)
     except ValidationError as error:
         problems += describe_mistakes(error.errors())
         return None
+    return None if unnamed else drive

@@ -141,7 +141,9 @@ def _inputs(drive: Drive) -> list[_Input]:
             return None
 
         def changed(factor: float) -> dict[str, Any]:
-            extra = {other: how(read_field(drive, other), (factor - 1.0) * start) for other, how in (beside or {}).items()}
+            extra = {
+                other: how(read_field(drive, other), (factor - 1.0) * start) for other, how in (beside or {}).items()
+            }
             return {path: factor * start, **extra}
 
         return _Input(name=path, start=float(start), unit=field_kinds()[path].unit, changed=changed)

@@ -56,7 +56,10 @@ def walls(single: Drive) -> Iterator[tuple[str, float]]:
         yield "between neighbouring bores", 2.0 * (circle * sin(pi / crank.number) - bore)
     else:
         yield "between bore and root circle", root - bore
-    yield "between neighbouring wheel pins", 2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - _outside(single))
+    yield (
+        "between neighbouring wheel pins",
+        2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - _outside(single)),
+    )
     for name, part in (("wheel", wheel), ("shaft", shaft)):
         if part is not None and part.seat.kind == "sleeve":
             yield f"of the sleeves on {name} pins", part.pin_radius - (part.seat.bore_radius or 0.0)

@@ -137,7 +137,7 @@ def judge(drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit]) ->
 
 def _of_nature(value: Value) -> list[Limit]:
     """What geometry and theories demand."""
-    least = {name: 0.0 for name in ("undercut_margin", "wall", "pin_hollow_margin", "roller_gap")}
+    least = dict.fromkeys(("undercut_margin", "wall", "pin_hollow_margin", "roller_gap"), 0.0)
     if value.quantity in least:
         return [_limit(value, "min", 0.0, "geometry: less is no part")]
     if value.quantity == "half_width_ratio":
@@ -159,7 +159,9 @@ def _of_materials(drive: Drive, value: Value) -> list[Limit]:
         "hole_seat_pressure": (("shaft_pin", parts.shaft_pin), ("sleeve", parts.sleeve)),
     }
     if quantity in pressed:
-        given = [(part.allowable_pressure, name) for name, part in pressed[quantity] if part.allowable_pressure is not None]
+        given = [
+            (part.allowable_pressure, name) for name, part in pressed[quantity] if part.allowable_pressure is not None
+        ]
         return _lowest(value, given, "allowable_pressure")
     bent = {"wheel": ("wheel_pin", parts.wheel_pin), "shaft": ("shaft_pin", parts.shaft_pin)}
     which, _, rest = quantity.partition("_pin_")
@@ -194,7 +196,9 @@ SHEAR_BY_HARDNESS = 0.4
 
 def _shear(value: Value, disc: Material) -> list[Limit]:
     if disc.hardness is not None:
-        return [_limit(value, "max", SHEAR_BY_HARDNESS * disc.hardness, "0.4 HV of materials.disc.hardness (ISO/TS 6336-4)")]
+        return [
+            _limit(value, "max", SHEAR_BY_HARDNESS * disc.hardness, "0.4 HV of materials.disc.hardness (ISO/TS 6336-4)")
+        ]
     if disc.yield_strength is not None:
         return [_limit(value, "max", 0.5 * disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")]
     return []

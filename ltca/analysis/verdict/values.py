@@ -71,11 +71,19 @@ def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -
 
 def _of_shape(analysis: LoadedAnalysis) -> Iterator[Value]:
     singles = single_discs(analysis.drive)
-    yield _least("undercut_margin", [(_disc(number, singles), undercut_margin(one)) for number, one in enumerate(singles)])
-    yield _least("pin_hollow_margin", [(_disc(number, singles), pin_hollow_margin(one)) for number, one in enumerate(singles)])
+    yield _least(
+        "undercut_margin", [(_disc(number, singles), undercut_margin(one)) for number, one in enumerate(singles)]
+    )
+    yield _least(
+        "pin_hollow_margin", [(_disc(number, singles), pin_hollow_margin(one)) for number, one in enumerate(singles)]
+    )
     yield _least(
         "wall",
-        [(" ".join((name, _disc(number, singles))).strip(), wall) for number, one in enumerate(singles) for name, wall in walls(one)],
+        [
+            (" ".join((name, _disc(number, singles))).strip(), wall)
+            for number, one in enumerate(singles)
+            for name, wall in walls(one)
+        ],
     )
     yield Value(quantity="roller_gap", value=roller_gap(analysis.drive), part="between neighbouring rollers")
 
@@ -165,7 +173,10 @@ def _of_theory(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) ->
     radius = np.minimum(analysis.full.response.flank.effective_radius, drive.pin_wheel.pin_radius)
     ratios = (
         (pressures.pins.half_width / radius, "wheel pin"),
-        (np.maximum(pressures.outer.half_width, pressures.inner.half_width) / drive.crank_bearing.roller_radius, "roller"),
+        (
+            np.maximum(pressures.outer.half_width, pressures.inner.half_width) / drive.crank_bearing.roller_radius,
+            "roller",
+        ),
     )
     yield _most(_largest(analysis, "half_width_ratio", each, name) for each, name in ratios)
     softer = min(drive.materials.disc.youngs_modulus, drive.flank_pin.youngs_modulus)
@@ -200,7 +211,12 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
     for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
         given[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
     values = friction_values(analysis, given)
-    for quantity, part in (("pin_pv", "wheel pin"), ("pin_seat_pv", "wheel pin"), ("pin_shaft_pv", "shaft pin"), ("hole_seat_pv", "shaft pin")):
+    for quantity, part in (
+        ("pin_pv", "wheel pin"),
+        ("pin_seat_pv", "wheel pin"),
+        ("pin_shaft_pv", "shaft pin"),
+        ("hole_seat_pv", "shaft pin"),
+    ):
         if quantity not in values or not values[quantity].size:
             continue
         each = np.concatenate(list(values[quantity]), axis=1)

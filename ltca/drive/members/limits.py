@@ -129,7 +129,9 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
         name = _without_unit(name)
         if sense not in SENSES or name not in LIMITED:
             known = [f"{one}_{quantity}" for quantity in LIMITED for one in SENSES]
-            problems.append(f"{path}: is no limit; limits are max_… or min_… of a quantity{did_you_mean(str(key), known)}")
+            problems.append(
+                f"{path}: is no limit; limits are max_… or min_… of a quantity{did_you_mean(str(key), known)}"
+            )
             continue
         value, source = entry, f"[{where}]"
         if isinstance(entry, Mapping):
@@ -141,7 +143,9 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
         try:
             number = _quantity(unit)(value)
         except PydanticCustomError as error:
-            problems.append(f"{path} = {shortened(value)}: {error.message()}{f' ({label(unit)})' if unit != '1' else ''}")
+            problems.append(
+                f"{path} = {shortened(value)}: {error.message()}{f' ({label(unit)})' if unit != '1' else ''}"
+            )
             continue
         limit = Limit(quantity=name, sense=sense, value=number, source=source)
         if limit.key in found:

@@ -1,0 +1,256 @@
+"""Materials by name: ``materials.disc = "PA12"`` stands for numbers that ship as data, each with its scatter and source."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from ltca.drive.materials import PARTS, Material, Materials
+from ltca.errors import DriveError, nearest, shortened
+
+FILE = "named_materials.toml"
+LIKE = "like"
+"""Key of a table that takes what it does not say from a named material."""
+MOST_OTHER = 3
+"""Numbers in which a material may differ from a named one and still be told as like it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SourcedNumber:
+    """One number of a named material.
+
+    Attributes
+    ----------
+    value : float
+        In the unit of the field.
+    low, high : float
+        What parts called so are known to have.
+    source : str
+        Where the value is from.
+    scatter_source : str
+        Where the scatter is from.
+    confirmed : bool
+        Whether the source of the value was looked up.
+    """
+
+    value: float
+    low: float
+    high: float
+    source: str
+    scatter_source: str
+    confirmed: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NamedMaterial:
+    """A named material.
+
+    Attributes
+    ----------
+    name : str
+        As drive files give it.
+    aliases : tuple of str
+        Other names of it.
+    state : str
+        Heat treatment, or how it is made, that the numbers belong to.
+    numbers : dict of str to SourcedNumber
+        By field of `ltca.drive.materials.Material`.
+    """
+
+    name: str
+    aliases: tuple[str, ...]
+    state: str
+    numbers: dict[str, SourcedNumber]
+
+    @property
+    def material(self) -> Material:
+        """What a drive is given."""
+        return Material(**{name: number.value for name, number in self.numbers.items()})
+
+
+@cache
+def named_materials() -> dict[str, NamedMaterial]:
+    """Return all named materials by name.
+
+    Examples
+    --------
+    >>> sorted(named_materials())[:3]
+    ['100Cr6', '16MnCr5', '42CrMo4']
+    """
+    import tomllib
+
+    table = tomllib.loads((resources.files("ltca") / "drive" / "members" / FILE).read_text(encoding="utf-8"))
+    sources = table.pop("sources")
+    found = {}
+    for name, entry in table.items():
+        numbers = {field: _sourced(field, cell, sources) for field, cell in entry.items() if isinstance(cell, dict)}
+        found[name] = NamedMaterial(name=name, aliases=tuple(entry["aliases"]), state=entry["state"], numbers=numbers)
+    return found
+
+
+def _sourced(field: str, cell: Mapping[str, Any], sources: Mapping[str, Any]) -> SourcedNumber:
+    # Read as a drive file's own quantities are: by the field, with its unit and bounds.
+    value, low, high = (getattr(Material(**{field: cell[key]}), field) for key in ("value", "low", "high"))
+    source = sources[cell["source"]]
+    return SourcedNumber(
+        value=value,
+        low=low,
+        high=high,
+        source=source["text"],
+        scatter_source=sources[cell.get("range", cell["source"])]["text"],
+        confirmed=source["confirmed"],
+    )
+
+
+def sourced_material(name: str) -> NamedMaterial:
+    """Return a named material with scatter and sources.
+
+    Parameters
+    ----------
+    name : str
+        Its name or an alias, in large letters or small ones.
+
+    Raises
+    ------
+    DriveError
+        When none is called so.
+    """
+    spelled = {
+        spelling.casefold(): entry for entry in named_materials().values() for spelling in (entry.name, *entry.aliases)
+    }
+    entry = spelled.get(name.strip().casefold())
+    if entry is None:
+        raise DriveError([f"{shortened(name)}: {_unknown(name)}"])
+    return entry
+
+
+def _unknown(name: str) -> str:
+    every = [spelling for entry in named_materials().values() for spelling in (entry.name, *entry.aliases)]
+    meant = nearest(name, every)
+    asked = f"; did you mean `{meant}`?" if meant else ""
+    return f"is no named material; there are {', '.join(named_materials())}{asked}"
+
+
+def named_material(name: str) -> Material:
+    """Return a named material.
+
+    Parameters
+    ----------
+    name : str
+        Its name or an alias.
+
+    Raises
+    ------
+    DriveError
+        When none is called so.
+
+    Examples
+    --------
+    >>> named_material("PA12").youngs_modulus
+    1600.0
+    """
+    return sourced_material(name).material
+
+
+def material_sources(name: str) -> dict[str, str]:
+    """Return where the numbers of a named material are from, by field.
+
+    Parameters
+    ----------
+    name : str
+        Its name or an alias.
+
+    Raises
+    ------
+    DriveError
+        When none is called so.
+
+    Examples
+    --------
+    >>> material_sources("PLA")["poisson_ratio"]
+    'typical, not confirmed'
+    """
+    return {field: number.source for field, number in sourced_material(name).numbers.items()}
+
+
+def name_of(material: Material) -> str | None:
+    """Return what a material is called: a name, a name and what is different, or None.
+
+    Parameters
+    ----------
+    material : Material
+        Of a drive.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> name_of(replace(named_material("PA12"), youngs_modulus=1400.0))
+    'like PA12, but youngs_modulus'
+    """
+    best, fewest = None, MOST_OTHER + 1
+    for name, entry in named_materials().items():
+        known = entry.material
+        other = [item.name for item in fields(Material) if getattr(known, item.name) != getattr(material, item.name)]
+        if not other:
+            return name
+        if len(other) < fewest:
+            best, fewest = f"like {name}, but {', '.join(other)}", len(other)
+    return best
+
+
+def with_named_materials(table: Mapping[str, Any], problems: list[str]) -> dict[str, Any]:
+    """Return the table of a drive with the numbers of named materials in the places of their names.
+
+    Parameters
+    ----------
+    table : mapping
+        Nested plain tables, as in a drive file.
+    problems : list of str
+        To which what is wrong with the names is added.
+    """
+    parts = table.get("materials")
+    if not isinstance(parts, Mapping):
+        return dict(table)
+    return {**table, "materials": {part: _resolved(part, given, problems) for part, given in parts.items()}}
+
+
+def _resolved(part: str, given: Any, problems: list[str]) -> Any:
+    if part not in PARTS:
+        return given
+    below: Mapping[str, Any] = {}
+    if isinstance(given, Mapping) and LIKE in given:
+        given, below = given[LIKE], {key: value for key, value in given.items() if key != LIKE}
+        path = f"materials.{part}.{LIKE}"
+        if not isinstance(given, str):
+            problems.append(f"{path} = {shortened(given)}: must be the name of a material")
+            return dict(below)
+    elif isinstance(given, str):
+        path = f"materials.{part}"
+    else:
+        return given
+    try:
+        known = named_material(given)
+    except DriveError:
+        problems.append(f"{path} = {shortened(given)}: {_unknown(given)}")
+        return dict(below)
+    return {**numbers_of(known), **below}
+
+
+def numbers_of(material: Material) -> dict[str, float | None]:
+    """Return the numbers of a material by field, None for what it has not."""
+    return {item.name: getattr(material, item.name) for item in fields(Material)}
+
+
+def named_parts(materials: Materials) -> dict[str, str]:
+    """Return the parts whose materials have a name, by field of `Materials`.
+
+    Parameters
+    ----------
+    materials : Materials
+        Of a drive.
+    """
+    names = {part: name_of(getattr(materials, part)) for part in PARTS}
+    return {part: name for part, name in names.items() if name is not None}
