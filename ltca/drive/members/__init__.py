@@ -1,20 +1,15 @@
-"""Parts that take a page of their own: crankshafts, the pins of wheel and shaft, and how the drive is built in and used.
+"""Parts that take a page of their own, what they are made of by name, how the drive is built in, used and judged.
 
 Modules in the order data passes:
 
-==========  =====================================================operation   How the drive is built in and used: the member that is held, load, speed, and what rubs
-crank       Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
-limits      ``[limits]`` of a drive file: what its results may reach, by the names of the summary, each with its source
-pins        Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
-pin_checks  What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of bounds
-==========  ============================================================
-=======
 ===============  ============================================================
 named_materials  Materials by name: ``materials.disc = "PA12"`` stands for numbers that ship as data, each with its scatter
                  and source
 operation        How the drive is built in and used: the member that is held, load, speed, and what rubs
+limits           What its results may reach, by the names of the summary, each with its source
 crank            Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
 pins             Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
-pin_checks       What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of bounds
+pin_checks       What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of
+                 bounds
 ===============  ============================================================
 """
