@@ -72,11 +72,12 @@ def execute(arguments: argparse.Namespace) -> int:
         find_coefficients_of(cases, arguments)
         with progress("cases", len(cases)) as advance:
             for name, drive in cases.items():
-                checks, drivers = _judge(drive, file.limits[name], engine, arguments)
+                checks, drivers, warnings = _judge(drive, file.limits[name], engine, arguments)
                 contents[name] = [_entry(check, name, drivers) for check in checks]
                 failed += sum(check.verdict == "fail" for check in checks)
                 print(f"{file.name} {name}, {drive.load_words(arguments.torque)}")
                 print(verdict_table(checks))
+                print("".join(f"  note: {warning}\n" for warning in warnings), end="")
                 print(_advice(checks, drivers), end="")
                 advance(name)
         write_json(out / "check.json", {"drive": file.name, "verdict": "fail" if failed else "pass", "cases": contents})
@@ -86,7 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _judge(
     drive: Drive, limits: Limits, engine: Any, arguments: argparse.Namespace
-) -> tuple[list[Check], dict[str, list[Driver]]]:
+) -> tuple[list[Check], dict[str, list[Driver]], list[str]]:
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.summary import summarise
     from ltca.analysis.verdict.advice import advise
@@ -97,10 +98,10 @@ def _judge(
     analysis = analyse(drive, position_angles(arguments.positions), arguments.torque, engine.with_coefficients(drive))
     checks = judge(drive, find_values(analysis, summarise(analysis)), limits)
     if arguments.no_advice:
-        return checks, {}
+        return checks, {}, analysis.warnings
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + BESIDE
-    return checks, advise(drive, checks, angles, arguments.torque)
+    return checks, advise(drive, checks, angles, arguments.torque), analysis.warnings
 
 
 def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:

@@ -39,7 +39,8 @@ def reducer(shortening=0.611, pin=5.0, wall=1.0):
             "roller_length": 11.0,
         },
         "pin_shaft": {
-            "number_of_pins": 8, "pin_circle_radius": 45.0, "pin_radius": outer, "hole_radius": outer + e + 0.01, "stiffness": 3e5,
+            "number_of_pins": 8, "pin_circle_radius": 45.0, "pin_radius": outer, "hole_radius": outer + e + 0.01,
+            "stiffness": 3e5,
             "seat": {"kind": "sleeve", "pin_radius": 6.0, "bore_radius": 6.01},
         },
         "installation": {"held": "pin-wheel"},
@@ -91,7 +92,11 @@ def test_losses_are_of_their_size(initial):
 
 @pytest.mark.parametrize(
     "design",
-    [{"shortening": 0.72}, pytest.param({"pin": 4.0}, id="thinner pins"), pytest.param({"wall": 2.0}, id="thicker sleeves")],
+    [
+        {"shortening": 0.72},
+        pytest.param({"pin": 4.0}, id="thinner pins"),
+        pytest.param({"wall": 2.0}, id="thicker sleeves"),
+    ],
 )
 def test_efficiency_moves_as_theirs(initial, design):
     """With the shortening, thinner pins, and sleeves that run on a smaller part of their outside."""

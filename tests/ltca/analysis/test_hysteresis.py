@@ -29,7 +29,9 @@ def paper():
 def test_one_contact_is_a_slider_on_a_spring():
     """A cycle of ± u_0 under constant load: sticks up to F/k, then slips; the loop's area is 4 F (u_0 − F/k)."""
     stiffness, bound, most = 250.0, 4.0, 0.05
-    path = np.concatenate([np.linspace(0.0, most, 60), np.linspace(most, -most, 121)[1:], np.linspace(-most, most, 121)[1:]])
+    path = np.concatenate(
+        [np.linspace(0.0, most, 60), np.linspace(most, -most, 121)[1:], np.linspace(-most, most, 121)[1:]]
+    )
     force, forces = np.zeros(1), []
     for before, after in zip(np.r_[0.0, path[:-1]], path, strict=True):
         force, _ = stick_or_slip(force, np.array(stiffness), np.array(after - before), np.array(bound))

@@ -1,0 +1,278 @@
+"""Limits, verdicts and advice: where limits come from, what fails, what would mend it, stress of pins."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.summary import summarise
+from ltca.analysis.verdict.advice import advise
+from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
+from ltca.analysis.verdict.judgement import TITLES, judge
+from ltca.analysis.verdict.pin_stress import pin_stress
+from ltca.analysis.verdict.values import find_values
+from ltca.commands.program import main
+from ltca.drive.members.limits import LIMITED, parse_limits
+from ltca.drive.parts import Material
+from ltca.equilibrium.reducer import disc_responses
+from ltca.errors import DriveError
+from ltca.geometry.coordinates import DISC_PLACE
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+
+ANGLES = 2.0 * np.pi * np.arange(6) / 6.0 + 0.05
+
+
+@pytest.fixture(scope="module")
+def paper():
+    plain = Material()
+    drive = load_drive("paper").cases["CS-1"]
+    return replace(
+        drive,
+        materials=replace(
+            drive.materials, disc=plain, wheel_pin=plain, roller=plain, inner_race=plain, shaft_pin=plain
+        ),
+    )
+
+
+@pytest.fixture(scope="module")
+def checked(paper):
+    analysis = analyse(paper, ANGLES)
+    return analysis, summarise(analysis)
+
+
+def checks_of(drive, checked, limits):
+    analysis, summary = checked
+    problems = []
+    found = parse_limits(limits, problems)
+    assert problems == []
+    return judge(drive, find_values(analysis, summary), found)
+
+
+def named(checks, quantity):
+    return [check for check in checks if check.value.quantity == quantity]
+
+
+def test_every_quantity_has_a_title():
+    assert set(TITLES) == set(LIMITED)
+
+
+def test_a_value_without_a_limit_is_said_to_have_none(paper, checked):
+    (check,) = named(checks_of(paper, checked, {}), "pin_pressure_mid")
+    assert check.verdict == "no limit"
+    assert check.safety is None
+    assert check.value.value == np.max(checked[0].pressures.pins.mid)
+
+
+def test_limits_of_the_file_stand_before_those_of_materials(paper, checked):
+    largest = float(np.max(checked[0].pressures.pins.mid))
+    soft = replace(paper, materials=replace(paper.materials, disc=Material(allowable_pressure=0.884 * largest)))
+    (check,) = named(checks_of(soft, checked, {}), "pin_pressure_mid")
+    assert check.verdict == "fail"
+    assert check.safety == pytest.approx(0.884, rel=1e-12)
+    assert check.limit.source == "materials.disc.allowable_pressure"
+    (check,) = named(
+        checks_of(soft, checked, {"max_pin_pressure_mid": {"value": 1.1 * largest, "source": "ours"}}),
+        "pin_pressure_mid",
+    )
+    assert (check.verdict, check.limit.source) == ("pass", "ours")
+
+
+def test_the_weaker_of_two_materials_counts(paper, checked):
+    parts = replace(
+        paper.materials, disc=Material(allowable_pressure=2000.0), wheel_pin=Material(allowable_pressure=900.0)
+    )
+    (check,) = named(checks_of(replace(paper, materials=parts), checked, {}), "pin_pressure_mid")
+    assert (check.limit.value, check.limit.source) == (900.0, "materials.wheel_pin.allowable_pressure")
+
+
+def test_where_and_when(paper, checked):
+    analysis = checked[0]
+    position, pin = np.unravel_index(np.argmax(analysis.full.response.pin_load), analysis.full.response.pin_load.shape)
+    (check,) = named(checks_of(paper, checked, {}), "pin_load")
+    assert check.value.part == f"wheel pin {pin}"
+    assert check.value.crank_angle == ANGLES[position]
+
+
+def test_a_range_is_two_checks(paper, checked):
+    low, high = named(
+        checks_of(paper, checked, {"max_backlash_output": "9 arcmin", "min_backlash_output_arcmin": 3.0}),
+        "backlash_output",
+    )
+    assert {low.verdict, high.verdict} == {"pass", "fail"}
+
+
+def test_a_limit_on_what_is_not_there_is_said(paper, checked):
+    (check,) = named(checks_of(paper, checked, {"max_pin_seat_pressure": 100.0}), "pin_seat_pressure")
+    assert (check.verdict, check.value.value) == ("not known", None)
+    assert check.value.reason
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ({"max_pin_presure_mid": 3.0}, "did you mean `max_pin_pressure_mid`"),
+        ({"max_pin_load": "3 mm"}, "must have the unit N"),
+        ({"max_wall": {"value": 1.0, "origin": "x"}}, "table of value and source"),
+        ({"min_wall": 3.0, "max_wall": 2.0}, "limits.min_wall = 3: must be at most 2"),
+        ({"max_pin_load": 3.0, "max_pin_load_N": 2.0}, "given twice"),
+        (7, "must be a table"),
+    ],
+)
+def test_wrong_limits_are_refused_by_name(table, told):
+    problems = []
+    parse_limits(table, problems)
+    assert len(problems) == 1
+    assert told in problems[0]
+
+
+def test_cases_may_have_limits_of_their_own():
+    text = shipped_drive("paper")
+    head, case, tail = text.partition("[[case]]")
+    text = (
+        head
+        + "[limits]\nmax_pin_load = 5000.0\n"
+        + case
+        + tail.replace("\n", "\nlimits = { max_pin_load = 4000.0 }\n", 1)
+    )
+    file = parse_drive(text, "paper")
+    first, *others = file.cases
+    assert file.limits[first]["max_pin_load"].value == 4000.0
+    assert file.limits[others[0]]["max_pin_load"].value == 5000.0
+    with pytest.raises(DriveError, match="limits.max_pin_laod"):
+        parse_drive(text.replace("max_pin_load = 5000.0", "max_pin_laod = 5000.0"), "paper")
+
+
+def test_margins_of_the_shape(paper):
+    """By hand: the flank of the paper's drive is generated with pins of r_P + Δr_P."""
+    assert undercut_margin(paper) > 0.0
+    larger = with_fields(paper, {"pin_wheel.pin_radius": paper.pin_wheel.pin_radius + 0.1}, check=False)
+    assert undercut_margin(larger) == pytest.approx(undercut_margin(paper) - 0.1, abs=1e-9)
+    # the hollow of an offset curve is larger by what the pin grows, as the flank is generated with it
+    assert pin_hollow_margin(larger) == pytest.approx(pin_hollow_margin(paper), abs=1e-6)
+    bearing = paper.crank_bearing
+    pitch = bearing.inner_race_radius + bearing.roller_radius
+    chord = abs(pitch - pitch * np.exp(2j * np.pi / bearing.number_of_rollers))
+    assert roller_gap(paper) == pytest.approx(chord - 2.0 * bearing.roller_radius, rel=1e-12)
+    shaft = paper.pin_shaft
+    between = abs(shaft.pin_circle_radius - 0.0) - paper.hole_radius - paper.bore_radius
+    assert dict(walls(paper))["between hole and bore"] == pytest.approx(between, rel=1e-12)
+
+
+@pytest.mark.parametrize("pins", ["wheel", "shaft"])
+def test_pins_bend_under_the_forces_of_all_discs(pins):
+    """Moments of single pins by quadrature of the load about every section: two supports by statics, a free tip from the tip."""
+    drive = parse_drive(shipped_drive("sleeved"), "sleeved").cases["nominal"]
+    if pins == "wheel":
+        drive = replace(drive, pin_wheel=replace(drive.pin_wheel, beam=replace(drive.pin_wheel.beam, ends="supported")))
+        beam, d = drive.pin_wheel.beam, drive.pin_wheel.beam_diameter
+    else:
+        drive = replace(drive, pin_shaft=replace(drive.pin_shaft, beam=replace(drive.pin_shaft.beam, tip="free")))
+        beam, d = drive.pin_shaft.beam, drive.pin_shaft.beam_diameter
+    analysis = analyse(drive, ANGLES[:2])
+    found = pin_stress(analysis, pins)
+    planes, width = np.array(drive.disc.disc_planes) + 0.5 * beam.span, drive.disc.thickness
+    forces = []
+    for part in disc_responses(analysis.full.response):
+        motion, load = (part.flank, part.pin_load) if pins == "wheel" else (part.holes, part.hole_load)
+        push = load[..., None] * motion.gradient[..., DISC_PLACE]
+        forces.append(push[..., 0] + 1j * push[..., 1])
+    z = np.linspace(0.0, beam.span, 401)
+    s = (np.arange(400) + 0.5) / 400.0 * width - 0.5 * width
+    worst = np.zeros(forces[0].shape)
+    for at in z:
+        moment = np.zeros(forces[0].shape, dtype=complex)
+        for force, plane in zip(forces, planes, strict=True):
+            places = plane + s
+            beyond = np.clip(places - at, 0.0, None).mean()
+            if pins == "shaft":  # from the free tip
+                moment += force * beyond
+            else:
+                reaction = force * plane / beam.span  # of the far support
+                moment += reaction * (beam.span - at) - force * beyond
+        worst = np.maximum(worst, np.abs(moment))
+    expected = 32.0 * worst / (np.pi * d**3)
+    assert expected.max() > 10.0
+    # largest between 400 sections and 200 of the beam's own: the moment is flat there
+    np.testing.assert_allclose(found.bending, expected, rtol=2e-3, atol=1e-3 * expected.max())
+    if pins == "wheel":  # at the support that carries more
+        ends = [
+            sum(force * part for force, part in zip(forces, side, strict=True))
+            for side in (planes / beam.span, 1.0 - planes / beam.span)
+        ]
+        shear = np.maximum(*np.abs(ends))
+    else:  # in the flange, or between the discs where the forces on them oppose each other
+        shear = np.maximum(np.abs(forces[0] + forces[1]), np.abs(forces[1]))
+    np.testing.assert_allclose(found.shear, 16.0 * shear / (3.0 * np.pi * d**2), rtol=1e-9, atol=1e-9)
+
+
+def test_fixed_pins_are_no_beams(checked):
+    assert pin_stress(checked[0], "wheel") is None
+
+
+def test_advice_is_about_what_mends_it(paper, checked):
+    """A line contact's pressure goes with the root of the load and of the length: what is said is tried."""
+    largest = float(np.max(checked[0].pressures.pins.mid))
+    checks = checks_of(paper, checked, {"max_pin_pressure_mid": 0.9 * largest})
+    drivers = {driver.input: driver for driver in advise(paper, checks, ANGLES)["pin_pressure_mid"]}
+    torque = drivers["load.torque"]
+    assert 0.3 < torque.elasticity < 0.6
+    mended = analyse(with_fields(paper, {"load.torque": torque.factor * paper.load.torque}), ANGLES)
+    assert np.max(mended.pressures.pins.mid) == pytest.approx(0.9 * largest, rel=0.02)
+    assert drivers["all sizes"].elasticity < -1.0
+    assert drivers["disc.thickness"].factor > 1.0
+    assert drivers["materials.disc.youngs_modulus"].factor < 1.0
+
+
+def test_nothing_drives_what_has_no_limit(paper, checked):
+    checks = checks_of(paper, checked, {})
+    assert "pin_pressure_mid" not in advise(
+        replace(paper), [check for check in checks if check.value.quantity == "pin_pressure_mid"], ANGLES
+    )
+
+
+def paper_with(tmp_path, limits, name="mine.toml"):
+    head, case, tail = shipped_drive("paper").partition("[[case]]")
+    head = "\n".join(line for line in head.split("[limits]")[0].splitlines())
+    path = tmp_path / name
+    path.write_text(f"{head}\n[limits]\n{limits}\n{case}{tail}", encoding="utf-8")
+    return path
+
+
+def test_check_ends_with_1_where_something_fails(tmp_path, capsys):
+    path = paper_with(tmp_path, "max_pin_pressure_mid = 1300.0\nmin_backlash_output = '1 arcmin'")
+    out = tmp_path / "out"
+    assert main(["check", str(path), "--case", "CS-1", "--positions", "27", "--out", str(out), "--no-advice"]) == 1
+    found = json.loads((out / "check.json").read_text(encoding="utf-8"))
+    assert found["verdict"] == "fail"
+    (row,) = [row for row in found["cases"]["CS-1"] if row["quantity"] == "pin_pressure_mid"]
+    assert row["verdict"] == "fail"
+    assert row["safety"] == pytest.approx(1300.0 / row["value"])
+    assert row["part"].startswith("wheel pin")
+    assert row["source"] == "[limits]"
+    assert "FAIL" in capsys.readouterr().out
+
+
+def test_check_ends_with_0_where_nothing_fails(tmp_path):
+    path = paper_with(
+        tmp_path,
+        "max_pin_pressure_mid = 3000.0\nmax_roller_pressure_mid = 3000.0\nmax_pin_shaft_pressure_mid = 3e3",
+    )
+    assert (
+        main(["check", str(path), "--case", "CS-1", "--positions", "27", "--out", str(tmp_path / "o"), "--no-advice"])
+        == 0
+    )
+
+
+def test_run_shows_the_verdict_first_and_ends_with_0(tmp_path, capsys):
+    path = paper_with(tmp_path, "max_pin_pressure_mid = 1300.0")
+    assert (
+        main(["run", str(path), "--case", "CS-1", "--positions", "27", "--out", str(tmp_path / "o"), "--no-figures"])
+        == 0
+    )
+    told = capsys.readouterr().out
+    assert told.index("FAIL") < told.index("mean bearing load")
