@@ -5,7 +5,7 @@ the drive with all its deviations, distances from the flank by a search over poi
 a search on their energy, nothing but energies. The only things shared are the definition of the drive and the energy
 ∫F dδ of the contact laws, crown and relief in it. A pose balances when its potential Π is a minimum: no small
 displacement lowers it, and its slope by central differences vanishes. Loose and bent pins have coordinates of their own
-(`ltca.testing.yielding_pins`), by which the slope vanishes as well.
+(`ltca.testing.yielding_pins`), by which the slope vanishes as well. What rubs (`ltca.testing.friction_check`) adds its work.
 
 The effective radii of the flank contacts are held at those of the pose looked at: a frictionless contact pushes
 along its normal with F(δ, ρ), and what the energy gains because the contact moves to another curvature (about 1e-3
@@ -21,12 +21,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel
+from ltca.compliance.response import ComplianceModel, take_positions
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import disc_responses
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+from ltca.testing.friction_check import FrictionCheck
 from ltca.testing.yielding_pins import ContactOfSleeves, SeatEnergy, YieldingPins, beam_stiffness
 
 FloatArray = NDArray[np.float64]
@@ -101,7 +102,7 @@ class PotentialEnergy:
         for disc in range(self.drive.disc.number_of_discs):
             parts, centre, turn = self._place(disc, pose)
             pins, radii = parts.wheel_pins
-            axis = parts.wheel_axis + self._wheel(pose)[:, None] + place.sum(axis=1)[:, disc]
+            axis = parts.wheel_axis + self.wheel_displacement(pose)[:, None] + place.sum(axis=1)[:, disc]
             point = (axis + pins * np.exp(1j * pose[:, -1])[:, None] - centre) * np.conj(turn)
             farthest = float(np.max(np.abs(point - point[:1])))
             approach, effective = DeviatedFlank(self.drive, disc).approaches(point, radii, 2.0 * farthest)
@@ -146,7 +147,7 @@ class PotentialEnergy:
             return np.zeros((pose.shape[0], self.drive.crank.number), dtype=complex)
         return np.asarray(yielding[:, ::2] + 1j * yielding[:, 1::2])
 
-    def _wheel(self, pose: FloatArray) -> ComplexArray:
+    def wheel_displacement(self, pose: FloatArray) -> ComplexArray:
         """Displacement of the wheel, mm."""
         if self.drive.pin_wheel.support_stiffness is None:
             return np.zeros(pose.shape[0], dtype=complex)
@@ -155,7 +156,7 @@ class PotentialEnergy:
 
     def _supports(self, pose: FloatArray) -> FloatArray:
         """Energy of crankshafts on their bearings and of the wheel on its own, N·mm."""
-        total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self._wheel(pose)) ** 2
+        total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self.wheel_displacement(pose)) ** 2
         if self.drive.crank.support is not None:
             holding = np.linalg.inv(_deflections(self.drive))
             discs = range(self.drive.disc.number_of_discs)
@@ -187,6 +188,24 @@ class PotentialEnergy:
                 total += float(self._bearings(parts, disc, moved[None])[0])
             ends.append(total)
         return (ends[0] - ends[1]) / (2.0 * step)
+
+    def bearing_forces(self, pose: FloatArray) -> ComplexArray:
+        """Return the force of every crank bearing at a pose, shape (discs, cranks), N: slopes of their energies.
+
+        Parameters
+        ----------
+        pose : array, shape (coordinates,)
+            q.
+        """
+        found = []
+        for disc in range(self.drive.disc.number_of_discs):
+            parts, centre, turn = self._place(disc, pose[None])
+            shift = centre + parts.bores * turn - parts.race_centres - self._cranks(disc, pose[None])
+            step = 1e-4 * float(np.max(np.abs(shift))) + 1e-9
+            around = shift[0, :, None, None] + step * np.array([[1.0], [-1.0], [1j], [-1j]])
+            energy = np.stack([self._rollers(parts, each) for each in around])
+            found.append((energy[:, 0] - energy[:, 1] + 1j * (energy[:, 2] - energy[:, 3])) / (2.0 * step))
+        return np.stack(found)
 
     def _bearings(self, parts: ActualParts, disc: int, pose: FloatArray) -> FloatArray:
         """Energy of the rollers of all crank bearings of one disc."""
@@ -308,6 +327,25 @@ def _deflections(drive: Drive) -> FloatArray:
     )
 
 
+def _friction(drive: Drive, potential: PotentialEnergy, balanced: Equilibrium, row: int) -> FrictionCheck | None:
+    """What rubs in an answer; None in a drive without friction."""
+    if drive.friction is None:
+        return None
+    pose, wheel, shaft = balanced.pose[row], potential.wheel_pins, potential.shaft_pins
+    supported = drive.pin_wheel.support_stiffness is not None
+    return FrictionCheck(
+        drive=drive,
+        crank_angle=potential.crank_angle,
+        pose=pose,
+        wheel=complex(potential.wheel_displacement(pose[None])[0]),
+        wheel_column=None if not supported else -6 if has_ring(drive) else -3,
+        wheel_place=wheel.bent + wheel.loose,
+        shaft_place=shaft.bent + shaft.loose,
+        parts=[take_positions(part, np.array([row])) for part in disc_responses(balanced.response)],
+        bearings=potential.bearing_forces(pose),
+    )
+
+
 def find_imbalance(
     drive: Drive,
     model: ComplianceModel,
@@ -355,9 +393,10 @@ def find_imbalance(
     if drive.pin_shaft is not None and has_ring(drive):
         lever[-2] = drive.pin_shaft.pin_circle_radius
     load = abs(moment) / wheel
-    problems = []
     if not np.all(np.isfinite(pose)):
         return ["the pose is not finite"]
+    rubbed = _friction(drive, potential, balanced, position)
+    problems = [] if rubbed is None else rubbed.problems()
     rollers = contacts.rollers
     for name, approach, force in (
         ("pin", contacts.flank.approach, contacts.pin_load),
@@ -380,8 +419,11 @@ def find_imbalance(
     sizes = farthest * np.repeat([1e-2, 1e-1, 1.0], 4)
     here = np.zeros((1, size))
     # Apart, since the farthest pose sets how wide the pieces are.
+    work = np.zeros(size) if rubbed is None else rubbed.work / lever
     value = potential.at(pose + np.concatenate([here, offsets]) / lever)
-    moved = potential.at(pose + np.concatenate([here, sizes[:, None] * directions]) / lever)
+    value[1:] += offsets @ work
+    away = sizes[:, None] * directions
+    moved = potential.at(pose + np.concatenate([here, away]) / lever)
     pairs = value[1:].reshape(steps.size, 2, size)
     slope = np.abs(pairs[:, 0] - pairs[:, 1]).max(axis=1) / (2.0 * steps)
     # Round-off of Π: of the stored energy and of T·angle, of the search along the rays, and of approaches (parts of
@@ -398,7 +440,8 @@ def find_imbalance(
         ("wheel", potential.wheel_pins, potential.of_wheel_pins),
         ("shaft", potential.shaft_pins, potential.of_shaft_pins),
     ):
-        if held.ways.size and held.load.size:
+        # With friction loose pins stand where they are only to first order in μ, as their closed form does.
+        if held.ways.size and held.load.size and rubbed is None:
             ways = (steps[:, None, None, None, None] * np.stack([held.ways, -held.ways])).reshape(
                 -1, *held.ways.shape[1:]
             )
@@ -411,7 +454,7 @@ def find_imbalance(
                 problems.append(
                     f"slope of the potential by the place of a {name} pin {np.max(steep):.3g} N against a load of {load:.3g} N"
                 )
-    rise = moved[1:] - moved[0]
+    rise = moved[1:] - moved[0] + away @ work
     if np.any(rise < -noise - 1e-4 * load * sizes):
         problems.append(f"a displacement lowers the potential by {-np.min(rise):.3g} N·mm")
     if torque is not None:
@@ -420,7 +463,7 @@ def find_imbalance(
         if drive.wheel_is_held:
             stage = drive.installation.first_stage_ratio
             reaction = 1.0 if drive.crank.number == 1 else 0.0 if stage is None else -1.0 / stage
-            left += reaction * potential.crank_moment(pose)
+            left += reaction * (potential.crank_moment(pose) + (0.0 if rubbed is None else rubbed.at_cranks))
         if abs(left) > 1e-3 * abs(output):
             problems.append(f"moments of wheel, crank and output leave {left:.3g} N·mm of {output:.3g} N·mm")
     return problems

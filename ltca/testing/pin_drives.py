@@ -1,6 +1,7 @@
 """Reducers whose pins are loose, sleeved or bend, or not: on those of all kinds (`crank_drives`), crowding at the plain choices.
 
 Nothing at all, plays that are equal, a beam no longer than the discs, its diameter typed although it is the pin's own.
+With friction (`friction_drive`) they do not bend.
 """
 
 from __future__ import annotations
@@ -13,13 +14,15 @@ from numpy.random import Generator
 
 from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, Friction
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.crank_drives import crank_drive
 from ltca.testing.yielding_pins import beam_stiffness
 
 PLAYS = (0.001, 0.004, 0.01, 0.01, 0.02, 0.05)
 """mm."""
+COEFFICIENTS = (0.0, 0.0, 0.01, 0.03, 0.05, 0.05, 0.08, 0.1, 0.15)
+"""μ of joints as people type them."""
 OTHERS = (
     Material(),
     Material(),
@@ -59,6 +62,55 @@ def pin_drive(seed: int) -> tuple[Drive, float]:
         drive = _made_of(random, drive)
         if largest_deflection(drive) < SOFTEST * drive.crank.eccentricity and is_sound(drive):
             return drive, angle
+
+
+def friction_drive(seed: int) -> tuple[Drive, float]:
+    """Return a reducer of any kind with friction in its joints, and a crank angle in rad.
+
+    Parameters
+    ----------
+    seed : int
+        Not negative; the same seed gives the same drive.
+
+    Returns
+    -------
+    Drive
+        Wheel pins fixed, loose in slots or under sleeves, shaft pins fixed or under sleeves, none of them beams; driven by
+        its input or its output.
+    float
+        φ_C, rad.
+    """
+    random = np.random.default_rng((seed, 4))
+    while True:
+        drive, angle = crank_drive(int(random.integers(2**32)))
+        play = float(random.choice(PLAYS))
+        drive = replace(drive, pin_wheel=_seated_wheel_pins(random, drive, play))
+        if drive.pin_shaft is not None:
+            drive = replace(drive, pin_shaft=_seated_shaft_pins(random, drive, play))
+        drive = _made_of(random, drive)
+        seats = {drive.pin_wheel.seat.kind, "fixed" if drive.pin_shaft is None else drive.pin_shaft.seat.kind}
+        # All coefficients are equal as often as not.
+        pin, seat, hole = random.choice(COEFFICIENTS, 3) if random.uniform() < 0.5 else [random.choice(COEFFICIENTS)] * 3
+        turning = float(random.choice([0.0, 0.002]))
+        friction = Friction(
+            pin=float(pin),
+            seat=0.0 if seats == {"fixed"} else float(seat),
+            hole=0.0 if drive.pin_shaft is None else float(hole),
+            roller=float(random.choice([0.0, 0.001, 0.0015])),
+            support_bearing=turning,
+            support_bearing_radius=_bearing_radius(drive) if turning else 0.0,
+            no_load_torque=float(random.choice([0.0, 50.0])),
+        )
+        driven: Any = str(random.choice(["input", "output"]))
+        speed = [None, 1500.0][int(random.integers(2))]
+        drive = replace(drive, friction=friction, load=replace(drive.load, driven_by=driven, speed=speed))
+        if is_sound(drive):
+            return drive, angle
+
+
+def _bearing_radius(drive: Drive) -> float:
+    """As large as the inner races, to the millimetre."""
+    return max(round(drive.crank_bearing.inner_race_radius), 1.0)
 
 
 def largest_deflection(drive: Drive) -> float:

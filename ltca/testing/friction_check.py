@@ -1,0 +1,245 @@
+"""Friction of a drive that turns, found without the code that balances it.
+
+Places from the definition of the drive (`ltca.testing.actual_parts`), normals as the slope of the distance from the flank,
+by differences; the material points of both bodies at a contact are moved as parts of rigid bodies, by the pose and,
+for the slip of the turning drive, by turning the cranks a little. What is rubbed follows from loads that are frozen, so the work
+of friction is linear in small displacements: added to the potential of `ltca.testing.balance_check` it makes a pose that
+balances its minimum again.
+
+A pin that is free to turn passes on what it takes: the total forces of disc and seat are equal and opposite, in the line
+through both contacts, so what the wheel feels is the force at the flank.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.compliance.response import Response
+from ltca.drive.parts import Drive, Friction, PinShaft, PinWheel
+from ltca.geometry.coordinates import X, Y
+from ltca.testing.actual_parts import ActualParts, DeviatedFlank
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+FADES = 1e-4
+"""Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: its friction may be anything there."""
+SAME = 2e-3
+"""Largest difference of friction forces, as a part of the largest possible one: pins under sleeves are placed by forces without
+friction, and what lies in approaches and plays (some 1e-3 of a radius) shifts contacts and tips their normals."""
+TURNED = 1e-6
+"""Crank angle by which the drive is turned to see what slips, rad."""
+
+
+def easier_coefficient(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
+    """Return the coefficient of whichever surface of a pin slips: the disc's, or that of its seat at the disc's lever.
+
+    Parameters
+    ----------
+    contact, seat : float
+        μ of disc on pin, and of pin in its seat.
+    part : PinWheel or PinShaft
+        How the pins sit.
+    """
+    own = part.seat
+    if own.kind == "slot":
+        return min(contact, seat)
+    if own.kind == "sleeve":
+        assert own.bore_radius is not None
+        return min(contact, seat * own.bore_radius / part.pin_radius)
+    return contact
+
+
+@dataclass(frozen=True, kw_only=True)
+class RubbedContacts:
+    """Contacts of one disc, wheel pins before shaft pins.
+
+    Attributes
+    ----------
+    point : array of complex, shape (pairs,)
+        Where they touch, in the fixed frame, mm.
+    into_disc : array of complex, shape (pairs,)
+        Unit vectors from the pins into the disc.
+    rubbing : array of complex, shape (pairs,)
+        Friction on the pins, N.
+    most : array, shape (pairs,)
+        Its size where it slips, N.
+    """
+
+    point: ComplexArray
+    into_disc: ComplexArray
+    rubbing: ComplexArray
+    most: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionCheck:
+    """Friction of a drive that turns, at one crank angle and pose.
+
+    Parameters
+    ----------
+    drive : Drive
+        With friction; which way it moves is taken from its load.
+    crank_angle : float
+        φ_C, rad.
+    pose : array, shape (coordinates,)
+        q.
+    wheel : complex
+        Displacement of the wheel's axis, mm.
+    wheel_column : int or None
+        The first of its two coordinates, counted from the end; None where it is held.
+    wheel_place, shaft_place : array of complex, shape (discs, pins)
+        Displacements of pins from where they are drawn, by forces, mm.
+    parts : sequence of Response
+        Contacts of each disc at this position alone: their loads, and the friction that is told of them.
+    bearings : array of complex, shape (discs, cranks)
+        Force of each crank bearing, N.
+    """
+
+    drive: Drive
+    crank_angle: float
+    pose: FloatArray
+    wheel: complex
+    wheel_column: int | None
+    wheel_place: ComplexArray
+    shaft_place: ComplexArray
+    parts: Sequence[Response]
+    bearings: ComplexArray
+
+    @cached_property
+    def contacts(self) -> tuple[RubbedContacts, ...]:
+        """What rubs between each disc and the pins."""
+        return tuple(self._contacts(disc) for disc in range(len(self.parts)))
+
+    @cached_property
+    def work(self) -> FloatArray:
+        """Work against friction by the pose, N and N·mm, shape (coordinates,)."""
+        drive, friction, pins = self.drive, self._friction, self.drive.pin_wheel.number_of_pins
+        own = 3 if drive.crank.support is None else 3 + 2 * drive.crank.number
+        work, on_wheel = np.zeros(self.pose.size), 0j
+        for disc, found in enumerate(self.contacts):
+            # On the disc the force is the opposite; the pins of the shaft stand still.
+            force, first, total = found.rubbing, own * disc, found.rubbing.sum()
+            work[first : first + 2] += total.real, total.imag
+            work[first + 2] += (np.conj(force) * 1j * (found.point - self._centre(disc))).real.sum()
+            # The crank drags the disc along, rollers between them.
+            work[first + 2] -= self._motion * self._rolling * np.abs(self.bearings[disc]).sum()
+            rubbed = force[:pins]
+            work[-1] -= (np.conj(rubbed) * 1j * (found.point[:pins] - self._axis(disc))).real.sum()
+            if self.wheel_column is not None:
+                work[self.wheel_column] -= rubbed.sum().real
+                work[self.wheel_column + 1] -= rubbed.sum().imag
+            pressed = self.parts[disc].pin_load[0] * found.into_disc[:pins]
+            on_wheel += rubbed.sum() - pressed.sum()
+        turns = self._motion * np.sign(drive.tooth_number_difference)
+        work[-1] += turns * friction.support_bearing * friction.support_bearing_radius * abs(on_wheel)
+        return work
+
+    @property
+    def at_cranks(self) -> float:
+        """Moment that rubbing takes at all cranks, ccw positive, N·mm."""
+        support, planes = self.drive.crank.support, self.drive.disc.disc_planes
+        if support is None:  # held beside every disc
+            carried = np.abs(self.bearings).sum()
+        else:
+            near, far = support.positions
+            share = (np.asarray(planes) - near) / (far - near)
+            carried = np.abs(share @ self.bearings).sum() + np.abs((1.0 - share) @ self.bearings).sum()
+        friction = self._friction
+        at_support = friction.support_bearing * friction.support_bearing_radius * carried
+        return float(self._motion * (self._rolling * np.abs(self.bearings).sum() + at_support))
+
+    def problems(self) -> list[str]:
+        """Return which friction forces of the answer are others than they should be; empty when none is."""
+        found, pins = [], self.drive.pin_wheel.number_of_pins
+        for disc, (part, own) in enumerate(zip(self.parts, self.contacts, strict=True)):
+            # Contacts that carry next to nothing are known to a part of those that carry.
+            nothing = 1e-9 * float(part.pin_load.sum() + part.hole_load.sum())
+            told = self._told(disc)
+            off = np.abs(told - own.rubbing) > SAME * own.most + nothing
+            for pair in np.nonzero(off)[0]:
+                where = f"wheel pin {pair}" if pair < pins else f"shaft pin {pair - pins}"
+                found.append(
+                    f"friction on {where} of disc {disc} is {told[pair]:.6g} N instead of {own.rubbing[pair]:.6g} N"
+                )
+        return found
+
+    @property
+    def _friction(self) -> Friction:
+        assert self.drive.friction is not None
+        return self.drive.friction
+
+    @property
+    def _motion(self) -> float:
+        """Sense in which the crank turns."""
+        load = self.drive.load
+        return (1.0 if load.direction == "ccw" else -1.0) * (1.0 if load.driven_by == "input" else -1.0)
+
+    @property
+    def _rolling(self) -> float:
+        """Lever of the rolling resistance, mm."""
+        bearing = self.drive.crank_bearing
+        return self._friction.roller * (bearing.inner_race_radius + bearing.roller_radius)
+
+    def _told(self, disc: int) -> ComplexArray:
+        """Friction on the pins as the answer tells it: what works by the place of the disc."""
+        part = self.parts[disc]
+        along = np.concatenate((part.flank.along[0], part.holes.along[0]))
+        told = np.zeros(along.shape[0]) if part.friction is None else part.friction[0]
+        return np.asarray(told * (along[:, X] + 1j * along[:, Y]))
+
+    def _centre(self, disc: int) -> complex:
+        own = 3 if self.drive.crank.support is None else 3 + 2 * self.drive.crank.number
+        place = ActualParts(self.drive, self.crank_angle, disc).place
+        return place + complex(self.pose[own * disc], self.pose[own * disc + 1])
+
+    def _axis(self, disc: int) -> complex:
+        return ActualParts(self.drive, self.crank_angle, disc).wheel_axis + self.wheel
+
+    def _contacts(self, disc: int) -> RubbedContacts:
+        drive, friction, part = self.drive, self._friction, self.parts[disc]
+        parts = ActualParts(drive, self.crank_angle, disc)
+        ahead, behind = (ActualParts(drive, self.crank_angle + side * TURNED, disc) for side in (1.0, -1.0))
+        own = 3 if drive.crank.support is None else 3 + 2 * drive.crank.number
+        centre, axis, turn = self._centre(disc), self._axis(disc), np.exp(1j * self.pose[own * disc + 2])
+        places, radii = parts.wheel_pins
+        pin = axis + places * np.exp(1j * self.pose[-1]) + self.wheel_place[disc]
+        into = self._into_flank(disc, (pin - centre) * np.conj(turn), radii) * turn
+        # Of what moves as the cranks turn: the wheel turns about its axis, the disc goes around without turning.
+        turning = np.angle(ahead.wheel_pins[0] / behind.wheel_pins[0]) / (2.0 * TURNED)
+        carried = (ahead.place - behind.place) / (2.0 * TURNED)
+        point = pin + radii * into
+        speed = 1j * turning * (point - axis) - carried
+        coefficient = np.full(places.size, easier_coefficient(friction.pin, friction.seat, drive.pin_wheel))
+        if drive.pin_shaft is not None:
+            shaft, shaft_radii = parts.shaft_pins
+            shaft = shaft + self.shaft_place[disc]
+            apart = shaft - (centre + parts.holes[0] * turn)
+            outward = apart / np.where(apart == 0.0, 1.0, np.abs(apart))
+            into = np.concatenate((into, outward))
+            point = np.concatenate((point, shaft + shaft_radii * outward))
+            speed = np.concatenate((speed, np.full(shaft.size, -carried)))
+            hole = easier_coefficient(friction.hole, friction.seat, drive.pin_shaft)
+            coefficient = np.concatenate((coefficient, np.full(shaft.size, hole)))
+        slip = (np.conj(1j * into) * speed).real
+        most = coefficient * np.concatenate((part.pin_load[0], part.hole_load[0]))
+        rubbing = -self._motion * np.sign(slip) * most * 1j * into
+        # Next to the pitch point it may have any size up to that.
+        told, rolls = self._told(disc), np.abs(slip) < 1.01 * FADES * drive.crank.eccentricity
+        some = rolls & (np.abs(told) <= (1.0 + SAME) * most)
+        return RubbedContacts(point=point, into_disc=into, rubbing=np.where(some, told, rubbing), most=most)
+
+    def _into_flank(self, disc: int, at: ComplexArray, radii: FloatArray) -> ComplexArray:
+        """Unit vectors from loaded wheel pins into the flank, in the frame of the disc; nothing for the others."""
+        step, found = 1e-5 * self.drive.pin_wheel.pin_radius, np.zeros(at.size, dtype=complex)
+        rows = at + step * np.array([0.0, 1.0, -1.0, 1j, -1j])[:, None]
+        approach = DeviatedFlank(self.drive, disc).approaches(rows, radii, 10.0 * step)[0]
+        slope = (approach[1] - approach[2] + 1j * (approach[3] - approach[4])) / (2.0 * step)
+        loaded = self.parts[disc].pin_load[0] > 0.0
+        found[loaded] = slope[loaded] / np.abs(slope[loaded])
+        return found
