@@ -2,7 +2,8 @@
 
 ``--practical`` takes drives as people draw them instead (`ltca.testing.practical_drives`), ``--preloaded`` such whose parts
 overlap as drawn, ``--cranks`` reducers of all kinds (`ltca.testing.crank_drives`), ``--pins`` such whose pins are loose,
-sleeved or bend (`ltca.testing.pin_drives`); none of them may be refused.
+sleeved or bend, ``--friction`` such that rub, each with its motion reversed as well (`ltca.testing.pin_drives`); none of them
+may be refused.
 
 Every answer is either confirmed by `ltca.testing.balance_check` (residual, complementarity, minimum of the potential) or a
 `ConvergenceError` with its history; anything else ends as a wrong answer, named with its seed. The result is
@@ -17,23 +18,55 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ltca.analysis.engines import HalfSpace
+from ltca.analysis.friction.losses import losses, moves_back
 from ltca.drive.parts import Drive
+from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import friction_of, with_friction
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
-from ltca.testing.pin_drives import pin_drive
+from ltca.testing.pin_drives import friction_drive, pin_drive
 from ltca.testing.practical_drives import practical_drive, preloaded_drive
 from ltca.testing.random_drives import random_reducer
 
 
+def try_friction_drive(seed: int) -> tuple[str, str, int]:
+    """Return outcome, detail and iterations of a drive with friction, moved by its input and by its output."""
+    drive, angle = friction_drive(seed)
+    model = HalfSpace().prepare(drive).model
+    friction, outcome, problems, iterations = friction_of(model), "balanced", [], 0
+    assert isinstance(friction, TurningFriction)
+    for driven_by in ("input", "output"):
+        own = replace(drive, load=replace(drive.load, driven_by=driven_by))
+        rubs = friction if driven_by == drive.load.driven_by else friction.reversed()
+        moving = with_friction(model, rubs)
+        try:
+            balanced = solve_at_output(moving, own, np.array([angle]), drive.load.torque)
+        except ConvergenceError as error:
+            kind = "convergence error" if error.history else "error without history"
+            return kind, f"driven by its {driven_by}: {error}", 0
+        found = find_imbalance(own, moving, balanced, torque=drive.load.torque)
+        lost = losses(moving, own, balanced, drive.load.torque)
+        if not np.all(np.isfinite(lost.efficiency)) or np.any(lost.total < 0.0):
+            found.append(f"efficiency {lost.efficiency}, losses {lost.total} N·mm")
+        if driven_by == "output" and not np.all(moves_back(lost)):
+            outcome = "balanced, locks itself"
+        problems += [f"driven by its {driven_by}: {problem}" for problem in found]
+        iterations = max(iterations, int(balanced.iterations[0]))
+    return ("wrong" if problems else outcome), "; ".join(problems), iterations
+
+
 def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> tuple[str, str, int]:
     """Return outcome, detail and iterations of the drive of a seed."""
+    if draw is friction_drive:
+        return try_friction_drive(seed)
     drawn = draw(seed)
     if drawn is None:
         return "no drive fits", "", 0
@@ -58,12 +91,21 @@ def main() -> int:
     )
     kind.add_argument("--preloaded", action="store_true", help="such drives whose parts overlap as drawn")
     kind.add_argument("--pins", action="store_true", help="such reducers with loose, sleeved and bent pins")
+    kind.add_argument("--friction", action="store_true", help="such reducers with friction, moved either way")
     parser.add_argument("--first", type=int, default=0, help="first seed; default 0")
     parser.add_argument("--out", type=Path, default=Path("out/random_drives.json"))
     arguments = parser.parse_args()
-    answered = arguments.practical or arguments.preloaded or arguments.cranks or arguments.pins
+    answered = arguments.practical or arguments.preloaded or arguments.cranks or arguments.pins or arguments.friction
     draw = practical_drive if arguments.practical else preloaded_drive if arguments.preloaded else random_reducer
-    draw = crank_drive if arguments.cranks else pin_drive if arguments.pins else draw
+    draw = (
+        crank_drive
+        if arguments.cranks
+        else pin_drive
+        if arguments.pins
+        else friction_drive
+        if arguments.friction
+        else draw
+    )
     outcomes: Counter[str] = Counter()
     remarks: list[str] = []
     iterations: Counter[int] = Counter()
@@ -94,7 +136,7 @@ def main() -> int:
             arguments.out.write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
             print(f"{number}: {dict(outcomes)}, {report['seconds']} s", flush=True)
     bad = outcomes["wrong"] + outcomes["error without history"]
-    return 1 if bad or (answered and outcomes["balanced"] < arguments.count) else 0
+    return 1 if bad or (answered and outcomes["balanced"] + outcomes["balanced, locks itself"] < arguments.count) else 0
 
 
 if __name__ == "__main__":

@@ -15,10 +15,10 @@ of the contact's load, along the flank) is no force.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, cast
+from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, take_positions
@@ -28,7 +28,16 @@ from ltca.equilibrium.reducer import disc_responses
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
 from ltca.testing.friction_check import FrictionCheck
-from ltca.testing.yielding_pins import ContactOfSleeves, SeatEnergy, YieldingPins, beam_stiffness
+from ltca.testing.yielding_pins import (
+    EnergyLaw,
+    SeatEnergy,
+    YieldingPins,
+    beam_stiffness,
+    contact_alone,
+    crankshaft_deflections,
+    has_ring,
+    ring_tips,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -39,14 +48,6 @@ ComplexArray = NDArray[np.complex128]
 
 FARTHEST = 0.01
 """Largest displacement tried, as a part of the pin radius."""
-
-
-class EnergyLaw(Protocol):
-    """What the check asks of a contact law."""
-
-    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """∫F dδ, N·mm."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,7 +159,7 @@ class PotentialEnergy:
         """Energy of crankshafts on their bearings and of the wheel on its own, N·mm."""
         total = 0.5 * (self.drive.pin_wheel.support_stiffness or 0.0) * np.abs(self.wheel_displacement(pose)) ** 2
         if self.drive.crank.support is not None:
-            holding = np.linalg.inv(_deflections(self.drive))
+            holding = np.linalg.inv(crankshaft_deflections(self.drive))
             discs = range(self.drive.disc.number_of_discs)
             moved = np.stack([self._cranks(disc, pose) for disc in discs], axis=1)
             total = total + 0.5 * np.einsum("pdc,de,pec->p", moved.conj(), holding, moved).real
@@ -255,27 +256,6 @@ class PotentialEnergy:
         return np.asarray(energy(np.clip(share, 0.0, 1.0)).sum(axis=1))
 
 
-def has_ring(drive: Drive) -> bool:
-    """Tell whether a ring ties the tips of the shaft pins."""
-    return drive.pin_shaft is not None and drive.pin_shaft.beam is not None and drive.pin_shaft.beam.tip != "free"
-
-
-def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
-    """Displacements of the tips of the shaft pins that a ring moves along and turns, mm, shape (poses, z_PS)."""
-    places = ActualParts(drive, 0.0).shaft_pins[0]
-    if not has_ring(drive):
-        return np.zeros((pose.shape[0], places.size), dtype=complex)
-    x, y, turned = pose[:, -4, None], pose[:, -3, None], pose[:, -2, None]
-    return np.asarray(x + 1j * y + 1j * turned * places)
-
-
-def _without_what_is_behind(law: EnergyLaw) -> EnergyLaw:
-    """Law of the contacts themselves, on sleeves down to half their wall."""
-    if not isinstance(law, BackedLaw):
-        return law
-    return ContactOfSleeves(law=law) if law.overlap else law.contact
-
-
 def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, row: int) -> dict[str, YieldingPins]:
     """Wheel pins and shaft pins where the loads of an answer hold them."""
     parts, found = disc_responses(balanced.response), {}
@@ -301,37 +281,25 @@ def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, ro
     return found
 
 
-def _deflections(drive: Drive) -> FloatArray:
-    """Deflections of a crankshaft in the planes of the discs by forces there: three-moment integrals by quadrature, mm/N."""
-    support = drive.crank.support
-    assert support is not None
-    (start, end), planes = support.positions, np.asarray(drive.disc.disc_planes)
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    marks = np.unique(np.concatenate([[start, end], planes]))
-    half = 0.5 * np.diff(marks)
-    at = (0.5 * (marks[1:] + marks[:-1])[:, None] + half[:, None] * nodes).ravel()
-    weight = (half[:, None] * weights).ravel()
-    second = (planes - start) / (end - start)
-
-    def bending(force: float, share: float) -> FloatArray:
-        """Bending moment of a unit force and its two reactions, looking from the left, mm."""
-        left = np.maximum(at - force, 0.0) - (1.0 - share) * np.maximum(at - start, 0.0)
-        return np.asarray(left - share * np.maximum(at - end, 0.0))
-
-    moments = np.stack([bending(force, share) for force, share in zip(planes, second, strict=True)])
-    rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
-    reactions = np.stack([1.0 - second, second])
-    return np.asarray(
-        (moments * weight) @ moments.T / rigidity
-        + reactions.T @ np.diag(1.0 / np.asarray(support.stiffness)) @ reactions
+def potential_of(drive: Drive, model: ComplianceModel, balanced: Equilibrium, position: int) -> PotentialEnergy:
+    """Return Π about a position that is said to balance; arguments as for `find_imbalance`."""
+    laws = cast(HalfSpaceCompliance, model.discs[0])
+    pins = _yielding(drive, laws, balanced, position)
+    return PotentialEnergy(
+        drive=drive,
+        pin_law=contact_alone(laws.pin_law),
+        inner_law=laws.roller_laws.inner,
+        outer_law=laws.roller_laws.outer,
+        crank_angle=float(balanced.crank_angle[position]),
+        wheel_moment=float(balanced.wheel_moment[position]),
+        wheel_pins=pins["wheel_pins"],
+        shaft_pins=pins["shaft_pins"],
     )
 
 
-def _friction(drive: Drive, potential: PotentialEnergy, balanced: Equilibrium, row: int) -> FrictionCheck | None:
-    """What rubs in an answer; None in a drive without friction."""
-    if drive.friction is None:
-        return None
-    pose, wheel, shaft = balanced.pose[row], potential.wheel_pins, potential.shaft_pins
+def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int) -> FrictionCheck:
+    """Return what should rub at that position in a drive with friction."""
+    drive, pose, wheel, shaft = potential.drive, balanced.pose[position], potential.wheel_pins, potential.shaft_pins
     supported = drive.pin_wheel.support_stiffness is not None
     return FrictionCheck(
         drive=drive,
@@ -341,7 +309,7 @@ def _friction(drive: Drive, potential: PotentialEnergy, balanced: Equilibrium, r
         wheel_column=None if not supported else -6 if has_ring(drive) else -3,
         wheel_place=wheel.bent + wheel.loose,
         shaft_place=shaft.bent + shaft.loose,
-        parts=[take_positions(part, np.array([row])) for part in disc_responses(balanced.response)],
+        parts=[take_positions(part, np.array([position])) for part in disc_responses(balanced.response)],
         bearings=potential.bearing_forces(pose),
     )
 
@@ -374,18 +342,7 @@ def find_imbalance(
     """
     pose, contacts = balanced.pose[position], balanced.response
     moment = float(balanced.wheel_moment[position])
-    laws = cast(HalfSpaceCompliance, model.discs[0])
-    pins = _yielding(drive, laws, balanced, position)
-    potential = PotentialEnergy(
-        drive=drive,
-        pin_law=_without_what_is_behind(laws.pin_law),
-        inner_law=laws.roller_laws.inner,
-        outer_law=laws.roller_laws.outer,
-        crank_angle=float(balanced.crank_angle[position]),
-        wheel_moment=moment,
-        wheel_pins=pins["wheel_pins"],
-        shaft_pins=pins["shaft_pins"],
-    )
+    potential = potential_of(drive, model, balanced, position)
     wheel, size = drive.crank.eccentricity * float(drive.reduction_ratio), pose.size
     lever = np.ones(size)
     lever[2 : potential.own * drive.disc.number_of_discs : potential.own] = wheel - drive.crank.eccentricity
@@ -395,7 +352,7 @@ def find_imbalance(
     load = abs(moment) / wheel
     if not np.all(np.isfinite(pose)):
         return ["the pose is not finite"]
-    rubbed = _friction(drive, potential, balanced, position)
+    rubbed = None if drive.friction is None else friction_at(potential, balanced, position)
     problems = [] if rubbed is None else rubbed.problems()
     rollers = contacts.rollers
     for name, approach, force in (

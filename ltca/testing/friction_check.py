@@ -28,10 +28,10 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 FADES = 1e-4
-"""Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: its friction may be anything there."""
-SAME = 2e-3
-"""Largest difference of friction forces, as a part of the largest possible one: pins under sleeves are placed by forces without
-friction, and what lies in approaches and plays (some 1e-3 of a radius) shifts contacts and tips their normals."""
+"""Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: any friction may be there."""
+SAME = 1e-5
+"""Largest difference of friction forces, as a part of the largest possible one: normals by differences are good to some 1e-8,
+what the answer's loads leave of balance is less."""
 TURNED = 1e-6
 """Crank angle by which the drive is turned to see what slips, rad."""
 
@@ -69,12 +69,15 @@ class RubbedContacts:
         Friction on the pins, N.
     most : array, shape (pairs,)
         Its size where it slips, N.
+    slip : array, shape (pairs,)
+        Of the pin against the disc by the crank angle, mm/rad.
     """
 
     point: ComplexArray
     into_disc: ComplexArray
     rubbing: ComplexArray
     most: FloatArray
+    slip: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,9 +122,9 @@ class FrictionCheck:
     @cached_property
     def work(self) -> FloatArray:
         """Work against friction by the pose, N and N·mm, shape (coordinates,)."""
-        drive, friction, pins = self.drive, self._friction, self.drive.pin_wheel.number_of_pins
+        drive, pins = self.drive, self.drive.pin_wheel.number_of_pins
         own = 3 if drive.crank.support is None else 3 + 2 * drive.crank.number
-        work, on_wheel = np.zeros(self.pose.size), 0j
+        work = np.zeros(self.pose.size)
         for disc, found in enumerate(self.contacts):
             # On the disc the force is the opposite; the pins of the shaft stand still.
             force, first, total = found.rubbing, own * disc, found.rubbing.sum()
@@ -134,10 +137,7 @@ class FrictionCheck:
             if self.wheel_column is not None:
                 work[self.wheel_column] -= rubbed.sum().real
                 work[self.wheel_column + 1] -= rubbed.sum().imag
-            pressed = self.parts[disc].pin_load[0] * found.into_disc[:pins]
-            on_wheel += rubbed.sum() - pressed.sum()
-        turns = self._motion * np.sign(drive.tooth_number_difference)
-        work[-1] += turns * friction.support_bearing * friction.support_bearing_radius * abs(on_wheel)
+        work[-1] += self._motion * np.sign(drive.tooth_number_difference) * self._at_wheel
         return work
 
     @property
@@ -153,6 +153,13 @@ class FrictionCheck:
         friction = self._friction
         at_support = friction.support_bearing * friction.support_bearing_radius * carried
         return float(self._motion * (self._rolling * np.abs(self.bearings).sum() + at_support))
+
+    @property
+    def lost(self) -> float:
+        """Energy lost by radian of the crank but for seals and oil, N·mm."""
+        at_pins = sum(float((np.abs(each.rubbing) * np.abs(each.slip)).sum()) for each in self.contacts)
+        turns = abs(self.drive.tooth_number_difference) / self.drive.pin_wheel.number_of_pins
+        return at_pins + self._at_wheel * turns + abs(self.at_cranks)
 
     def problems(self) -> list[str]:
         """Return which friction forces of the answer are others than they should be; empty when none is."""
@@ -185,6 +192,15 @@ class FrictionCheck:
         """Lever of the rolling resistance, mm."""
         bearing = self.drive.crank_bearing
         return self._friction.roller * (bearing.inner_race_radius + bearing.roller_radius)
+
+    @property
+    def _at_wheel(self) -> float:
+        """Size of the moment by which the wheel's bearing rubs, N·mm."""
+        pins, on_wheel = self.drive.pin_wheel.number_of_pins, 0j
+        for part, found in zip(self.parts, self.contacts, strict=True):
+            on_wheel += (found.rubbing[:pins] - part.pin_load[0] * found.into_disc[:pins]).sum()
+        friction = self._friction
+        return float(friction.support_bearing * friction.support_bearing_radius * abs(on_wheel))
 
     def _told(self, disc: int) -> ComplexArray:
         """Friction on the pins as the answer tells it: what works by the place of the disc."""
@@ -232,7 +248,7 @@ class FrictionCheck:
         # Next to the pitch point it may have any size up to that.
         told, rolls = self._told(disc), np.abs(slip) < 1.01 * FADES * drive.crank.eccentricity
         some = rolls & (np.abs(told) <= (1.0 + SAME) * most)
-        return RubbedContacts(point=point, into_disc=into, rubbing=np.where(some, told, rubbing), most=most)
+        return RubbedContacts(point=point, into_disc=into, rubbing=np.where(some, told, rubbing), most=most, slip=slip)
 
     def _into_flank(self, disc: int, at: ComplexArray, radii: FloatArray) -> ComplexArray:
         """Unit vectors from loaded wheel pins into the flank, in the frame of the disc; nothing for the others."""

@@ -90,7 +90,9 @@ def friction_drive(seed: int) -> tuple[Drive, float]:
         drive = _made_of(random, drive)
         seats = {drive.pin_wheel.seat.kind, "fixed" if drive.pin_shaft is None else drive.pin_shaft.seat.kind}
         # All coefficients are equal as often as not.
-        pin, seat, hole = random.choice(COEFFICIENTS, 3) if random.uniform() < 0.5 else [random.choice(COEFFICIENTS)] * 3
+        pin, seat, hole = (
+            random.choice(COEFFICIENTS, 3) if random.uniform() < 0.5 else [random.choice(COEFFICIENTS)] * 3
+        )
         turning = float(random.choice([0.0, 0.002]))
         friction = Friction(
             pin=float(pin),

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,12 +19,21 @@ from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, WheelPinBeam
 from ltca.drive.parts import Drive
 from ltca.laws.backed import MOST, BackedLaw, SeatLaw
+from ltca.testing.actual_parts import ActualParts
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 LOADS = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 300), np.linspace(1.02, 8.0, 60)])
 """Loads at which the energy of a seat is known, in its largest load."""
+
+
+class EnergyLaw(Protocol):
+    """What the check asks of a contact law."""
+
+    def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
+        """∫F dδ, N·mm."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,6 +197,33 @@ class YieldingPins:
         return each.reshape(-1, 2, discs)
 
 
+def has_ring(drive: Drive) -> bool:
+    """Tell whether a ring ties the tips of the shaft pins."""
+    return drive.pin_shaft is not None and drive.pin_shaft.beam is not None and drive.pin_shaft.beam.tip != "free"
+
+
+def ring_tips(drive: Drive, pose: FloatArray) -> ComplexArray:
+    """Displacements of the tips of the shaft pins that a ring moves along and turns, mm, shape (poses, z_PS)."""
+    places = ActualParts(drive, 0.0).shaft_pins[0]
+    if not has_ring(drive):
+        return np.zeros((pose.shape[0], places.size), dtype=complex)
+    x, y, turned = pose[:, -4, None], pose[:, -3, None], pose[:, -2, None]
+    return np.asarray(x + 1j * y + 1j * turned * places)
+
+
+def contact_alone(law: EnergyLaw) -> EnergyLaw:
+    """Return the law of the contacts themselves, on sleeves down to half their wall.
+
+    Parameters
+    ----------
+    law : EnergyLaw
+        Of contacts, or of those with what is behind them.
+    """
+    if not isinstance(law, BackedLaw):
+        return law
+    return ContactOfSleeves(law=law) if law.overlap else law.contact
+
+
 def beam_stiffness(drive: Drive, part: PinWheel | PinShaft, material: Material) -> FloatArray | None:
     """Return the forces on a pin by its mean displacements along the discs, and that of a tip that a ring holds, N/mm.
 
@@ -253,3 +290,35 @@ def _unit_loads(
         moments += [span - at, one]
         shears += [one, 0.0 * one]
     return np.stack(moments), np.stack(shears)
+
+
+def crankshaft_deflections(drive: Drive) -> FloatArray:
+    """Return deflections of a crankshaft in the planes of the discs by forces there, by quadrature of moments, mm/N.
+
+    Parameters
+    ----------
+    drive : Drive
+        With `crank.support`.
+    """
+    support = drive.crank.support
+    assert support is not None
+    (start, end), planes = support.positions, np.asarray(drive.disc.disc_planes)
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    marks = np.unique(np.concatenate([[start, end], planes]))
+    half = 0.5 * np.diff(marks)
+    at = (0.5 * (marks[1:] + marks[:-1])[:, None] + half[:, None] * nodes).ravel()
+    weight = (half[:, None] * weights).ravel()
+    second = (planes - start) / (end - start)
+
+    def bending(force: float, share: float) -> FloatArray:
+        """Bending moment of a unit force and its two reactions, looking from the left, mm."""
+        left = np.maximum(at - force, 0.0) - (1.0 - share) * np.maximum(at - start, 0.0)
+        return np.asarray(left - share * np.maximum(at - end, 0.0))
+
+    moments = np.stack([bending(force, share) for force, share in zip(planes, second, strict=True)])
+    rigidity = drive.materials.crankshaft.youngs_modulus * np.pi * support.diameter**4 / 64.0
+    reactions = np.stack([1.0 - second, second])
+    return np.asarray(
+        (moments * weight) @ moments.T / rigidity
+        + reactions.T @ np.diag(1.0 / np.asarray(support.stiffness)) @ reactions
+    )

@@ -1,0 +1,154 @@
+"""Reducers whose joints rub: every one is answered, either way it moves, and confirmed apart from the code that balances."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.friction.losses import losses
+from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer, friction_of, with_friction
+from ltca.testing.balance_check import find_imbalance, friction_at, potential_of
+from ltca.testing.pin_drives import friction_drive
+
+
+def answer(seed, reverse=False):
+    """A drive, the model that answers, and its answer; its motion reversed if so wanted."""
+    drive, angle = friction_drive(seed)
+    model = HalfSpace().prepare(drive).model
+    if reverse:
+        other = {"input": "output", "output": "input"}[drive.load.driven_by]
+        drive = replace(drive, load=replace(drive.load, driven_by=other))
+        model = with_friction(model, friction_of(model).reversed())
+    return drive, model, solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+
+
+def confirm(seed, reverse=False):
+    drive, model, found = answer(seed, reverse)
+    torque = drive.load.torque
+    assert find_imbalance(drive, model, found, torque=torque) == [], seed
+    lost, (rubbed, moment) = losses(model, drive, found, torque), independent(drive, model, found)
+    assert np.isfinite(lost.efficiency).all()
+    oil, speed = drive.friction.no_load_torque, abs(drive.crank_turns_per_input)
+    # Bearings' forces are slopes of energies, by differences: good to some 1e-5 of what is lost there.
+    assert lost.total[0] == pytest.approx(rubbed + oil / speed, rel=1e-4, abs=1e-9 * torque), seed
+    if lost.driven_by_input:
+        oil = -oil
+    part = drive.input_per_crank_moment or 1.0
+    turns = 1.0 / drive.crank_turns_per_input
+    motion = drive.motion_sign
+    wanted = motion * turns * part * moment + drive.friction.no_load_torque * abs(turns)
+    # The crank's moment is a small difference of large ones (radial forces turn with the cranks).
+    assert lost.at_input[0] == pytest.approx(wanted, abs=1e-4 * torque / abs(drive.reduction_ratio)), seed
+
+
+def independent(drive, model, found):
+    """Energy lost by radian of the crank but for seals and oil, and the moment of all cranks, N·mm."""
+    potential = potential_of(drive, model, found, 0)
+    rubbed = friction_at(potential, found, 0)
+    return rubbed.lost, potential.crank_moment(found.pose[0]) + rubbed.at_cranks
+
+
+def test_drives_that_rub_quick():
+    for seed in range(4):
+        confirm(seed)
+        confirm(seed, reverse=True)
+
+
+@pytest.mark.slow
+def test_a_hundred_drives_that_rub():
+    """Half of them driven by their outputs; ``benchmarks/random_drives.py --friction`` runs a thousand both ways."""
+    for seed in range(4, 100):
+        confirm(seed)
+
+
+def test_every_kind_of_friction_is_drawn():
+    drives = [friction_drive(seed)[0] for seed in range(60)]
+    rubs = [drive.friction for drive in drives]
+    assert {drive.load.driven_by for drive in drives} == {"input", "output"}
+    assert {drive.load.speed for drive in drives} == {None, 1500.0}
+    assert {drive.pin_wheel.seat.kind for drive in drives} == {"fixed", "slot", "sleeve"}
+    assert {drive.pin_shaft.seat.kind for drive in drives if drive.pin_shaft} == {"fixed", "sleeve"}
+    assert {drive.installation.held for drive in drives} == {"pin-shaft", "pin-wheel"}
+    assert {drive.installation.first_stage_ratio is None for drive in drives} == {True, False}
+    assert {drive.disc.number_of_discs for drive in drives} == {1, 2, 3}
+    assert all(0.0 in {getattr(rub, name) for rub in rubs} for name in ("pin", "seat", "hole", "roller"))
+    assert 0.15 in {rub.pin for rub in rubs}
+    assert any(rub.pin == rub.hole == rub.seat > 0.0 for rub in rubs)
+    assert {rub.support_bearing > 0.0 for rub in rubs} == {rub.no_load_torque > 0.0 for rub in rubs} == {True, False}
+
+
+@pytest.fixture(scope="module")
+def rubbing():
+    """One with everything: pin shaft, friction on both kinds of pins, in seats, rollers and bearings; the wheel held."""
+    for seed in range(1000):
+        drive, _ = friction_drive(seed)
+        rubs = drive.friction
+        everything = drive.pin_shaft is not None and drive.pin_wheel.seat.kind != "fixed" and drive.wheel_is_held
+        if everything and len({rubs.pin, rubs.hole, 0.0}) == 3 and rubs.seat * rubs.roller * rubs.support_bearing > 0.0:
+            found = answer(seed)
+            assert find_imbalance(found[0], found[1], found[2], torque=found[0].load.torque) == []
+            return found
+    raise AssertionError("no such drive")
+
+
+def spoilt(found, change):
+    """The answer with other friction forces."""
+    response = found.response
+    parts = tuple(replace(part, friction=change(part.friction)) for part in response.parts)
+    return replace(found, response=replace(response, parts=parts))
+
+
+def flipped(forces):
+    """The largest of them the other way."""
+    forces = forces.copy()
+    forces[0, np.argmax(np.abs(forces[0]))] *= -1.0
+    return forces
+
+
+@pytest.mark.parametrize("change", [lambda forces: 1.02 * forces, flipped, lambda forces: 0.0 * forces])
+def test_the_check_sees_wrong_friction_forces(rubbing, change):
+    drive, model, found = rubbing
+    assert any("instead of" in problem for problem in find_imbalance(drive, model, spoilt(found, change)))
+
+
+def rebalanced(rubbing, **changes):
+    """The same drive balanced with other friction, the check told of the drive's own."""
+    drive, model, found = rubbing
+    other = with_friction(model, replace(friction_of(model), **changes))
+    torque = drive.load.torque
+    return find_imbalance(drive, other, solve_at_output(other, drive, found.crank_angle, torque), torque=torque)
+
+
+def test_the_check_sees_the_coefficient_of_another_joint(rubbing):
+    friction = friction_of(rubbing[1])
+    assert any("wheel pin" in problem for problem in rebalanced(rubbing, pin=friction.hole))
+    assert any("shaft pin" in problem for problem in rebalanced(rubbing, hole=friction.pin))
+
+
+def test_the_check_sees_the_other_motion(rubbing):
+    assert any("instead of" in problem for problem in rebalanced(rubbing, motion=-friction_of(rubbing[1]).motion))
+
+
+def test_the_check_sees_a_pose_that_friction_does_not_hold(rubbing):
+    """Told forces that are right do not help where they do not balance."""
+    drive, model, found = rubbing
+    smooth = solve_at_output(with_friction(model, None), drive, found.crank_angle, drive.load.torque)
+    own = Reducer.respond(model, smooth.crank_angle, smooth.pose)
+    assert any("slope" in problem for problem in find_imbalance(drive, model, replace(smooth, response=own)))
+
+
+@pytest.mark.parametrize("name", ["rolling", "support"])
+def test_the_check_sees_bearings_that_rub_not(rubbing, name):
+    """Ten times the resistance of bearings, so that it is more than what the check leaves: a thousandth of the load."""
+    drive, model, found = rubbing
+    rough = replace(drive.friction, roller=0.015, support_bearing=0.02)
+    drive = replace(drive, friction=rough)
+    friction = type(friction_of(model)).of_drive(drive)
+    model = with_friction(model, friction)
+    torque = drive.load.torque
+    assert find_imbalance(drive, model, solve_at_output(model, drive, found.crank_angle, torque), torque=torque) == []
+    assert rebalanced((drive, model, found), **{name: 0.0})
