@@ -202,7 +202,8 @@ class PotentialEnergy:
         for disc in range(self.drive.disc.number_of_discs):
             parts, centre, turn = self._place(disc, pose[None])
             shift = centre + parts.bores * turn - parts.race_centres - self._cranks(disc, pose[None])
-            step = 1e-4 * float(np.max(np.abs(shift))) + 1e-9
+            # Short against the approaches of a disc that carries next to nothing.
+            step = 2e-6 * float(np.max(np.abs(shift))) + 1e-10
             around = shift[0, :, None, None] + step * np.array([[1.0], [-1.0], [1j], [-1j]])
             energy = np.stack([self._rollers(parts, each) for each in around])
             found.append((energy[:, 0] - energy[:, 1] + 1j * (energy[:, 2] - energy[:, 3])) / (2.0 * step))

@@ -225,12 +225,13 @@ class FrictionCheck:
         centre, axis, turn = self._centre(disc), self._axis(disc), np.exp(1j * self.pose[own * disc + 2])
         places, radii = parts.wheel_pins
         pin = axis + places * np.exp(1j * self.pose[-1]) + self.wheel_place[disc]
-        into = self._into_flank(disc, (pin - centre) * np.conj(turn), radii) * turn
-        # Of what moves as the cranks turn: the wheel turns about its axis, the disc goes around without turning.
+        into, approach = self._into_flank(disc, (pin - centre) * np.conj(turn), radii)
+        into = into * turn
+        # The wheel turns about its axis, the disc goes around without turning; their displacements go around with the load.
         turning = np.angle(ahead.wheel_pins[0] / behind.wheel_pins[0]) / (2.0 * TURNED)
-        carried = (ahead.place - behind.place) / (2.0 * TURNED)
-        point = pin + radii * into
-        speed = 1j * turning * (point - axis) - carried
+        carried = (ahead.place - behind.place) / (2.0 * TURNED) + 1j * (centre - parts.place)
+        point = pin + (radii - approach) * into
+        speed = 1j * turning * (point - axis) + 1j * self.wheel - carried
         coefficient = np.full(places.size, easier_coefficient(friction.pin, friction.seat, drive.pin_wheel))
         if drive.pin_shaft is not None:
             shaft, shaft_radii = parts.shaft_pins
@@ -250,12 +251,12 @@ class FrictionCheck:
         some = rolls & (np.abs(told) <= (1.0 + SAME) * most)
         return RubbedContacts(point=point, into_disc=into, rubbing=np.where(some, told, rubbing), most=most, slip=slip)
 
-    def _into_flank(self, disc: int, at: ComplexArray, radii: FloatArray) -> ComplexArray:
-        """Unit vectors from loaded wheel pins into the flank, in the frame of the disc; nothing for the others."""
-        step, found = 1e-5 * self.drive.pin_wheel.pin_radius, np.zeros(at.size, dtype=complex)
+    def _into_flank(self, disc: int, at: ComplexArray, radii: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Unit vectors from loaded wheel pins into the flank, in the frame of the disc, and approaches; 0 for the others."""
+        step = 1e-5 * self.drive.pin_wheel.pin_radius
         rows = at + step * np.array([0.0, 1.0, -1.0, 1j, -1j])[:, None]
         approach = DeviatedFlank(self.drive, disc).approaches(rows, radii, 10.0 * step)[0]
         slope = (approach[1] - approach[2] + 1j * (approach[3] - approach[4])) / (2.0 * step)
         loaded = self.parts[disc].pin_load[0] > 0.0
-        found[loaded] = slope[loaded] / np.abs(slope[loaded])
-        return found
+        into = np.where(loaded, slope, 0.0) / np.where(loaded, np.abs(slope), 1.0)
+        return into, np.where(loaded, approach[0], 0.0)

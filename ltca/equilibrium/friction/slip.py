@@ -56,9 +56,11 @@ class Slip:
         """
         place = geometry.placement
         flank, holes = part.flank.along.copy(), part.holes.along.copy()
-        # The flank lies a pin radius nearer to the disc than the pin's centre, the wall a hole radius beyond the hole's.
-        flank[..., DISC_ROTATION] += place.wheel_pin_radii
-        flank[..., WHEEL_ANGLE] -= place.wheel_pin_radii
+        # The flank lies a pin radius nearer to the disc than the pin's centre, less what the pin has given way by, its play
+        # first; the wall lies a hole radius beyond the hole's centre.
+        nearer = place.wheel_pin_radii - place.wheel_pin_plays - np.maximum(part.flank.approach, 0.0)
+        flank[..., DISC_ROTATION] += nearer
+        flank[..., WHEEL_ANGLE] -= nearer
         holes[..., DISC_ROTATION] += place.hole_radii
         by_pose = np.concatenate((flank, holes), axis=1)
         centre, rate = place.race_velocity(crank_angle), np.zeros(pose.shape)
