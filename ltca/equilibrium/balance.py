@@ -141,7 +141,8 @@ def solve_equilibrium(
     else:
         search = Search(model, angle, moment, lever, load, np.zeros((angle.size, lever.shape[-1])))
         left = _solve_by_neighbours(search, start, inner)
-    left = np.array([row for row in left if not search.follow_valley(int(row))], dtype=np.intp)
+    creeping = search.follow_valley if search.symmetric else search.reduce_residual
+    left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
     if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
     if left.size:

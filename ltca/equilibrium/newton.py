@@ -40,6 +40,8 @@ CREEPING = 0.01
 """Residual below which a position that takes many iterations creeps rather than wanders, as a part of the load."""
 VALLEY_STEPS, WALL_STEPS = 60, 6
 """Steps along a valley, and down to its bottom after each."""
+REDUCTIONS = 60
+"""Steps that reduce the residual of a position with friction, taken or not."""
 FIRST_ALONG = 1e-5
 """First step along a valley, as a part of the smallest pin radius; each may be four times the last."""
 SOFT = 1e-6
@@ -158,6 +160,43 @@ class Search:
             damping[active] *= np.where(fraction > 0.5, 0.1, np.where(fraction < 0.1, 10.0, 1.0))
             damping[active] = damping[active].clip(1e-12, 1e3)
         return np.union1d(active, asked[self.slipped[asked]])
+
+    def reduce_residual(self, row: int) -> bool:
+        """Balance a position with friction by the size of its residual alone (Levenberg–Marquardt); tell whether it does.
+
+        Friction has no potential: where it turns over the symmetric part of the tangent no step goes downhill, though the
+        tangent itself leads to balance.
+        """
+        if self.slipped[row]:
+            return False
+        rows, pose = np.array([row]), self.pose[row : row + 1].copy()
+        response = self.evaluate(rows, pose, None)
+        gradient, tangent = self.scaled(rows, response)
+        damping = 1e-10
+        for _ in range(REDUCTIONS):
+            self.residual[row] = np.max(np.abs(gradient))
+            if self.residual[row] <= self.accepted(rows, tangent)[0]:
+                self.pose[rows] = pose
+                self.keep(rows, response, np.ones(1, dtype=bool))
+                return True
+            self.iterations[row] += 1
+            sizes = np.linalg.norm(tangent[0], axis=0)
+            sizes = np.where(sizes > 0.0, sizes, 1.0)
+            system = np.concatenate((tangent[0] / sizes, np.sqrt(damping) * np.eye(sizes.size)))
+            right = np.concatenate((-gradient[0], np.zeros(sizes.size)))
+            step = np.linalg.lstsq(system, right, rcond=None)[0] / sizes
+            tried = pose + step[None] / self.levers(rows)
+            try:
+                there = self.evaluate(rows, tried, Start.onward(response))
+            except ConvergenceError:  # contacts may be lost by a step that is too long
+                damping *= 10.0
+                continue
+            left, slopes = self.scaled(rows, there)
+            if np.linalg.norm(left) < np.linalg.norm(gradient):
+                pose, response, gradient, tangent, damping = tried, there, left, slopes, max(0.1 * damping, 1e-14)
+            else:
+                damping *= 10.0
+        return False
 
     def follow_valley(self, row: int) -> bool:
         """Balance a position that creeps along one soft mode; tell whether it does."""
