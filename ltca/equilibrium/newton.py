@@ -42,6 +42,9 @@ VALLEY_STEPS, WALL_STEPS = 60, 6
 """Steps along a valley, and down to its bottom after each."""
 REDUCTIONS = 60
 """Steps that reduce the residual of a position with friction, taken or not."""
+SHAKES = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
+"""By what part of itself each coordinate of such a position is shaken for another start: a disc that carries next to nothing may
+be caught between contacts that friction does not let it rest on, and carries nothing right beside."""
 FIRST_ALONG = 1e-5
 """First step along a valley, as a part of the smallest pin radius; each may be four times the last."""
 SOFT = 1e-6
@@ -162,17 +165,28 @@ class Search:
         return np.union1d(active, asked[self.slipped[asked]])
 
     def reduce_residual(self, row: int) -> bool:
-        """Balance a position with friction by the size of its residual alone (Levenberg–Marquardt); tell whether it does.
+        """Balance a position with friction by the size of its residual alone; tell whether it does.
 
         Friction has no potential: where it turns over the symmetric part of the tangent no step goes downhill, though the
         tangent itself leads to balance.
         """
         if self.slipped[row]:
             return False
-        rows, pose = np.array([row]), self.pose[row : row + 1].copy()
+        random = np.random.default_rng(0)  # the same position is always answered alike
+        last = self.pose[row : row + 1].copy()
+        return any(self._reduce_residual(row, last * (1.0 + part * random.normal(size=last.shape))) for part in SHAKES)
+
+    def _reduce_residual(self, row: int, pose: FloatArray) -> bool:
+        """Levenberg and Marquardt's iteration from a pose."""
+        try:
+            return self._descend(np.array([row]), row, pose)
+        except ConvergenceError:  # contacts may be lost on the way
+            return False
+
+    def _descend(self, rows: NDArray[np.intp], row: int, pose: FloatArray) -> bool:
         response = self.evaluate(rows, pose, None)
         gradient, tangent = self.scaled(rows, response)
-        damping = 1e-10
+        damping, size = 1e-10, pose.shape[1]
         for _ in range(REDUCTIONS):
             self.residual[row] = np.max(np.abs(gradient))
             if self.residual[row] <= self.accepted(rows, tangent)[0]:
@@ -180,17 +194,15 @@ class Search:
                 self.keep(rows, response, np.ones(1, dtype=bool))
                 return True
             self.iterations[row] += 1
-            sizes = np.linalg.norm(tangent[0], axis=0)
-            sizes = np.where(sizes > 0.0, sizes, 1.0)
-            system = np.concatenate((tangent[0] / sizes, np.sqrt(damping) * np.eye(sizes.size)))
-            right = np.concatenate((-gradient[0], np.zeros(sizes.size)))
-            step = np.linalg.lstsq(system, right, rcond=None)[0] / sizes
+            lengths = np.linalg.norm(tangent[0], axis=0)
+            lengths = np.where(lengths > 0.0, lengths, 1.0)
+            system = np.concatenate((tangent[0] / lengths, np.sqrt(damping) * np.eye(size)))
+            step = np.linalg.lstsq(system, np.concatenate((-gradient[0], np.zeros(size))), rcond=None)[0] / lengths
             tried = pose + step[None] / self.levers(rows)
-            try:
-                there = self.evaluate(rows, tried, Start.onward(response))
-            except ConvergenceError:  # contacts may be lost by a step that is too long
+            if np.max(np.abs(tried[:, self.rotations])) > self.half_pitch:
                 damping *= 10.0
                 continue
+            there = self.evaluate(rows, tried, Start.onward(response))
             left, slopes = self.scaled(rows, there)
             if np.linalg.norm(left) < np.linalg.norm(gradient):
                 pose, response, gradient, tangent, damping = tried, there, left, slopes, max(0.1 * damping, 1e-14)

@@ -32,7 +32,11 @@ def confirm(seed, reverse=False):
     assert find_imbalance(drive, model, found, torque=torque) == [], seed
     lost, (rubbed, moment) = losses(model, drive, found, torque), independent(drive, model, found)
     assert np.isfinite(lost.efficiency).all()
-    turns, part, oil = 1.0 / drive.crank_turns_per_input, drive.input_per_crank_moment or 1.0, drive.friction.no_load_torque
+    turns, part, oil = (
+        1.0 / drive.crank_turns_per_input,
+        drive.input_per_crank_moment or 1.0,
+        drive.friction.no_load_torque,
+    )
     # Bearings' forces are slopes of energies, by differences: good to some 1e-5, but for kinks of a ten-thousandth of a load.
     each = torque / abs(drive.reduction_ratio)
     assert lost.total[0] == pytest.approx(rubbed + oil * abs(turns), rel=1e-4, abs=1e-6 * each), seed
