@@ -256,7 +256,7 @@ class FrictionCheck:
         step = 1e-5 * self.drive.pin_wheel.pin_radius
         rows = at + step * np.array([0.0, 1.0, -1.0, 1j, -1j])[:, None]
         approach = DeviatedFlank(self.drive, disc).approaches(rows, radii, 10.0 * step)[0]
-        slope = (approach[1] - approach[2] + 1j * (approach[3] - approach[4])) / (2.0 * step)
+        slope: ComplexArray = (approach[1] - approach[2] + 1j * (approach[3] - approach[4])) / (2.0 * step)
         loaded = self.parts[disc].pin_load[0] > 0.0
         into = np.where(loaded, slope, 0.0) / np.where(loaded, np.abs(slope), 1.0)
-        return into, np.where(loaded, approach[0], 0.0)
+        return np.asarray(into), np.where(loaded, approach[0], 0.0)
