@@ -136,14 +136,36 @@ def solve_at_output(
         return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
     except ConvergenceError as error:
         failure = error
-    found = smooth
+    found, strengths, loads = smooth, [0.0], [smooth.response.pin_load.sum(axis=1)]
     for strength in STRENGTHS:
         try:
             part = with_friction(model, friction.scaled(strength))
             found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
         except ConvergenceError:
-            raise failure from None
+            raise _jam(strengths, loads, failure) from None
+        strengths.append(strength)
+        loads.append(found.response.pin_load.sum(axis=1))
     return found
+
+
+def _jam(strengths: Sequence[float], loads: Sequence[FloatArray], failure: ConvergenceError) -> ConvergenceError:
+    """Return what to say of positions that do not balance with friction: that they jam, where their loads tell so.
+
+    Friction goes with the loads. What is left of a unit load's moment falls as friction rises, and the loads grow by its
+    inverse; where that comes down to nothing before the whole friction counts no load whatever balances the torque.
+    """
+    if len(loads) < 2:
+        return failure
+    (before, last), (less, more) = ((1.0 / np.maximum(load, 1e-300) for load in loads[-2:]), strengths[-2:])
+    ends = more + last * (more - less) / np.where(before > last, before - last, np.nan)
+    if not np.any(ends <= 1.0):
+        return failure
+    row = int(np.nanargmin(ends))
+    return ConvergenceError(
+        f"the drive jams: wheel pins carry {loads[0][row]:.4g} N without friction, {loads[-1][row]:.4g} N at {more:.0%} of its "
+        f"coefficients, and more than any load at some {ends[row]:.0%} (position {row} of {ends.size}); {failure}",
+        failure.history,
+    )
 
 
 def _solve(

@@ -9,9 +9,11 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.friction.losses import losses
+from ltca.drive.parts import Friction
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer, friction_of, with_friction
+from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance, friction_at, potential_of
 from ltca.testing.pin_drives import friction_drive
 
@@ -106,6 +108,24 @@ def test_a_disc_that_friction_does_not_let_rest_carries_nothing():
     assert find_imbalance(drive, model, found, torque=torque) == []
     first, second = (part.pin_load.sum() for part in found.response.parts)
     assert first < 1e-3 * second
+
+
+def test_a_drive_that_jams_says_so():
+    """At μ = 0.5 this one's loads grow by the inverse of what friction leaves of their moment, without end at 80 % of it."""
+    drive, angle = friction_drive(2)
+    drive = replace(drive, friction=Friction(pin=0.5, seat=0.5), load=replace(drive.load, driven_by="input"))
+    model, torque, loads = HalfSpace().prepare(drive).model, drive.load.torque, []
+    strengths = np.array([0.0, 0.25, 0.5, 0.75])
+    for strength in strengths:
+        part = with_friction(model, friction_of(model).scaled(strength))
+        loads.append(solve_at_output(part, drive, np.array([angle]), torque).response.pin_load.sum())
+    left = 1.0 / np.array(loads)
+    # What is left of a unit load's moment falls to nothing, in a line but for the directions that loads turn to.
+    slope, none = np.polyfit(strengths, left, 1)
+    np.testing.assert_allclose(none + slope * strengths, left, rtol=0.0, atol=0.03 * left[0])
+    assert 0.75 < -none / slope < 0.9
+    with pytest.raises(ConvergenceError, match="the drive jams"):
+        solve_at_output(model, drive, np.array([angle]), torque)
 
 
 @pytest.fixture(scope="module")
