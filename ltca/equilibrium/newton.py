@@ -3,7 +3,8 @@ r"""Damped Newton iteration for the pose in which a batch of positions balances,
 Before first contact the disc floats and the tangent is singular, so Newton's step is damped (Levenberg–Marquardt) and
 its length bounded. Π is convex but for the small geometric part, and stiff where contacts open and close: along each
 step the slope of Π is brought down by a bracketed secant before the step is taken, so Π falls in every iteration and no
-cycle is possible between contacts that take turns.
+cycle is possible between contacts that take turns. Friction has no potential: positions with it that do not balance this way
+are balanced by the size of their residual.
 """
 
 from __future__ import annotations

@@ -98,6 +98,7 @@ def test_loose_pins_slip_where_they_have_given_way_to():
         )
 
 
+@pytest.mark.slow
 def test_a_disc_that_friction_does_not_let_rest_carries_nothing():
     """At μ = 0.15 a disc that carries next to nothing was caught between three contacts: its load is the other's."""
     drive, angle = friction_drive(17)
