@@ -8,6 +8,7 @@ elasticity    Plane linear elasticity of one meshed body: stiffness, rigid modes
 surface       Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
 condensation  Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
 free_body     Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries
+influence     Influence between very many loads of a free body: only the blocks that are asked for, none by a dense factor
 stress        Stress recovery: from nodal displacements to nodal Cauchy stresses
 wall_stress   Stress along a meshed boundary, from recovered nodal stresses
 ============  ============================================================

@@ -59,25 +59,3 @@ def boundary_motion_loads(body: BodyMesh, boundary: str, centre: complex = 0j) -
         np.add.at(load, 2 * nodes + 1, (length * mode_y) @ shapes.T)
         columns.append(load)
     return sp.csc_matrix(np.column_stack(columns))
-
-
-def refer_to_boundary(compliance: FloatArray, resultants: FloatArray, gram: FloatArray) -> FloatArray:
-    """Return approaches relative to the best-fit rigid motion of a boundary.
-
-    Parameters
-    ----------
-    compliance : array, shape (m + 3, m + 3)
-        Of m patches followed by the three loads W of the boundary, in any datum, each load balanced anyhow.
-    resultants : array, shape (3, m)
-        R, of the patches.
-    gram : array, shape (3, 3)
-        G, symmetric.
-
-    Returns
-    -------
-    array, shape (m, m)
-        Symmetric if `compliance` is, positive semidefinite.
-    """
-    motion = -np.linalg.solve(gram, resultants)
-    transform = np.vstack([np.eye(resultants.shape[1]), motion])
-    return np.asarray(transform.T @ compliance @ transform)

@@ -17,8 +17,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.body.condensation import condense_body
-from fem.body.elasticity import PlaneState, assemble_stiffness, rigid_modes, unknowns_of_boundary
-from fem.body.free_body import boundary_motion_loads, refer_to_boundary
+from fem.body.elasticity import PlaneState, area_loads, assemble_stiffness, rigid_modes, unknowns_of_boundary
+from fem.body.free_body import boundary_motion_loads
+from fem.body.influence import influence_of_loads
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.stations import RACE_ANGLES, DiscStations, patch_half_width
 from fem.coefficients.wall_strain import continue_under_patches, wall_modulus, wall_strain_measures
@@ -254,35 +255,31 @@ def derive_disc(
     # What measures the strain of a wall is a load that balances itself: its row of the compliance holds, by
     # reciprocity, that strain under every patch. One factorisation serves both.
     measures = wall_modulus(material, state) * sp.hstack(strains)
-    loads = sp.hstack([*patches, *wide_patches, *pressures, measures, motions], format="csc")
+    loads = sp.hstack([*patches, *wide_patches, *pressures, measures], format="csc")
     stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-    condensed = condense_body(body, stiffness, loads)
-    modes = rigid_modes(body)
-    gram = np.asarray(modes.T @ motions)
-    resultants = condensed.resultants[:, :-3]
-    referred = refer_to_boundary(condensed.compliance, resultants, 0.5 * (gram + gram.T))
-    approach, own_resultants = referred[:count, :count], resultants[:, :count]
-    diagonal = np.diag(referred)[count : count + len(wide)]
-    pressed = slice(count + len(wide), 2 * count + len(wide))
-    stress = referred[pressed.stop :, pressed]
-
     sampled = np.unique(np.linspace(0, count - 1, SAMPLED).astype(int))
-    displacement = condensed.displacement(np.eye(loads.shape[1])[:, sampled])
-    measured = loads[:, :count].T @ displacement
-    reciprocity = np.max(np.abs(measured - condensed.compliance[sampled, :count].T)) / np.max(np.abs(approach))
+    by_area, by_bores = area_loads(body), motions.toarray()
+    influence = influence_of_loads(body, stiffness, loads, [by_area, by_bores], sampled)
+    del stiffness
+    placed, pressed = slice(0, count), slice(count + len(wide), 2 * count + len(wide))
+    area_approach, approach = influence.in_every_datum(placed)
+    resultants = influence.resultants[:, placed]
+    reciprocity = np.max(np.abs(influence.sampled[placed] - area_approach[:, sampled])) / np.max(np.abs(approach))
 
-    left = loads[:, :count].T @ modes - own_resultants.T @ np.linalg.solve(gram, motions.T @ modes)
-    by_bore = project_rigid_motions(approach, own_resultants)
-    by_area = project_rigid_motions(condensed.compliance[:count, :count], own_resultants)
-    datums = np.max(np.abs(by_bore - by_area)) / np.max(np.abs(by_bore))
+    modes = rigid_modes(body)
+    left = loads[:, placed].T @ modes - resultants.T @ np.linalg.solve(modes.T @ by_bores, by_bores.T @ modes)
+    balanced = project_rigid_motions(approach, resultants)
+    datums = np.max(np.abs(balanced - project_rigid_motions(area_approach, resultants))) / np.max(np.abs(balanced))
+    del balanced, area_approach
+    stress = influence.block(slice(pressed.stop, loads.shape[1]), pressed, datum=1)
     return DerivedDisc(
-        approach=0.5 * (approach + approach.T),
-        resultants=own_resultants,
+        approach=approach,
+        resultants=resultants,
         wide_stations=wide,
-        wide_approach=diagonal,
+        wide_approach=influence.own(slice(count, pressed.start), datum=1),
         stress=continue_under_patches(stress, places.boundary, stations.boundary),
         reciprocity=float(reciprocity),
-        rigid_residual=float(max(np.max(np.abs(left)) / np.max(np.abs(own_resultants)), datums)),
+        rigid_residual=float(max(np.max(np.abs(left)) / np.max(np.abs(resultants)), datums)),
         unknowns=body.unknowns,
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.mesh.element_size import Refinement, SizeField, cover_small_edges
+from fem.mesh.element_size import Refinement, SizeField, cover_small_edges, nearest_distance
 from fem.shapes import Curve
 
 FloatArray = NDArray[np.float64]
@@ -50,6 +50,7 @@ def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
     parameters = np.linspace(0.0, 2.0 * np.pi, 2 * curve.samples + 1)
     points = curve.points(parameters)
     wanted = field.at(points)
+    alike = list(field.balls_alike())
     found = [parameters]
     # Interval halving: an interval is split as long as it is longer than a part of the wanted edge; only the halves of those
     # split before can be. Rows: first and last end.
@@ -58,11 +59,11 @@ def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
         length = np.abs(places[1] - places[0])
         split = SAMPLES_PER_EDGE * length > np.minimum(sizes[1], sizes[0])
         # An interval may jump over a small ball: near every ball look at the distance to its zone, too.
-        for ball in field.balls:
-            small = SAMPLES_PER_EDGE * length > ball.size
-            if np.any(small & ~split):
-                reach = np.abs(places - ball.point)
-                split |= small & (np.minimum(reach[1], reach[0]) - length < ball.radius)
+        for ball, centres in alike:
+            small = np.flatnonzero((SAMPLES_PER_EDGE * length > ball.size) & ~split)
+            if len(small):
+                reach = nearest_distance(places[:, small], centres)
+                split[small] = np.minimum(reach[1], reach[0]) - length[small] < ball.radius
         if not np.any(split):
             break
         ends, places, sizes = ends[:, split], places[:, split], sizes[:, split]

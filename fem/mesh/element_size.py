@@ -10,11 +10,12 @@ interior follow one rule.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
 
@@ -25,6 +26,10 @@ DEFAULT_GROWTH = 0.3
 # Mean area of the triangles that gmsh makes for a wanted edge of 1, measured with the edges of the boundary
 # included and rounded down, so that the estimate leans to too many (an equilateral triangle has 0.433).
 TRIANGLE_AREA = 0.36
+# Among so many balls alike the nearest is looked up in a tree.
+MANY_BALLS = 32
+# Of so many the exact distances are compared: the tree rounds otherwise than a complex modulus.
+NEAREST = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +96,18 @@ class SizeField:
     def at(self, points: ComplexArray) -> FloatArray:
         """Return the wanted edge at points, mm."""
         size = np.full(np.shape(points), self.coarse_size)
-        for ball in self.balls:
-            away = np.maximum(np.abs(points - ball.point) - ball.radius, 0.0)
+        for ball, centres in self.balls_alike():
+            away = np.maximum(nearest_distance(points, centres) - ball.radius, 0.0)
             np.minimum(size, ball.size + self.growth * away, out=size)
         return size
+
+    def balls_alike(self) -> Iterator[tuple[Refinement, ComplexArray]]:
+        """Yield the first of the balls of each size and radius, and the centres of all of those."""
+        alike: dict[tuple[float, float], list[Refinement]] = {}
+        for ball in self.balls:
+            alike.setdefault((ball.size, ball.radius), []).append(ball)
+        for balls in alike.values():
+            yield balls[0], np.array([ball.point for ball in balls])
 
     @property
     def smallest(self) -> float:
@@ -121,6 +134,18 @@ class SizeField:
             inside = 0.5 * ball.radius**2 / ball.size**2
             total += np.pi * max(inside + ring - 0.5 * outer**2 / coarse**2, 0.0)
         return int(np.ceil(min(total / TRIANGLE_AREA, 1e15)))
+
+
+def nearest_distance(points: ComplexArray, centres: ComplexArray) -> FloatArray:
+    """Return the distance of each point to the nearest of some centres, mm, shape as points."""
+    if len(centres) < MANY_BALLS:
+        found = np.full(np.shape(points), np.inf)
+        for centre in centres.tolist():
+            np.minimum(found, np.abs(points - centre), out=found)
+        return found
+    tree = cKDTree(np.column_stack([centres.real, centres.imag]))
+    _, near = tree.query(np.stack([points.real, points.imag], axis=-1), k=NEAREST)
+    return np.asarray(np.min(np.abs(points[..., None] - centres[near]), axis=-1))
 
 
 def cover_small_edges(

@@ -135,9 +135,10 @@ def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Names
     """Warn of few positions, and say what has to be derived; derive it for the drive as it is."""
     from ltca.analysis.extremes import sampling_warning
     from ltca.commands.study_arguments import tell
+    from ltca.compliance.coefficient_files import expected_seconds, told_seconds
     from ltca.geometry.placement import position_angles
     from ltca.studies.optimiser import most_candidates, varies_shape
-    from ltca.studies.shapes import SECONDS, find_beforehand, shapes_of
+    from ltca.studies.shapes import find_beforehand, shapes_of
 
     warning = sampling_warning(problem.drive, position_angles(arguments.positions), refined=False)
     if warning is not None:
@@ -154,7 +155,7 @@ def _tell_beforehand(problem: Problem, engine: Engine, arguments: argparse.Names
             )
         tell(
             f"every candidate is a shape of its own: up to {most_candidates(problem, arguments.generations)} of them are "
-            f"derived, some {SECONDS} s each, and kept"
+            f"derived, {told_seconds(sum(expected_seconds(shapes_of([problem.drive]).values())))} each, and kept"
         )
     find_beforehand(engine, shapes_of([problem.drive]), tell)
 

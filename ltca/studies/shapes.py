@@ -22,8 +22,10 @@ from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
     cached_file,
+    expected_seconds,
     find_case_coefficients,
     require_cache,
+    told_seconds,
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
@@ -35,8 +37,6 @@ from ltca.output.run_folder import held
 
 KEPT = 8
 """Shapes whose coefficients a process keeps in memory, some 10 MB each."""
-SECONDS = 20
-"""What deriving one shape like the paper's takes, about."""
 
 _ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
 
@@ -127,7 +127,8 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         missing = [drive for drive in wanted if not cached_file(drive).exists()]
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
-            told(f"{few} no influence coefficients yet: derived first, some {SECONDS} s each")
+            longest = told_seconds(max(expected_seconds(missing)))
+            told(f"{few} no influence coefficients yet: derived first, {longest} each")
         for first in range(0, len(missing), KEPT) if len(missing) > 1 else ():
             group = {f"shape {first + number}": drive for number, drive in enumerate(missing[first : first + KEPT], 1)}
             # Several at once; what fails is tried again alone below.
