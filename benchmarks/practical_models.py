@@ -2,8 +2,9 @@
 
 The drives are those of `ltca.testing.practical_drives`, by seed. Each has to be answered; beside it stand the largest
 residual as a part of the load and the largest wheel-pin load as a multiple of that of the tables, which differ by what each
-model adds. ``fe`` and ``hybrid`` derive their coefficients, some 20 s a shape; ``fe`` and full finite elements take drives whose
-rollers are as long as the disc is thick. Exit status 1 when a drive had no answer.
+model adds. ``fe`` and ``hybrid`` derive their coefficients, 15 to 110 s a shape, once for both;
+``fe`` and full finite elements take drives whose rollers are as long as the disc is thick. Exit status 1 when a drive had no
+answer.
 """
 
 from __future__ import annotations

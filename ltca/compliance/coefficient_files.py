@@ -229,7 +229,7 @@ def _kept(drive: Drive, plane: str) -> InfluenceCoefficients | None:
 
 
 def expected_seconds(drives: Iterable[Drive]) -> list[float]:
-    """Return about how long the derivation of each drive of one disc takes on one core of a machine of 2024, s."""
+    """Return about how long the derivation of each drive of one disc takes on one core, s (docs/coefficients.md)."""
     return [
         SECONDS
         + SECONDS_PER_TOOTH * drive.disc.number_of_teeth

@@ -10,11 +10,12 @@ from fem.shapes import CircleShape
 
 @pytest.fixture
 def field():
-    """Balls along a circle, alike but for a few, and two at one place."""
+    """Balls along a circle, alike but for a few, one of them wider only, and two at one place."""
     angles = np.linspace(0.0, 2.0 * np.pi, 4 * MANY_BALLS, endpoint=False)
     balls = [Refinement.polar(20.0, angle, size=0.05, radius=0.15) for angle in angles]
     others = [Refinement.polar(18.0, angle, size=0.02 + 0.01 * angle, radius=0.1) for angle in angles[:5]]
-    return SizeField(balls=(*others, *balls, balls[3]), coarse_size=3.0, growth=0.4)
+    wide = Refinement.polar(17.0, 1.0, size=0.05, radius=2.0)
+    return SizeField(balls=(*others, *balls, wide, balls[3]), coarse_size=3.0, growth=0.4)
 
 
 def one_by_one(field, points):

@@ -15,12 +15,20 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.commands.program import main
 from ltca.compliance import coefficient_files
-from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
+from ltca.compliance.coefficient_files import (
+    cached_file,
+    expected_seconds,
+    find_case_coefficients,
+    find_coefficients,
+)
 from ltca.compliance.coefficients import load_coefficients
+from ltca.drive.deviations import OneDisc, Runout
+from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
+from ltca.testing.practical_drives import practical_drive
 
 ALUMINIUM = {"materials.disc.youngs_modulus": 70_000.0, "materials.disc.poisson_ratio": 0.33}
 
@@ -183,6 +191,29 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
     found = find_case_coefficients(cases)
     assert sorted(tried) == [("large", 1), ("large", 2), ("small", 2)]
     assert found["large"].fingerprint == cases["large"].shape_fingerprint()
+
+
+def test_equal_discs_are_derived_once(paper_cases, derived):
+    """Also where one of them has a runout: that is no matter of its body."""
+    drive = with_fields(paper_cases["CS-1"], {"disc.number_of_discs": 2})
+    of = (OneDisc(), OneDisc(runout=Runout(amount=0.01, angle=0.0)))
+    drive = replace(drive, disc=replace(drive.disc, of=of))
+    found = find_case_coefficients({"two": drive})
+    assert list(found) == ["two, disc 0", "two, disc 1"]
+    Hybrid().prepare(drive)
+    assert len(derived) == 1
+
+
+def test_how_long_a_derivation_takes_is_said_by_the_disc(paper_cases, derived, capsys):
+    """Half an hour was told as 20 s: the time follows the number of teeth, and two shapes one after the other add up."""
+    find_case_coefficients({name: paper_cases[name] for name in ("CS-1", "CS-6")})
+    assert "CS-1, CS-6, once for each shape (some 40 s; kept in" in capsys.readouterr().err
+    many = single_discs(practical_drive(2)[0])[0]
+    assert (many.disc.number_of_teeth, many.number_of_holes) == (75, 4)
+    paper, many_teeth = expected_seconds([paper_cases["CS-1"], many])
+    # Processor time of the paper's disc and of one of 75 teeth and four holes (docs/coefficients.md), to a factor of two.
+    assert 8.0 < paper < 32.0
+    assert 35.0 < many_teeth < 140.0
 
 
 @pytest.mark.slow
