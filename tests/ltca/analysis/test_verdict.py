@@ -143,7 +143,7 @@ def test_cases_may_have_limits_of_their_own():
     first, *others = file.cases
     assert file.limits[first]["max_pin_load"].value == 4000.0
     assert file.limits[others[0]]["max_pin_load"].value == 5000.0
-    with pytest.raises(DriveError, match="limits.max_pin_laod"):
+    with pytest.raises(DriveError, match=r"limits\.max_pin_laod"):
         parse_drive(text.replace("max_pin_load = 5000.0", "max_pin_laod = 5000.0"), "paper")
 
 
