@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ltca.analysis.verdict.advice import Driver
-    from ltca.analysis.verdict.judgement import Check
+    from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
 
@@ -91,12 +91,11 @@ def _judge(
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.summary import summarise
     from ltca.analysis.verdict.advice import advise
-    from ltca.analysis.verdict.judgement import judge
-    from ltca.analysis.verdict.values import find_values
+    from ltca.analysis.verdict.values import judge_analysis
     from ltca.geometry.placement import position_angles
 
     analysis = analyse(drive, position_angles(arguments.positions), arguments.torque, engine.with_coefficients(drive))
-    checks = judge(drive, find_values(analysis, summarise(analysis)), limits)
+    checks = judge_analysis(analysis, summarise(analysis), limits)
     if arguments.no_advice:
         return checks, {}, analysis.warnings
     # Between those of a turn, so that nothing is refined.

@@ -194,14 +194,13 @@ def _verdicts(
     analyses: dict[str, LoadedAnalysis], summaries: dict[str, dict[str, float | None]], limits: dict[str, Limits]
 ) -> str:
     """The checks that have a limit, case by case; nothing of cases without an answer everywhere."""
-    from ltca.analysis.verdict.judgement import judge
-    from ltca.analysis.verdict.values import find_values
+    from ltca.analysis.verdict.values import judge_analysis
     from ltca.commands.check import verdict_table
 
     told = []
     for name, analysis in analyses.items():
         if analysis.is_complete:
-            checks = judge(analysis.drive, find_values(analysis, summaries[name]), limits[name])
+            checks = judge_analysis(analysis, summaries[name], limits[name])
             told += [f"verdict on {name}" if len(analyses) > 1 else "verdict", verdict_table(checks, limited=True)]
     return "\n".join(
         [*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"]

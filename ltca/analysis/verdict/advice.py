@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.verdict.judgement import Check
-from ltca.analysis.verdict.values import Value, find_values
+from ltca.analysis.verdict.values import find_values
 from ltca.drive.fields import field_kinds, read_field
+from ltca.drive.members.judgement import Check, Value
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
 from ltca.errors import CycloError

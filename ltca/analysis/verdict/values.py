@@ -3,56 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.extremes import RESOLVED
 from ltca.analysis.friction.variables import friction_values
+from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
 from ltca.analysis.summary import refined_value
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress
 from ltca.contact.subsurface import line_contact_shear
-from ltca.drive.members.limits import LIMITED
+from ltca.drive.members.judgement import Check, Value, judge
+from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 
 FloatArray = NDArray[np.float64]
 
+DEMANDED = {
+    limit.quantity: limit
+    for limit in (
+        Limit(
+            quantity="half_width_ratio", sense="max", value=HALF_WIDTH_BOUND,
+            source="theory of half-spaces (ltca.analysis.half_width_guard)",
+        ),
+        Limit(
+            quantity="distinct_mesh_phases", sense="min", value=float(RESOLVED), source="sampling (ltca.analysis.extremes)"
+        ),
+    )
+}  # fmt: skip
+"""What theories demand, by quantity."""
 DEEPEST_SHEAR = 0.786
 """Depth of the largest shear stress below a line contact, in half-widths (Johnson, Contact Mechanics, 1985, sect. 4.2)."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Value:
-    """One quantity of a case.
-
-    Attributes
-    ----------
-    quantity : str
-        One of `ltca.drive.members.limits.LIMITED`.
-    value : float or None
-        In its unit there; None where it cannot be said.
-    part : str
-        Where it is reached: pin, roller or hole with its number and disc; empty for the whole drive.
-    crank_angle : float or None
-        φ_C there, rad.
-    reason : str
-        Why it cannot be said.
-    """
-
-    quantity: str
-    value: float | None
-    part: str = ""
-    crank_angle: float | None = None
-    reason: str = ""
-
-    @property
-    def unit(self) -> str:
-        """Unit of the value."""
-        return LIMITED[self.quantity]
 
 
 def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> list[Value]:
@@ -67,6 +52,21 @@ def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -
     """
     found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
     return [*found, *_of_theory(analysis, summary), *_of_supports(analysis), *_of_friction(analysis, summary)]
+
+
+def judge_analysis(
+    analysis: LoadedAnalysis, summary: Mapping[str, float | None], limits: Mapping[str, Limit]
+) -> list[Check]:
+    """Return the checks of one case.
+
+    Parameters
+    ----------
+    analysis, summary
+        As for `find_values`.
+    limits : mapping of str to Limit
+        Of the drive file.
+    """
+    return judge(analysis.drive, find_values(analysis, summary), limits, DEMANDED)
 
 
 def _of_shape(analysis: LoadedAnalysis) -> Iterator[Value]:

@@ -12,10 +12,10 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.advice import advise
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
-from ltca.analysis.verdict.judgement import TITLES, judge
 from ltca.analysis.verdict.pin_stress import pin_stress
-from ltca.analysis.verdict.values import find_values
+from ltca.analysis.verdict.values import judge_analysis
 from ltca.commands.program import main
+from ltca.drive.members.judgement import TITLES
 from ltca.drive.members.limits import LIMITED, parse_limits
 from ltca.drive.parts import Material
 from ltca.equilibrium.reducer import disc_responses
@@ -50,7 +50,7 @@ def checks_of(drive, checked, limits):
     problems = []
     found = parse_limits(limits, problems)
     assert problems == []
-    return judge(drive, find_values(analysis, summary), found)
+    return judge_analysis(replace(analysis, drive=drive), summary, found)
 
 
 def named(checks, quantity):

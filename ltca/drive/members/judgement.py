@@ -10,11 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from ltca.analysis.extremes import RESOLVED
-from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
-from ltca.analysis.verdict.values import Value
 from ltca.drive.materials import Material
-from ltca.drive.members.limits import Limit
+from ltca.drive.members.limits import LIMITED, Limit
 from ltca.drive.parts import Drive
 
 Verdict = Literal["pass", "fail", "no limit", "not known"]
@@ -71,6 +68,36 @@ TITLES = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """One quantity of a case.
+
+    Attributes
+    ----------
+    quantity : str
+        One of `ltca.drive.members.limits.LIMITED`.
+    value : float or None
+        In its unit there; None where it cannot be said.
+    part : str
+        Where it is reached: pin, roller or hole with its number and disc; empty for the whole drive.
+    crank_angle : float or None
+        φ_C there, rad.
+    reason : str
+        Why it cannot be said.
+    """
+
+    quantity: str
+    value: float | None
+    part: str = ""
+    crank_angle: float | None = None
+    reason: str = ""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return LIMITED[self.quantity]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
     """A value, its limit and the verdict.
 
@@ -110,7 +137,9 @@ class Check:
         return "pass" if kept else "fail"
 
 
-def judge(drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit]) -> list[Check]:
+def judge(
+    drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit], demanded: Mapping[str, Limit] | None = None
+) -> list[Check]:
     """Return a check for every value and limit; one without a limit for values that have none.
 
     Parameters
@@ -121,11 +150,15 @@ def judge(drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit]) ->
         Of one case.
     limits : mapping of str to Limit
         Of the drive file.
+    demanded : mapping of str to Limit, optional
+        What theories demand, by quantity.
     """
     checks = []
     for value in values:
         own = [limits[key] for key in (f"max_{value.quantity}", f"min_{value.quantity}") if key in limits]
-        found = own or [*_of_materials(drive, value), *_of_nature(value)]
+        found = own or [*_of_materials(drive, value), *_of_shape(value)]
+        if not own and demanded is not None and value.quantity in demanded:
+            found = [demanded[value.quantity]]
         checks += [Check(value=value, limit=limit) for limit in found] or [Check(value=value, limit=None)]
     told = {value.quantity for value in values}
     for limit in limits.values():
@@ -135,15 +168,10 @@ def judge(drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit]) ->
     return checks
 
 
-def _of_nature(value: Value) -> list[Limit]:
-    """What geometry and theories demand."""
-    least = dict.fromkeys(("undercut_margin", "wall", "pin_hollow_margin", "roller_gap"), 0.0)
-    if value.quantity in least:
+def _of_shape(value: Value) -> list[Limit]:
+    """What geometry demands."""
+    if value.quantity in ("undercut_margin", "wall", "pin_hollow_margin", "roller_gap"):
         return [_limit(value, "min", 0.0, "geometry: less is no part")]
-    if value.quantity == "half_width_ratio":
-        return [_limit(value, "max", HALF_WIDTH_BOUND, "theory of half-spaces (ltca.analysis.half_width_guard)")]
-    if value.quantity == "distinct_mesh_phases":
-        return [_limit(value, "min", float(RESOLVED), "sampling (ltca.analysis.extremes)")]
     return []
 
 
