@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.commands.position_arguments import add_position_arguments, body_files, chosen_drive, disc_prefix
+from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
 from ltca.reading.arguments import add_out_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from fem.drive.full_solution import FullSolution
     from fem.reducer.solution import ReducerSolution
+    from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
@@ -65,7 +66,8 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     referee = _referee(arguments.referee)
-    name, case, drive = chosen_drive(arguments)
+    file, case, drive = chosen_case(arguments)
+    name = file.name
     out = arguments.out or default_folder(name, "fem")
     discs = drive.disc.number_of_discs
     writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
@@ -74,7 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
     own += ["calculix.dat"] if referee else []
     writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
     with claimed_folder(out, "fem", writes=writes):
-        _solve_and_write(name, case, drive, arguments, out, referee)
+        _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
     return 0
 
 
@@ -82,6 +84,7 @@ def _solve_and_write(
     name: str,
     case: str,
     drive: Drive,
+    limits: Limits,
     arguments: argparse.Namespace,
     out: Path,
     referee: Callable[[FullSolution, Path], None] | None,
@@ -89,6 +92,7 @@ def _solve_and_write(
     from fem.drive.fields import recover_fields
     from fem.reducer.solution import solve_reducer
     from fem.reducer.solution_files import write_solution
+    from ltca.drive.members.verdict_words import verdict_table
     from ltca.output.progress import steps
 
     title = f"{name}, {case}, {arguments.angle:g} rad"
@@ -105,7 +109,7 @@ def _solve_and_write(
         )
         show("files")
         fields = [recover_fields(disc.model, disc.state, state=arguments.plane) for disc in solution.discs]
-        write_solution(solution, fields, case, out)
+        checks = write_solution(solution, fields, case, out, limits)
     load = drive.load_words(arguments.torque)
     print(
         f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
@@ -122,6 +126,8 @@ def _solve_and_write(
             headline = title if count == 1 else f"{title}, disc {number}"
             problem = draw_solution(disc, fields[number], headline, out, prefix=disc_prefix(number, count))
     _print_drive(solution)
+    print("verdict by full finite elements at this position")
+    print(verdict_table(checks, limited=True))
     if problem:
         print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
     for number, disc in enumerate(solution.discs):

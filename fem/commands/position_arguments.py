@@ -14,6 +14,7 @@ from ltca.reading.arguments import (
 
 if TYPE_CHECKING:
     from ltca.drive.parts import Drive
+    from ltca.reading.drive_file import DriveFile
 
 
 BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("inner_race", "pin", "roller", "shaft_pin")))
@@ -48,7 +49,13 @@ def add_position_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
-    """Return the name of the drive file, the name of the case and its drive.
+    """Return the name of the drive file, the name of the case and its drive; see `chosen_case`."""
+    file, case, drive = chosen_case(arguments)
+    return file.name, case, drive
+
+
+def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
+    """Return the drive file, the name of the case and its drive.
 
     Raises
     ------
@@ -59,4 +66,4 @@ def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
 
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
-    return file.name, case, drive
+    return file, case, drive

@@ -6,7 +6,7 @@ all of them that a quantity has; case and position have size 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
@@ -19,6 +19,10 @@ from fem.drive.fields import BodyField, bore_motion
 from fem.drive.full_solution import FullSolution
 from fem.mesh.mesh_file import body_stem, write_vtu
 from fem.reducer.solution import ReducerSolution
+from fem.reducer.verdict import judge_solution
+from ltca.drive.members.judgement import Check
+from ltca.drive.members.limits import Limit
+from ltca.drive.members.verdict_words import check_content
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
@@ -249,7 +253,13 @@ def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, 
     }
 
 
-def write_solution(solution: ReducerSolution, fields: Sequence[Iterable[BodyField]], case: str, folder: Path) -> None:
+def write_solution(
+    solution: ReducerSolution,
+    fields: Sequence[Iterable[BodyField]],
+    case: str,
+    folder: Path,
+    limits: Mapping[str, Limit] | None = None,
+) -> list[Check]:
     """Write all files of a solution; each appears only when it is complete, ``fem.vtm`` only over bodies of this one.
 
     Parameters
@@ -262,6 +272,13 @@ def write_solution(solution: ReducerSolution, fields: Sequence[Iterable[BodyFiel
         Name of the case.
     folder : Path
         Where to.
+    limits : mapping of str to Limit, optional
+        Of the drive file, for the verdict.
+
+    Returns
+    -------
+    list of Check
+        The verdict, as ``summary.json`` holds it.
 
     Raises
     ------
@@ -283,7 +300,10 @@ def write_solution(solution: ReducerSolution, fields: Sequence[Iterable[BodyFiel
         for field in own
     ]
     write_multi_block(bodies, index)
-    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses))
+    checks = judge_solution(solution, stresses, limits or {})
+    verdict = {"verdict": [check_content(check, case) for check in checks]}
+    write_json(folder / "summary.json", summarise(solution) | summarise_stress(stresses) | verdict)
+    return checks
 
 
 def write_multi_block(bodies: list[Path], path: Path) -> Path:

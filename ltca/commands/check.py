@@ -29,7 +29,6 @@ ADVICE_POSITIONS = 60
 """Positions at which changed drives are compared."""
 BESIDE = 1e-3
 FAILED = 1
-WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -54,6 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Judge every case, print and write the checks; exit status 1 when one fails."""
     from ltca.commands.compliance_arguments import check_compliance, compliance_of, find_coefficients_of
+    from ltca.drive.members.verdict_words import check_content, verdict_table
     from ltca.output.files import write_json
     from ltca.output.progress import progress
     from ltca.output.run_folder import claimed_folder, require_folder
@@ -73,7 +73,10 @@ def execute(arguments: argparse.Namespace) -> int:
         with progress("cases", len(cases)) as advance:
             for name, drive in cases.items():
                 checks, drivers, warnings = _judge(drive, file.limits[name], engine, arguments)
-                contents[name] = [_entry(check, name, drivers) for check in checks]
+                contents[name] = [
+                    check_content(check, name) | {"drivers": _drivers(drivers.get(check.value.quantity, ()))}
+                    for check in checks
+                ]
                 failed += sum(check.verdict == "fail" for check in checks)
                 print(f"{file.name} {name}, {drive.load_words(arguments.torque)}")
                 print(verdict_table(checks))
@@ -103,51 +106,6 @@ def _judge(
     return checks, advise(drive, checks, angles, arguments.torque), analysis.warnings
 
 
-def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
-    """Return the checks as a table.
-
-    Parameters
-    ----------
-    checks : sequence of Check
-        Of one case.
-    limited : bool
-        Whether those without a limit are counted only.
-    """
-    shown = [check for check in checks if check.limit is not None or not limited]
-    rows = [("check", "value", "limit", "safety", "verdict", "where")]
-    for check in shown:
-        value, limit = check.value, check.limit
-        unit = "" if value.unit == "1" else f" {_symbol(value.unit)}"
-        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
-        safety = "" if check.safety is None else f"{check.safety:.3f}"
-        told = "–" if value.value is None else f"{value.value:.5g}{unit}"
-        rows.append((check.title, told, bound, safety, WORDS[check.verdict], _where(check)))
-    widths = [max(len(row[column]) for row in rows) for column in range(5)]
-    lines = [
-        f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]:>{widths[3]}}  "
-        f"{row[4]:<{widths[4]}}  {row[5]}".rstrip()
-        for row in rows
-    ]
-    counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
-    words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
-    lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
-    return "\n".join(lines)
-
-
-def _symbol(unit: str) -> str:
-    return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
-
-
-def _where(check: Check) -> str:
-    from math import degrees
-
-    value = check.value
-    if value.value is None:
-        return value.reason
-    at = "" if value.crank_angle is None else f"φ_C = {degrees(value.crank_angle):.4g}°"
-    return ", ".join(part for part in (value.part, at) if part)
-
-
 def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:
     """What drives what fails, and what would mend it."""
     from ltca.analysis.verdict.advice import TOLD
@@ -171,29 +129,8 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
     return "".join(f"{line}\n" for line in lines)
 
 
-def _entry(check: Check, case: str, drivers: Mapping[str, Sequence[Driver]]) -> dict[str, Any]:
-    value, limit = check.value, check.limit
-    return {
-        "check": check.title,
-        "quantity": value.quantity,
-        "unit": value.unit,
-        "value": value.value,
-        "limit": None if limit is None else limit.value,
-        "sense": None if limit is None else limit.sense,
-        "source": None if limit is None else limit.source,
-        "safety": check.safety,
-        "verdict": check.verdict,
-        "case": case,
-        "part": value.part,
-        "crank_angle_rad": value.crank_angle,
-        "reason": value.reason,
-        "drivers": [
-            {
-                "input": driver.input,
-                "elasticity": driver.elasticity,
-                "change": driver.change,
-                "factor": driver.factor,
-            }
-            for driver in drivers.get(value.quantity, ())
-        ],
-    }
+def _drivers(drivers: Sequence[Driver]) -> list[dict[str, Any]]:
+    return [
+        {"input": driver.input, "elasticity": driver.elasticity, "change": driver.change, "factor": driver.factor}
+        for driver in drivers
+    ]

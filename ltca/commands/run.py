@@ -195,7 +195,7 @@ def _verdicts(
 ) -> str:
     """The checks that have a limit, case by case; nothing of cases without an answer everywhere."""
     from ltca.analysis.verdict.values import judge_analysis
-    from ltca.commands.check import verdict_table
+    from ltca.drive.members.verdict_words import verdict_table
 
     told = []
     for name, analysis in analyses.items():

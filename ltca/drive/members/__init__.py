@@ -8,6 +8,7 @@ named_materials  Materials by name: ``materials.disc = "PA12"`` stands for numbe
 operation        How the drive is built in and used: the member that is held, load, speed, and what rubs
 limits           What its results may reach, by the names of the summary, each with its source
 judgement        Limits of values, from the drive file or its materials, safety and verdict
+verdict_words    Checks as tables and files tell them
 crank            Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings
 pins             Pins of the pin wheel and of the pin shaft: how they sit, loose or under a sleeve, and how they bend
 pin_checks       What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of

@@ -1,0 +1,82 @@
+"""Checks as tables and files tell them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees
+from typing import Any
+
+from ltca.drive.members.judgement import Check
+
+WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
+
+
+def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
+    """Return the checks as a table.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        Of one case.
+    limited : bool
+        Whether those without a limit are counted only.
+    """
+    shown = [check for check in checks if check.limit is not None or not limited]
+    rows = [("check", "value", "limit", "safety", "verdict", "where")]
+    for check in shown:
+        value, limit = check.value, check.limit
+        unit = "" if value.unit == "1" else f" {_symbol(value.unit)}"
+        bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
+        safety = "" if check.safety is None else f"{check.safety:.3f}"
+        told = "–" if value.value is None else f"{value.value:.5g}{unit}"
+        rows.append((check.title, told, bound, safety, WORDS[check.verdict], _where(check)))
+    widths = [max(len(row[column]) for row in rows) for column in range(5)]
+    lines = [
+        f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]:>{widths[3]}}  "
+        f"{row[4]:<{widths[4]}}  {row[5]}".rstrip()
+        for row in rows
+    ]
+    counts = {verdict: sum(check.verdict == verdict for check in checks) for verdict in WORDS}
+    words = {"pass": "passed", "fail": "failed", "no limit": "without a limit", "not known": "not known"}
+    lines.append("  " + ", ".join(f"{counts[verdict]} {word}" for verdict, word in words.items()))
+    return "\n".join(lines)
+
+
+def _symbol(unit: str) -> str:
+    return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
+
+
+def _where(check: Check) -> str:
+    value = check.value
+    if value.value is None:
+        return value.reason
+    at = "" if value.crank_angle is None else f"φ_C = {degrees(value.crank_angle):.4g}°"
+    return ", ".join(part for part in (value.part, at) if part)
+
+
+def check_content(check: Check, case: str) -> dict[str, Any]:
+    """Return a check as files hold it.
+
+    Parameters
+    ----------
+    check : Check
+        The check.
+    case : str
+        Name of its case.
+    """
+    value, limit = check.value, check.limit
+    return {
+        "check": check.title,
+        "quantity": value.quantity,
+        "unit": value.unit,
+        "value": value.value,
+        "limit": None if limit is None else limit.value,
+        "sense": None if limit is None else limit.sense,
+        "source": None if limit is None else limit.source,
+        "safety": check.safety,
+        "verdict": check.verdict,
+        "case": case,
+        "part": value.part,
+        "crank_angle_rad": value.crank_angle,
+        "reason": value.reason,
+    }
