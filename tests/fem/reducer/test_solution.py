@@ -12,12 +12,15 @@ import xarray as xr
 
 from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
+from fem.drive.disc_stress import recover_disc_stress
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
+from fem.reducer.verdict import judge_solution
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset as results_dataset
 from ltca.drive.deviations import OneDisc, Runout
+from ltca.drive.members.limits import parse_limits
 from ltca.drive.single_discs import single_discs
 from ltca.reading.changes import with_fields
 from ltca.reading.coefficient_file import write_coefficients
@@ -137,3 +140,19 @@ def test_the_command_writes_files_by_disc(solved, uneven, tmp_path, monkeypatch,
     out = capsys.readouterr().out
     assert "disc 1, " in out
     assert "% of it" in out
+
+
+def test_full_solutions_are_judged_by_the_limits_of_the_drive(solved):
+    """Largest of both discs, where it is; what one position cannot say is not judged."""
+    largest = max(float(disc.contacts.pin_pressure_max.max()) for disc in solved.discs)
+    limits = parse_limits({"max_pin_pressure_mid": 0.9 * largest, "max_backlash_output": "3 arcmin"}, [])
+    stresses = [recover_disc_stress(disc) for disc in solved.discs]
+    checks = {check.value.quantity: check for check in judge_solution(solved, stresses, limits)}
+    found = checks["pin_pressure_mid"]
+    assert (found.verdict, found.value.value) == ("fail", largest)
+    assert found.safety == pytest.approx(0.9)
+    worst = int(np.argmax([disc.contacts.pin_pressure_max.max() for disc in solved.discs]))
+    assert found.value.part == f"wheel pin {np.argmax(solved.discs[worst].contacts.pin_pressure_max)} of disc {worst}"
+    assert found.value.crank_angle == ANGLE
+    assert "backlash_output" not in checks
+    assert checks["pin_load"].verdict == "no limit"
