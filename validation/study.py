@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
+from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import (
     require_fixed_pins,
@@ -53,6 +54,8 @@ class Plan:
         How much is computed beside the positions.
     settings : Settings
         Of the full solutions.
+    limits : dict of str to dict of str to Limit
+        Of the drive file, by case; none by default.
     """
 
     name: str
@@ -60,6 +63,7 @@ class Plan:
     crank_angles: tuple[float, ...]
     level: Level
     settings: Settings
+    limits: dict[str, Limits] = field(default_factory=dict)
 
     @property
     def steps(self) -> int:
@@ -128,6 +132,7 @@ def plan_study(
         crank_angles=tuple(dict.fromkeys(crank_angles)),
         level=level,
         settings=settings,
+        limits={case: file.limits.get(case, {}) for case in drives},
     )
 
 

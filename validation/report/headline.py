@@ -11,6 +11,7 @@ from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import PositionDifference
 from validation.compare.model_positions import MODELS
 from validation.levels.flexible_disc import full_solution_changes
+from validation.report.verdict import verdict_content
 from validation.rows import LEVELS, failed_rows, rounded
 from validation.study import Study
 
@@ -82,6 +83,7 @@ def validation_content(study: Study) -> dict[str, Any]:
         "element_size": plan.settings.size,
         "levels": {str(level): title for level, title in LEVELS.items()},
         "headline": headline(study),
+        "verdict": verdict_content(study),
         "rows": [row.content() for row in study.rows],
     }
 

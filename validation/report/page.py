@@ -15,6 +15,7 @@ from validation.compare.model_positions import MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
 from validation.report.scene import drive_scene, position_scene
+from validation.report.verdict import FULL, verdict_lines
 from validation.rows import LEVELS, Row
 from validation.study import Study
 
@@ -99,6 +100,8 @@ def _context(study: Study) -> dict[str, Any]:
             (case, *(_signed_percent(values.get(name)) for name in ("pin_load", "roller_load", "pin_shaft_load")))
             for case, values in head["change_half_space_to_full_fe"].items()
         ],
+        "verdicts": verdict_lines(study),
+        "verdict_models": [FULL, *MODELS],
         "sentences": judge_half_space(study.flexibility),
         "turns": [_turn_table(case, turn_content(item)) for case, item in study.flexibility.items()],
         "levels": [_level(number, [row for row in study.rows if row.level == number]) for number in LEVELS],

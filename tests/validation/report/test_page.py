@@ -6,9 +6,13 @@ import json
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from ltca.drive.members.limits import parse_limits
+from validation.compare.model_positions import MODELS
 from validation.report.page import write_report
+from validation.report.verdict import verdict_content, verdict_lines, verdicts
 
 
 def embedded(text):
@@ -94,3 +98,20 @@ def test_names_are_text_in_the_page(small_study, tmp_path):
     assert "<!--<script" not in text
     assert text.count("<script") == text.count("</script>")
     assert list(embedded(text)["drives"]) == [odd]
+
+
+def test_the_drive_is_judged_by_its_limits_in_every_model(small_study):
+    """Full solution and models against one limit: the largest over the positions of a case, named where it is."""
+    case = next(iter(small_study.compared))
+    answers = [item.full.answer.kinds["pin"].pressure for item in small_study.compared[case]]
+    largest = max(float(np.nanmax(each)) for each in answers)
+    limits = {case: parse_limits({"max_pin_pressure_mid": 0.8 * largest, "max_backlash_output": "1 arcmin"}, [])}
+    judged = replace(small_study, plan=replace(small_study.plan, limits=limits))
+    checks = {check.value.quantity: check for check in verdicts(judged)[case]["full FE"]}
+    assert checks["pin_pressure_mid"].verdict == "fail"
+    assert checks["pin_pressure_mid"].safety == pytest.approx(0.8)
+    assert "backlash_output" not in checks
+    (line,) = [line for line in verdict_lines(judged) if line["case"] == case and line["check"] == "flank pressure"]
+    assert line["models"][0] == {"value": f"{largest:.5g}", "verdict": "FAIL"}
+    assert len(line["models"]) == 1 + len(MODELS)
+    assert verdict_content(judged)[case]["hybrid"]
