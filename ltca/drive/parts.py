@@ -33,7 +33,13 @@ from ltca.drive.materials import (
     contact_modulus as contact_modulus,
 )
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
-from ltca.drive.members.operation import Friction as Friction, Installation as Installation, Load as Load
+from ltca.drive.members.operation import (
+    Duty as Duty,
+    Friction as Friction,
+    Installation as Installation,
+    Load as Load,
+    Lubricant as Lubricant,
+)
 from ltca.drive.members.pins import (
     PinShaft as PinShaft,
     PinWheel as PinWheel,
@@ -152,6 +158,10 @@ class Drive:
         Material of each part.
     friction : Friction or None
         Coefficients of friction; frictionless when left out.
+    duty : tuple of Duty
+        Torques and speeds over the life of the drive, for lives alone; that of `load` for an empty tuple.
+    lubricant : Lubricant or None
+        For lives alone; unmodified when left out.
     """
 
     name: Name = "drive"
@@ -165,6 +175,8 @@ class Drive:
     clearance: Clearance = field(default_factory=Clearance)
     materials: Materials = field(default_factory=Materials)
     friction: Friction | None = None
+    duty: tuple[Duty, ...] = ()
+    lubricant: Lubricant | None = None
 
     @property
     def tooth_number_difference(self) -> int:

@@ -5,7 +5,8 @@ Modules in the order data passes:
 ===============  ============================================================
 named_materials  Materials by name: ``materials.disc = "PA12"`` stands for numbers that ship as data, each with its scatter
                  and source
-operation        How the drive is built in and used: the member that is held, load, speed, and what rubs
+operation        How the drive is built in and used: the member that is held, load, speed, duty, lubricant, and what
+                 rubs
 limits           What its results may reach, by the names of the summary, each with its source
 judgement        Limits of values, from the drive file or its materials, safety and verdict
 verdict_words    Checks as tables and files tell them

@@ -1,4 +1,4 @@
-"""How the drive is built in and used: the member that is held, load, speed, and what rubs."""
+"""How the drive is built in and used: the member that is held, load, speed, duty, lubricant, and what rubs."""
 
 from __future__ import annotations
 
@@ -35,6 +35,41 @@ class Load:
     direction: Literal["ccw", "cw"] = "ccw"
     speed: Annotated[float, quantity("rpm", gt=0.0)] | None = None
     driven_by: Literal["input", "output"] = "input"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Duty:
+    """One entry of what the drive does over its life; life alone is told by it.
+
+    Attributes
+    ----------
+    torque : float
+        Output torque, N·mm.
+    speed : float
+        Of the input, turns a minute.
+    share : float
+        Part of the time; those of all entries add up to one.
+    """
+
+    torque: Annotated[float, quantity("N*mm", gt=0.0)]
+    speed: Annotated[float, quantity("rpm", gt=0.0)]
+    share: Annotated[float, quantity("dimensionless", gt=0.0, le=1.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Lubricant:
+    """What is between rollers and races; life alone is told by it.
+
+    Attributes
+    ----------
+    viscosity : float
+        Kinematic, at operating temperature, mm²/s.
+    contamination : float
+        e_C of ISO 281, from 0 (badly contaminated) to 1 (of the utmost cleanliness).
+    """
+
+    viscosity: Annotated[float, quantity("mm²/s", gt=0.0)]
+    contamination: Annotated[float, quantity("dimensionless", ge=0.0, le=1.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

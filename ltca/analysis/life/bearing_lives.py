@@ -1,0 +1,321 @@
+"""Life and static safety of every crank bearing: each disc on each crank, over every entry of the duty."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.life.equivalent_load import covers_whole_turns, race_load
+from ltca.analysis.life.laminae import EvenLaminae, Laminae, SolvedLaminae
+from ltca.analysis.life.modification import life_modification_factor, reference_viscosity
+from ltca.analysis.life.ratings import RaceRatings, RollerBearing
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.contact.generator import generator_profile
+from ltca.drive.parts import Drive, Duty, contact_modulus
+from ltca.geometry.coordinates import DISC_ROTATION
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EntryLife:
+    """What one bearing would live under one entry of the duty alone.
+
+    Attributes
+    ----------
+    torque : float
+        At the output, N·mm.
+    speed : float or None
+        Of the crank against the disc, turns a minute.
+    turns : float
+        Part of all turns that the entry takes.
+    inner_load, outer_load : float
+        Equivalent roller loads of the races, N.
+    life : float
+        L_10r, millions of turns; infinite where nothing is loaded.
+    equivalent_load : float
+        P, the radial load whose simple life (C/P)^(10/3) is the same, N.
+    static_load : float
+        P_0, the largest radial force over the positions, N (ISO 76).
+    viscosity_ratio : float or None
+        κ; None without lubricant.
+    modification : float or None
+        a_ISO; None without lubricant, and where κ is below what ISO 281 covers.
+    """
+
+    torque: float
+    speed: float | None
+    turns: float
+    inner_load: float
+    outer_load: float
+    life: float
+    equivalent_load: float
+    static_load: float
+    viscosity_ratio: float | None = None
+    modification: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingLife:
+    """Life of one crank bearing.
+
+    Attributes
+    ----------
+    disc, crank : int
+        Whose it is.
+    life : float
+        L_10r over the duty, millions of turns of the crank against the disc.
+    hours : float or None
+        The same in hours; None without a speed.
+    inner_load, outer_load : float
+        Roller loads under which the races would live as long, N.
+    equivalent_load : float
+        P with (C/P)^(10/3) = life, N.
+    static_load, static_safety : float
+        P_0, the largest over the duty, N, and S_0 = C_0/P_0.
+    modified_life, modified_hours : float or None
+        With a_ISO; None where an entry has none.
+    entries : tuple of EntryLife
+        Of each entry of the duty.
+    """
+
+    disc: int
+    crank: int
+    life: float
+    hours: float | None
+    inner_load: float
+    outer_load: float
+    equivalent_load: float
+    static_load: float
+    static_safety: float
+    modified_life: float | None
+    modified_hours: float | None
+    entries: tuple[EntryLife, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingLives:
+    """Lives of all crank bearings of a drive, which are alike in size.
+
+    Attributes
+    ----------
+    bearings : tuple of BearingLife
+        Disc after disc, crank after crank.
+    dynamic_load_rating, static_load_rating, fatigue_load_limit : float
+        C_r, C_0r and C_u, N.
+    ratings : RaceRatings
+        Q_ci and Q_ce.
+    """
+
+    bearings: tuple[BearingLife, ...]
+    dynamic_load_rating: float
+    static_load_rating: float
+    fatigue_load_limit: float
+    ratings: RaceRatings
+
+    @property
+    def shortest(self) -> BearingLife:
+        """The bearing that lives shortest."""
+        return min(self.bearings, key=lambda bearing: bearing.life)
+
+    @property
+    def static_safety(self) -> float:
+        """Least S_0 of all bearings."""
+        return min(bearing.static_safety for bearing in self.bearings)
+
+
+def bearing_lives(
+    analysis: LoadedAnalysis, *, dynamic_load_rating: float | None = None, speed: float | None = None
+) -> BearingLives:
+    """Return the lives of all crank bearings from an analysis over whole turns.
+
+    Of a drive with ``[[duty]]`` every entry is solved at its torque at the same positions; what the analysis itself was
+    solved at counts if it is the torque of an entry. Without duty that torque alone counts.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        At positions evenly spread over whole turns of the crank, all balanced.
+    dynamic_load_rating : float, optional
+        C_r of the maker, N; by ISO 281 otherwise.
+    speed : float, optional
+        Of the cranks against the discs, turns a minute; that of ``load.speed`` by default. Duty has its own.
+
+    Returns
+    -------
+    BearingLives
+
+    Raises
+    ------
+    ValueError
+        When positions do not cover whole turns evenly, or one has no answer.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from ltca.reading.drive_file import load_drive
+    >>> angles = 2.0 * np.pi * np.arange(72) / 36.0
+    >>> found = bearing_lives(analyse(load_drive("paper").cases["CS-1"], angles))
+    >>> found.shortest.disc, found.shortest.crank
+    (0, 0)
+    """
+    drive = analysis.drive
+    if not drive.duty:
+        own = abs(drive.crank_turns_per_input) * drive.load.speed if drive.load.speed is not None else None
+        return lives_of_entries([(analysis, own if speed is None else speed, 1.0)], dynamic_load_rating)
+    entries = []
+    for entry in drive.duty:
+        same = entry.torque == analysis.torque
+        solved = analysis if same else analyse(drive, analysis.full.crank_angle, entry.torque, analysis.engine)
+        entries.append((solved, entry_speed(drive, entry), entry.share))
+    return lives_of_entries(entries, dynamic_load_rating)
+
+
+def entry_speed(drive: Drive, entry: Duty) -> float:
+    """Return the speed of the cranks against the discs in an entry of the duty, turns a minute."""
+    return abs(drive.crank_turns_per_input) * entry.speed
+
+
+def lives_of_entries(
+    entries: Sequence[tuple[LoadedAnalysis, float | None, float]], dynamic_load_rating: float | None = None
+) -> BearingLives:
+    """Return the lives of all crank bearings over a duty that is solved already (Palmgren and Miner).
+
+    Parameters
+    ----------
+    entries : sequence of (LoadedAnalysis, float or None, float)
+        Of one drive: what it carries, speed of the cranks against the discs in turns a minute (None where there is but one
+        entry and no speed), part of the time.
+    dynamic_load_rating : float, optional
+        C_r of the maker, N; by ISO 281 otherwise.
+    """
+    drive = entries[0][0].drive
+    bearing = RollerBearing.of_drive(drive)
+    capacity = bearing.dynamic_load_rating if dynamic_load_rating is None else dynamic_load_rating
+    ratings = bearing.race_ratings(capacity)
+    turned = [share * (1.0 if speed is None else speed) for _, speed, share in entries]
+    per_minute = None if entries[0][1] is None else sum(turned)
+    loads = [_loads(analysis) for analysis, _, _ in entries]
+    lives = []
+    for disc in range(drive.disc.number_of_discs):
+        for crank in range(drive.crank.number):
+            own = []
+            for (analysis, speed, _), turns, (races, forces) in zip(entries, turned, loads, strict=True):
+                inner, outer = races[disc, crank]
+                life = ratings.life(float(inner), float(outer))
+                found = EntryLife(
+                    torque=analysis.torque,
+                    speed=speed,
+                    turns=turns / sum(turned),
+                    inner_load=float(inner),
+                    outer_load=float(outer),
+                    life=life,
+                    equivalent_load=float(capacity * life**-0.3),
+                    static_load=float(forces[disc, crank]),
+                )
+                own.append(_modified(found, drive, bearing))
+            lives.append(_joined(disc, crank, own, per_minute, capacity, bearing.static_load_rating))
+    return BearingLives(
+        bearings=tuple(lives),
+        dynamic_load_rating=capacity,
+        static_load_rating=bearing.static_load_rating,
+        fatigue_load_limit=bearing.fatigue_load_limit,
+        ratings=ratings,
+    )
+
+
+def _joined(
+    disc: int, crank: int, entries: Sequence[EntryLife], per_minute: float | None, capacity: float, static: float
+) -> BearingLife:
+    """One life of all entries: what each takes of it adds up to one."""
+    life = _miner([(entry.turns, entry.life) for entry in entries])
+    modified = None
+    if all(entry.modification is not None for entry in entries):
+        modified = _miner([(entry.turns, (entry.modification or 0.0) * entry.life) for entry in entries])
+    hours = None if per_minute is None else 1e6 / (60.0 * per_minute)
+    largest = max(entry.static_load for entry in entries)
+    return BearingLife(
+        disc=disc,
+        crank=crank,
+        life=life,
+        hours=None if hours is None else life * hours,
+        # A race alone lives by the fourth power of its load.
+        inner_load=float(sum(entry.turns * entry.inner_load**4 for entry in entries) ** 0.25),
+        outer_load=float(sum(entry.turns * entry.outer_load**4 for entry in entries) ** 0.25),
+        equivalent_load=float(capacity * life**-0.3),
+        static_load=largest,
+        static_safety=static / largest if largest > 0.0 else float("inf"),
+        modified_life=modified,
+        modified_hours=None if hours is None or modified is None else modified * hours,
+        entries=tuple(entries),
+    )
+
+
+def _miner(parts: Sequence[tuple[float, float]]) -> float:
+    """Life of which every part of the turns takes its part, 1/Σ(turns/life)."""
+    spent = sum(turns / life for turns, life in parts)
+    return 1.0 / spent if spent > 0.0 else float("inf")
+
+
+def _modified(entry: EntryLife, drive: Drive, bearing: RollerBearing) -> EntryLife:
+    """The entry with what the lubricant makes of it."""
+    lubricant = drive.lubricant
+    if lubricant is None or entry.speed is None:
+        return entry
+    ratio = lubricant.viscosity / reference_viscosity(entry.speed, bearing.pitch_diameter)
+    limit = bearing.fatigue_load_limit / entry.equivalent_load if entry.equivalent_load > 0.0 else float("inf")
+    factor = life_modification_factor(ratio, lubricant.contamination, limit)
+    return replace(entry, viscosity_ratio=ratio, modification=factor)
+
+
+def _loads(analysis: LoadedAnalysis) -> tuple[FloatArray, FloatArray]:
+    """Equivalent loads of both races, shape (discs, cranks, 2), and largest forces, shape (discs, cranks), N."""
+    angle, drive = analysis.full.crank_angle, analysis.drive
+    if not covers_whole_turns(angle):
+        raise ValueError("life needs positions evenly spread over whole turns of the crank")
+    if not np.all(analysis.balanced):
+        raise ValueError("life needs an answer at every position")
+    cranks = drive.crank.number
+    races = np.zeros((drive.disc.number_of_discs, cranks, 2))
+    for number, (single, model) in enumerate(zip(analysis.discs, analysis.model.discs, strict=True)):
+        place, rollers = model.geometry.placement, single.full.response.rollers
+        on_inner = place.roller_angles(angle) - angle[:, None]
+        in_bore = np.angle(rollers.outer_direction) - single.full.pose[:, DISC_ROTATION, None]
+        inner_laminae, outer_laminae = laminae_of(analysis)
+        for crank in range(cranks):
+            own = slice(crank * (on_inner.shape[1] // cranks), (crank + 1) * (on_inner.shape[1] // cranks))
+            races[number, crank] = (
+                race_load(rollers.inner_load[:, own], on_inner[:, own], inner_laminae),
+                race_load(rollers.outer_load[:, own], in_bore[:, own], outer_laminae),
+            )
+    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
+    return races, np.max(force, axis=0)
+
+
+def laminae_of(analysis: LoadedAnalysis) -> tuple[Laminae, Laminae]:
+    """Return how the rollers of an analysis spread their loads on the inner race and in the bore.
+
+    By the profile, where the engine has one along the length; even with edge factors in plane strain, which has none.
+    Effective radii are those of the drawing: errors of single rollers are thousandths of them.
+    """
+    drive = analysis.drive
+    if analysis.engine.compliance == "fe":
+        return EvenLaminae(), EvenLaminae()
+    part, materials = drive.crank_bearing, drive.materials
+    profile = generator_profile(part.roller_profile, part.roller_length, part.roller_radius)
+
+    def solved(curvature: float, race_modulus: float) -> SolvedLaminae:
+        return SolvedLaminae(
+            profile=profile,
+            length=part.roller_length,
+            effective_radius=1.0 / (1.0 / part.roller_radius + curvature),
+            contact_modulus=race_modulus,
+        )
+
+    return (
+        solved(1.0 / part.inner_race_radius, contact_modulus(materials.inner_race, materials.roller)),
+        solved(-1.0 / drive.bore_radius, contact_modulus(materials.disc, materials.roller)),
+    )
