@@ -19,8 +19,8 @@ pressure_fields            Pressure over every loaded contact at chosen crank an
 torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost
                            motion, torsional stiffness
 transmission_error_orders  Orders of the transmission error by name, fitted together
+life                       Rating life and static safety of the crank bearings from the loads of their rollers
 verdict                    A verdict on a design: values against limits that each have a source, and advice
-rating_life                Rating life of the crank bearing from the loads of its rollers (ISO 281, ISO/TS 16281)
 pressure_safety            Safety of the flank pressure against a limit
 memory_need                Memory and disc that an analysis of many positions will need, estimated before it starts
 =========================  ============================================================

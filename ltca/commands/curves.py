@@ -19,8 +19,8 @@ from ltca.reading.arguments import (
 if TYPE_CHECKING:
     from ltca.analysis.engines import Engine
     from ltca.analysis.friction.hysteresis import HysteresisLoop
+    from ltca.analysis.life.bearing_lives import BearingLives
     from ltca.analysis.pressure_safety import PressureSafety
-    from ltca.analysis.rating_life import RatingLife
     from ltca.analysis.torque_curve import TorqueCurve
     from ltca.analysis.transmission_error_orders import Order, Spectrum
     from ltca.drive.parts import Drive
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=quantity_argument("--speed", "rpm", gt=0.0),
         help="crank speed in turns a minute (or a text such as '1500 rpm'), for the life in hours: of a central crank "
         "against the held member, of several cranks against the carrier (what that is of the input is printed); default from "
-        "load.speed, if the drive has it",
+        "load.speed, if the drive has it; not with [[duty]]",
     )
     parser.add_argument(
         "--load-rating",
@@ -115,12 +115,8 @@ class CaseCurves(NamedTuple):
         Their positions, rad.
     spectrum : Spectrum
         Orders of the transmission error.
-    life : RatingLife
-        Of the crank bearing with the shortest one.
-    disc, crank : int
-        Its disc and crank.
-    hours : float or None
-        At the speed, where there is one.
+    lives : BearingLives
+        Of all crank bearings.
     pressure : array, shape (positions, pins)
         At mid-width, MPa.
     safety : PressureSafety
@@ -131,10 +127,7 @@ class CaseCurves(NamedTuple):
     turns: int
     crank_angle: FloatArray
     spectrum: Spectrum
-    life: RatingLife
-    disc: int
-    crank: int
-    hours: float | None
+    lives: BearingLives
     pressure: FloatArray
     safety: PressureSafety
 
@@ -145,6 +138,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     from ltca.commands.compliance_arguments import check_compliance, compliance_of, find_coefficients_of
     from ltca.output.run_folder import claimed_folder, figure_files, require_folder
+    from ltca.errors import DriveError
     from ltca.reading.drive_file import load_drive
 
     check_compliance(arguments)
@@ -162,6 +156,8 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     engine = compliance_of(arguments)
     for drive in cases.values():
+        if drive.duty and limits.speed is not None:
+            raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])
         turns = arguments.turns or drive.pin_wheel.number_of_pins
         require_room_for([drive], turns * positions_per_turn(drive), out, f"--turns {turns}")
         if turns < drive.pin_wheel.number_of_pins:
@@ -238,8 +234,8 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
     import numpy as np
 
     from ltca.analysis import loaded_analysis
+    from ltca.analysis.life.bearing_lives import bearing_lives
     from ltca.analysis.pressure_safety import pressure_safety
-    from ltca.analysis.rating_life import RollerBearing, rating_life
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders
     from ltca.errors import DriveError
@@ -256,41 +252,15 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
         spectrum = fit_orders(angle, analysis.transmission_error, _orders(drive))
     except ValueError as error:
         raise DriveError([f"--turns = {turns}: {error}"]) from error
-    part = drive.crank_bearing
-    bearing = RollerBearing(
-        rollers=part.number_of_rollers,
-        roller_diameter=2.0 * part.roller_radius,
-        roller_length=part.roller_length,
-        pitch_diameter=part.inner_race_radius + part.outer_race_radius,
-    )
-    cranks = drive.crank.number
-    # The load of a central crank turns with it. On the carrier it stands neither to crank nor to disc: the worse of both.
-    lives = {
-        (disc, crank, standing): rating_life(
-            bearing,
-            np.split(rollers.inner_load, cranks, axis=1)[crank],
-            np.split(rollers.outer_load, cranks, axis=1)[crank],
-            standing=standing,
-            relieved=not part.roller_profile.is_cylinder,
-            dynamic_load_rating=limits.load_rating,
-        )
-        for disc, rollers in enumerate(disc.full.response.rollers for disc in analysis.discs)
-        for crank in range(cranks)
-        for standing in (("inner",) if cranks == 1 else ("inner", "outer"))
-    }
-    shortest = min(lives, key=lambda key: lives[key].life)
-    life = lives[shortest]
     # The disc does not turn against the pin shaft: a bearing turns as the crank does against that one.
-    turning = abs(drive.output_per_wheel_angle) if cranks == 1 else 1.0
+    turning = abs(drive.output_per_wheel_angle) if drive.crank.number == 1 else 1.0
+    speed = None if limits.speed is None else limits.speed * turning
     return CaseCurves(
         curve=curve,
         turns=turns,
         crank_angle=angle,
         spectrum=spectrum,
-        life=life,
-        disc=shortest[0],
-        crank=shortest[1],
-        hours=None if limits.speed is None else life.life * 1e6 / (60.0 * limits.speed * turning),
+        lives=bearing_lives(analysis, dynamic_load_rating=limits.load_rating, speed=speed),
         pressure=analysis.pressures.pins.mid,
         safety=pressure_safety(analysis.pressures.pins.mid, limits.pressure),
     )
@@ -300,9 +270,10 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     import numpy as np
 
     from ltca.analysis.engines import describe_engine
+    from ltca.analysis.life.life_text import life_lines
     from ltca.drive.units.quantities import ARCMIN, ARCSEC
 
-    curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
+    curve, spectrum, safety = found.curve, found.spectrum, found.safety
     discs, output = drive.disc.number_of_discs, "output" if drive.wheel_is_held else "wheel"
     over = f"over {found.turns} turns, {found.crank_angle.size} positions"
     print(
@@ -322,15 +293,8 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
         entry = spectrum.orders[number]
         print(f"  {entry.value:>9.4f}  {entry.name:<32}{spectrum.amplitude[number] * ARCSEC:>9.4f}″")
     print(f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″")
-    named = ([f"disc {found.disc}"] if discs > 1 else []) + ([f"crank {found.crank}"] if drive.crank.number > 1 else [])
-    which = f" of {', '.join(named)}, the shortest" if named else ""
-    stands = (
-        "load stands still to the inner race" if drive.crank.number == 1 else "load taken to stand to the worse race"
-    )
-    print(f"rating life of the crank bearing{which} ({stands})")
-    print(f"  C {life.dynamic_load_rating:.0f} N, P {life.equivalent_load:.0f} N, L10r {life.life:.1f} million turns")
-    if found.hours is not None:
-        print(f"  {found.hours:.0f} h at {_speed_words(drive, _crank_speed(drive, limits))}")
+    speed = None if drive.duty else _speed_words(drive, _crank_speed(drive, limits))
+    print("\n".join(life_lines(found.lives, drive, speed)))
     print(
         f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limits.pressure:g} MPa, largest {over}"
     )
@@ -384,7 +348,9 @@ def _loop(loop: HysteresisLoop | None) -> dict[str, Any] | None:
 
 
 def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
-    curve, spectrum, life, safety = found.curve, found.spectrum, found.life, found.safety
+    from ltca.analysis.life.life_text import life_content
+
+    curve, spectrum, safety = found.curve, found.spectrum, found.safety
     return {
         "torque_curve": {
             "number_of_discs": drive.disc.number_of_discs,
@@ -408,16 +374,7 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
             ],
             "residual_rms_rad": spectrum.residual,
         },
-        "bearing_life": {
-            "million_turns": life.life,
-            "disc": found.disc,
-            "crank": found.crank,
-            "hours": found.hours,
-            "dynamic_load_rating_N": life.dynamic_load_rating,
-            "equivalent_load_N": life.equivalent_load,
-            "inner_roller_load_N": life.inner_load,
-            "outer_roller_load_N": life.outer_load,
-        },
+        "bearing_life": life_content(found.lives, drive),
         "pressure_safety": {
             "limit_MPa": safety.limit,
             "largest_MPa": safety.largest,

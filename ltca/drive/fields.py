@@ -3,6 +3,7 @@
 What differs per disc stands in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where
 nothing is said of it, it reads as the field of all discs that it takes the place of. Eccentrics of several cranks are counted
 disc after disc: ``crank.of.N`` is that of disc N // cranks on crank N % cranks, in whatever order the file has them.
+``duty.N`` is entry N of ``[[duty]]``, counted from 0 in the order of the file.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ OWN = {
 """What each disc may have of its own, in the place of what all have."""
 _WHOSE = ("crank.of.N.disc", "crank.of.N.crank")
 """They say whose an entry is, and are no fields of it."""
-_NUMBERED = re.compile(r"^((?:disc|crank)\.of)\.([0-9]{1,6})\.")
+_NUMBERED = re.compile(r"^((?:disc|crank)\.of|duty)\.([0-9]{1,6})\.")
 
 
 @cache
@@ -78,7 +79,7 @@ def field_kind(path: str) -> FieldKind | None:
     >>> field_kind("disc.of.0.runout.amount")
     FieldKind(unit='mm', is_array=False)
     """
-    if f".of.{ANY}." in path:
+    if f".{ANY}." in path:
         return None
     return field_kinds().get(_NUMBERED.sub(rf"\1.{ANY}.", path))
 
@@ -140,7 +141,9 @@ def with_whose(path: str, owner: str) -> str:
 
 
 def _counting(drive: Drive, table: str) -> str:
-    """What N of ``disc.of.N`` or ``crank.of.N`` is."""
+    """What N of ``disc.of.N``, ``crank.of.N`` or ``duty.N`` is."""
+    if table == "duty":
+        return "N of duty.N is the entry, counted from 0"
     last, cranks = _entries(drive, table.partition(".")[0]) - 1, drive.crank.number
     means = f"disc · {cranks} + crank" if table == "crank.of" and cranks > 1 else "the disc"
     return f"N of {table}.N is {means}, " + (f"from 0 to {last}" if last else "and 0 alone")
@@ -283,8 +286,10 @@ def absence(drive: Drive, path: str) -> str | None:
 def no_entry(drive: Drive, table: str, number: int) -> str | None:
     """Return what to say of an entry of ``disc.of`` or ``crank.of`` that the drive has not; None where it has it."""
     discs, cranks = drive.disc.number_of_discs, drive.crank.number
-    if number < _entries(drive, table.partition(".")[0]):
+    if number < (len(drive.duty) if table == "duty" else _entries(drive, table.partition(".")[0])):
         return None
+    if table == "duty":
+        return f"there is no entry {number}; [[duty]] has {len(drive.duty)}, counted from 0"
     if table == "crank.of" and cranks > 1:
         sizes = f"disc.number_of_discs = {discs}, crank.number = {cranks}"
         return f"there is no eccentric {number}; {sizes}: {_counting(drive, table)}"
@@ -299,6 +304,8 @@ def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
     table, number, name = found
     if (problem := no_entry(drive, table, number)) is not None:
         raise DriveError([f"{path}: {problem}"])
+    if table == "duty":
+        return drive, path
     disc, crank = divmod(number, drive.crank.number) if table == "crank.of" else (number, 0)
     single = single_discs(drive)[disc]
     if table == "crank.of" and (name == "phase_error" or drive.crank.number > 1):
@@ -373,7 +380,9 @@ def read_field(drive: Drive, path: str) -> Any:
         return values[int(last)]
     count = element_count(drive, path)
     drive, path = _of_disc(drive, path)
-    if (place := numbered(path)) is not None:
+    if (place := numbered(path)) is not None and place[0] == "duty":
+        return getattr(drive.duty[place[1]], place[2])
+    if place is not None:
         return _own_value(drive, place[1], place[2], count)
     value: Any = drive if drive.friction is not None else replace(drive, friction=Friction())
     for name in (_FOLLOWS.get(path) or path).split("."):

@@ -78,6 +78,8 @@ def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[st
             return f"{path}: is not a field of {where}{did_you_mean(place[-1], siblings)}"
         case "dataclass_type" | "dataclass_exact_type" | "model_type" | "dict_type":
             return f"{path} = {shortened(detail['input'])}: must be a table"
+        case "tuple_type" if path == "duty":
+            return f"{path} = {shortened(detail['input'])}: must be an array of tables, written [[duty]]"
         case "tuple_type":
             return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(_path(place))}"
         case "literal_error":
@@ -109,6 +111,6 @@ def fields_of(table: str) -> tuple[str, ...]:
     """
     from ltca.drive.fields import field_kinds
 
-    table = re.sub(r"\.of\.[0-9]+\b", ".of.N", table)
+    table = re.sub(r"(\.of|^duty)\.[0-9]+\b", r"\1.N", table)
     head = f"{table}." if table else ""
     return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in field_kinds() if path.startswith(head)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from pydantic import ValidationError
@@ -13,7 +13,7 @@ from ltca.drive.fields import field_kind, is_element, missing_part, no_entry, no
 from ltca.drive.materials import PARTS
 from ltca.drive.members.named_materials import named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, Duty
 from ltca.errors import DriveError, shortened
 from ltca.reading.physical_checks import find_contradictions
 
@@ -104,6 +104,7 @@ _NEEDED = {
     "pin_wheel.beam": ("span", "ends"),
     "crank.support": ("diameter", "positions", "stiffness"),
     "friction": (),
+    "lubricant": ("viscosity", "contamination"),
 }
 """What a part that may be left out is made of."""
 
@@ -114,8 +115,15 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
         "crank": _eccentrics(drive),
     }
-    for (table, number), values in own.items():
+    duty = [*drive.duty]
+    for (table, number), values in sorted(own.items()):
         part = table.partition(".")[0]
+        if table == "duty" and number == len(duty) and {*values} == {item.name for item in fields(Duty)}:
+            duty.append(_made(values, f"duty.{number}", problems))
+            continue
+        if table == "duty" and number < len(duty):
+            duty[number] = _replaced(duty[number], dict(values), f"duty.{number}.", problems)
+            continue
         if (problem := no_entry(drive, table, number)) is not None:
             problems.append(f"{table}.{number}: {problem}")
             continue
@@ -127,13 +135,25 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
         filled = {name: _begun(drive, entry, name) for name, below in tree.items() if "" not in below}
         changes = {name: below.get("", below) for name, below in tree.items()}
         rows[part][number] = _replaced(replace(entry, **filled), changes, f"{table}.{number}.", problems)
+    if problems:
+        return drive
     return replace(
         drive,
+        duty=tuple(duty),
         disc=replace(drive.disc, of=tuple(rows["disc"]) if any(key[0] == "disc.of" for key in own) else drive.disc.of),
         crank=replace(
             drive.crank, of=tuple(rows["crank"]) if any(key[0] == "crank.of" for key in own) else drive.crank.of
         ),
     )
+
+
+def _made(values: Mapping[str, Any], path: str, problems: list[str]) -> Any:
+    """A further entry of the duty; None with its mistakes in `problems`."""
+    try:
+        return Duty(**values)
+    except ValidationError as error:
+        problems += describe_mistakes(error.errors(), path.split("."))
+        return None
 
 
 def _eccentrics(drive: Drive) -> list[OneEccentric]:

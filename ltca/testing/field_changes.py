@@ -88,22 +88,26 @@ _NAME = {
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
-_EVERYWHERE: Mapping[str, str] = _NAME
+_OF_LIFE = dict.fromkeys(
+    ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
+    "duty and lubricant concern lives of bearings alone, and here none is told",
+)
+_EVERYWHERE: Mapping[str, str] = _NAME | _OF_LIFE
 _RIGID_PIN = {
     f"materials.shaft_pin.{name}": "the shaft pin is rigid on its spring where the hole's wall yields by itself"
     for name in ("youngs_modulus", "poisson_ratio")
 }
 EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
     "tables": _EVERYWHERE,
-    "direct": _NAME | {"load.light_torque": "direct is walked at full load alone"},
-    "paper": _NAME | {"load.light_torque": "the paper's iteration is walked at full load alone"},
-    "hybrid": _NAME | _RIGID_PIN,
-    "fe": _NAME | _RIGID_PIN,
+    "direct": _EVERYWHERE | {"load.light_torque": "direct is walked at full load alone"},
+    "paper": _EVERYWHERE | {"load.light_torque": "the paper's iteration is walked at full load alone"},
+    "hybrid": _EVERYWHERE | _RIGID_PIN,
+    "fe": _EVERYWHERE | _RIGID_PIN,
     "curves": _NAME
     | {"load.light_torque": "curves are those of full load"}
     | dict.fromkeys(_RIGID_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
-    "studies": _NAME,
-    "full FE": _NAME | _RIGID_PIN | {"load.light_torque": "a full solution is one of full load"},
+    "studies": _EVERYWHERE,
+    "full FE": _EVERYWHERE | _RIGID_PIN | {"load.light_torque": "a full solution is one of full load"},
 }
 """Fields that may leave the answer of a model alone, each with its reason."""
 
@@ -216,6 +220,15 @@ def _beside(drive: Drive, path: str) -> dict[str, Any]:
         if path == "friction.seat" and wheel.seat.kind == "fixed":
             needed |= _seat(drive, "pin_wheel", "slot") | {path: 0.02}
         return needed
+    if path.startswith("duty.") and not drive.duty:
+        entries: list[dict[str, float]] = [
+            {"torque": 0.5 * drive.load.torque, "speed": 900.0, "share": 0.4},
+            {"torque": drive.load.torque, "speed": 1500.0, "share": 0.6},
+        ]
+        return {f"duty.{number}.{name}": value for number, entry in enumerate(entries) for name, value in entry.items()}
+    if path.startswith("lubricant.") and drive.lubricant is None:
+        speed = {} if drive.duty or drive.load.speed is not None else {"load.speed": 1500.0}
+        return {"lubricant.viscosity": 60.0, "lubricant.contamination": 0.5} | speed
     if path in ("pin_shaft.seat.pin_radius", "pin_shaft.seat.bore_radius") and shaft and shaft.seat.kind == "fixed":
         return _seat(drive, "pin_shaft", "sleeve")
     if path.startswith("pin_wheel.beam.") and wheel.beam is None:
@@ -273,6 +286,8 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         return drive, {path: 1.1 * read_field(drive, path)} | (
             {"crank_bearing.roller_length": 1.1 * read_field(drive, "crank_bearing.roller_length")}
         )
+    if path == "duty.0.share":
+        return drive, {path: 0.5 * read_field(drive, path), "duty.1.share": 1.0 - 0.5 * read_field(drive, path)}
     if path in _COUNTS:
         cleared = {
             field: ()
