@@ -137,8 +137,8 @@ def execute(arguments: argparse.Namespace) -> int:
     from glob import escape
 
     from ltca.commands.compliance_arguments import check_compliance, compliance_of, find_coefficients_of
-    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
     from ltca.errors import DriveError
+    from ltca.output.run_folder import claimed_folder, figure_files, require_folder
     from ltca.reading.drive_file import load_drive
 
     check_compliance(arguments)

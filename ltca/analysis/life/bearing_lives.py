@@ -14,7 +14,8 @@ from ltca.analysis.life.modification import life_modification_factor, reference_
 from ltca.analysis.life.ratings import RaceRatings, RollerBearing
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.contact.generator import generator_profile
-from ltca.drive.parts import Drive, Duty, contact_modulus
+from ltca.drive.parts import Drive, contact_modulus
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION
 
 FloatArray = NDArray[np.float64]
@@ -165,59 +166,127 @@ def bearing_lives(
     drive = analysis.drive
     if not drive.duty:
         own = abs(drive.crank_turns_per_input) * drive.load.speed if drive.load.speed is not None else None
-        return lives_of_entries([(analysis, own if speed is None else speed, 1.0)], dynamic_load_rating)
+        return lives_of_entries(
+            drive, [entry_loads(analysis, own if speed is None else speed, 1.0)], dynamic_load_rating
+        )
     entries = []
-    for entry in drive.duty:
-        same = entry.torque == analysis.torque
-        solved = analysis if same else analyse(drive, analysis.full.crank_angle, entry.torque, analysis.engine)
-        entries.append((solved, entry_speed(drive, entry), entry.share))
-    return lives_of_entries(entries, dynamic_load_rating)
+    for number, entry in enumerate(drive.duty):
+        solved = analysis if entry.torque == analysis.torque else _at_torque(analysis, number)
+        entries.append(entry_loads(solved, abs(drive.crank_turns_per_input) * entry.speed, entry.share))
+    return lives_of_entries(drive, entries, dynamic_load_rating)
 
 
-def entry_speed(drive: Drive, entry: Duty) -> float:
-    """Return the speed of the cranks against the discs in an entry of the duty, turns a minute."""
-    return abs(drive.crank_turns_per_input) * entry.speed
+def _at_torque(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
+    """The same positions under an entry of the duty, which is named where they do not balance."""
+    torque = analysis.drive.duty[number].torque
+    try:
+        return analyse(analysis.drive, analysis.full.crank_angle, torque, analysis.engine)
+    except ConvergenceError as error:
+        error.add(f"duty.{number}.torque = {torque:g} N·mm")
+        raise
 
 
-def lives_of_entries(
-    entries: Sequence[tuple[LoadedAnalysis, float | None, float]], dynamic_load_rating: float | None = None
-) -> BearingLives:
-    """Return the lives of all crank bearings over a duty that is solved already (Palmgren and Miner).
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EntryLoads:
+    """What all crank bearings carry in one entry of the duty.
+
+    Attributes
+    ----------
+    torque : float
+        At the output, N·mm.
+    speed : float or None
+        Of the cranks against the discs, turns a minute.
+    share : float
+        Part of the time.
+    inner, outer : array, shape (discs, cranks)
+        Equivalent roller loads of the races, N.
+    largest_force : array, shape (discs, cranks)
+        Largest radial force over the positions, N.
+    """
+
+    torque: float
+    speed: float | None
+    share: float
+    inner: FloatArray
+    outer: FloatArray
+    largest_force: FloatArray
+
+
+def entry_loads(analysis: LoadedAnalysis, speed: float | None, share: float) -> EntryLoads:
+    """Return what all crank bearings carry in one entry of the duty.
 
     Parameters
     ----------
-    entries : sequence of (LoadedAnalysis, float or None, float)
-        Of one drive: what it carries, speed of the cranks against the discs in turns a minute (None where there is but one
-        entry and no speed), part of the time.
+    analysis : LoadedAnalysis
+        At its torque, at positions evenly spread over whole turns of the crank, all balanced.
+    speed : float or None
+        Of the cranks against the discs, turns a minute.
+    share : float
+        Part of the time.
+
+    Raises
+    ------
+    ValueError
+        When positions do not cover whole turns evenly, or one has no answer.
+    """
+    angle, drive = analysis.full.crank_angle, analysis.drive
+    if not covers_whole_turns(angle):
+        raise ValueError("life needs positions evenly spread over whole turns of the crank")
+    if not np.all(analysis.balanced):
+        raise ValueError("life needs an answer at every position")
+    cranks = drive.crank.number
+    inner, outer = np.zeros((2, drive.disc.number_of_discs, cranks))
+    inner_laminae, outer_laminae = laminae_of(analysis)
+    for number, (single, model) in enumerate(zip(analysis.discs, analysis.model.discs, strict=True)):
+        rollers = single.full.response.rollers
+        on_inner = model.geometry.placement.roller_angles(angle) - angle[:, None]
+        in_bore = np.angle(rollers.outer_direction) - single.full.pose[:, DISC_ROTATION, None]
+        for crank, own in enumerate(np.split(np.arange(on_inner.shape[1]), cranks)):
+            inner[number, crank] = race_load(rollers.inner_load[:, own], on_inner[:, own], inner_laminae)
+            outer[number, crank] = race_load(rollers.outer_load[:, own], in_bore[:, own], outer_laminae)
+    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
+    return EntryLoads(
+        torque=analysis.torque, speed=speed, share=share, inner=inner, outer=outer, largest_force=force.max(axis=0)
+    )
+
+
+def lives_of_entries(
+    drive: Drive, entries: Sequence[EntryLoads], dynamic_load_rating: float | None = None
+) -> BearingLives:
+    """Return the lives of all crank bearings over a duty (Palmgren and Miner).
+
+    Parameters
+    ----------
+    drive : Drive
+        Whose they are.
+    entries : sequence of EntryLoads
+        All with a speed, or a single one without.
     dynamic_load_rating : float, optional
         C_r of the maker, N; by ISO 281 otherwise.
     """
-    drive = entries[0][0].drive
     bearing = RollerBearing.of_drive(drive)
     capacity = bearing.dynamic_load_rating if dynamic_load_rating is None else dynamic_load_rating
     ratings = bearing.race_ratings(capacity)
-    turned = [share * (1.0 if speed is None else speed) for _, speed, share in entries]
-    per_minute = None if entries[0][1] is None else sum(turned)
-    loads = [_loads(analysis) for analysis, _, _ in entries]
+    turned = [entry.share * (1.0 if entry.speed is None else entry.speed) for entry in entries]
+    per_minute = None if entries[0].speed is None else sum(turned)
     lives = []
-    for disc in range(drive.disc.number_of_discs):
-        for crank in range(drive.crank.number):
-            own = []
-            for (analysis, speed, _), turns, (races, forces) in zip(entries, turned, loads, strict=True):
-                inner, outer = races[disc, crank]
-                life = ratings.life(float(inner), float(outer))
-                found = EntryLife(
-                    torque=analysis.torque,
-                    speed=speed,
-                    turns=turns / sum(turned),
-                    inner_load=float(inner),
-                    outer_load=float(outer),
-                    life=life,
-                    equivalent_load=float(capacity * life**-0.3),
-                    static_load=float(forces[disc, crank]),
-                )
-                own.append(_modified(found, drive, bearing))
-            lives.append(_joined(disc, crank, own, per_minute, capacity, bearing.static_load_rating))
+    for disc, crank in np.ndindex(*entries[0].inner.shape):
+        own = []
+        for entry, turns in zip(entries, turned, strict=True):
+            inner, outer = float(entry.inner[disc, crank]), float(entry.outer[disc, crank])
+            life = ratings.life(inner, outer)
+            found = EntryLife(
+                torque=entry.torque,
+                speed=entry.speed,
+                turns=turns / sum(turned),
+                inner_load=inner,
+                outer_load=outer,
+                life=life,
+                equivalent_load=float(capacity * life**-0.3),
+                static_load=float(entry.largest_force[disc, crank]),
+            )
+            own.append(_modified(found, drive, bearing))
+        lives.append(_joined(disc, crank, own, per_minute, capacity, bearing.static_load_rating))
     return BearingLives(
         bearings=tuple(lives),
         dynamic_load_rating=capacity,
@@ -269,30 +338,6 @@ def _modified(entry: EntryLife, drive: Drive, bearing: RollerBearing) -> EntryLi
     limit = bearing.fatigue_load_limit / entry.equivalent_load if entry.equivalent_load > 0.0 else float("inf")
     factor = life_modification_factor(ratio, lubricant.contamination, limit)
     return replace(entry, viscosity_ratio=ratio, modification=factor)
-
-
-def _loads(analysis: LoadedAnalysis) -> tuple[FloatArray, FloatArray]:
-    """Equivalent loads of both races, shape (discs, cranks, 2), and largest forces, shape (discs, cranks), N."""
-    angle, drive = analysis.full.crank_angle, analysis.drive
-    if not covers_whole_turns(angle):
-        raise ValueError("life needs positions evenly spread over whole turns of the crank")
-    if not np.all(analysis.balanced):
-        raise ValueError("life needs an answer at every position")
-    cranks = drive.crank.number
-    races = np.zeros((drive.disc.number_of_discs, cranks, 2))
-    for number, (single, model) in enumerate(zip(analysis.discs, analysis.model.discs, strict=True)):
-        place, rollers = model.geometry.placement, single.full.response.rollers
-        on_inner = place.roller_angles(angle) - angle[:, None]
-        in_bore = np.angle(rollers.outer_direction) - single.full.pose[:, DISC_ROTATION, None]
-        inner_laminae, outer_laminae = laminae_of(analysis)
-        for crank in range(cranks):
-            own = slice(crank * (on_inner.shape[1] // cranks), (crank + 1) * (on_inner.shape[1] // cranks))
-            races[number, crank] = (
-                race_load(rollers.inner_load[:, own], on_inner[:, own], inner_laminae),
-                race_load(rollers.outer_load[:, own], in_bore[:, own], outer_laminae),
-            )
-    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
-    return races, np.max(force, axis=0)
 
 
 def laminae_of(analysis: LoadedAnalysis) -> tuple[Laminae, Laminae]:

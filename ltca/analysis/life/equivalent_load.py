@@ -62,7 +62,7 @@ def race_load(load: FloatArray, place: FloatArray, laminae: Laminae) -> float:
     around = np.exp(2j * np.pi * np.outer(np.arange(_PLACES), order) / _PLACES)
     over_time = np.maximum((around @ series).real, 0.0)  # a cut series may dip below zero where nothing presses
     over_places = float((over_time**WEIBULL).mean(axis=0) @ laminae.weights)
-    return largest * over_places ** (1.0 / (DAMAGE * WEIBULL))
+    return float(largest * over_places ** (1.0 / (DAMAGE * WEIBULL)))
 
 
 def covers_whole_turns(crank_angle: FloatArray) -> bool:

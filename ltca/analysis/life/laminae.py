@@ -126,7 +126,8 @@ class SolvedLaminae:
             return np.ones((load.size, self.weights.size))
         loads, rows = self._solved(largest)
         at = np.log(np.clip(load, loads[0], loads[-1]))
-        return np.asarray(PchipInterpolator(np.log(loads), rows, axis=0)(at))
+        found = PchipInterpolator(np.log(loads), rows, axis=0)(at)
+        return np.asarray(found / (found @ self.weights)[:, None])
 
     def _solved(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Loads and shares of the contacts around [LIGHTEST, 1] of the largest load, ascending."""

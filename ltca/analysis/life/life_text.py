@@ -122,7 +122,11 @@ def life_lines(lives: BearingLives, drive: Drive, speed: str | None) -> list[str
 
 
 def _over(drive: Drive) -> str:
-    return f"over {len(drive.duty)} entries of the duty" if drive.duty else "each place of the races by the loads that pass it"
+    return (
+        f"over {len(drive.duty)} entries of the duty"
+        if drive.duty
+        else "each place of the races by the loads that pass it"
+    )
 
 
 def _modified_lines(found: BearingLife) -> list[str]:

@@ -25,8 +25,8 @@ def reference_viscosity(speed: float, pitch_diameter: float) -> float:
         D_pw, mm.
     """
     if speed < 1000.0:
-        return 45_000.0 * speed**-0.83 * pitch_diameter**-0.5
-    return 4500.0 * (speed * pitch_diameter) ** -0.5
+        return float(45_000.0 * speed**-0.83 * pitch_diameter**-0.5)
+    return float(4500.0 * (speed * pitch_diameter) ** -0.5)
 
 
 def life_modification_factor(viscosity_ratio: float, contamination: float, limit_ratio: float) -> float | None:
@@ -53,4 +53,4 @@ def life_modification_factor(viscosity_ratio: float, contamination: float, limit
     left = 1.0 - (1.5859 - factor * ratio**-exponent) * (contamination * limit_ratio) ** 0.4
     if left <= 0.0:
         return LARGEST
-    return min(0.1 * left**-9.185, LARGEST)
+    return float(min(0.1 * left**-9.185, LARGEST))

@@ -94,7 +94,7 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("time", ("h",), 1, 0),
     ("density", ("kg/m³", "kg/m3"), 1, 0),
     ("density", ("g/cm³", "g/cm3"), 1000, 0),
-    ("viscosity", ("mm²/s", "mm2/s"), 1, 0),
+    ("viscosity", ("mm²/s", "mm2/s", "cSt"), 1, 0),
 )
 UNITS: dict[str, dict[str, Unit]] = {}
 """By kind, then by spelling."""
