@@ -15,7 +15,7 @@ from ltca.analysis.life.ratings import RaceRatings, RollerBearing
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.contact.generator import generator_profile
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.errors import ConvergenceError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION
 
 FloatArray = NDArray[np.float64]
@@ -181,6 +181,8 @@ def _at_torque(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
     torque = analysis.drive.duty[number].torque
     try:
         return analyse(analysis.drive, analysis.full.crank_angle, torque, analysis.engine)
+    except DriveError as error:
+        raise DriveError([f"duty.{number}.torque = {torque:g} N·mm: {problem}" for problem in error.problems]) from error
     except ConvergenceError as error:
         error.add(f"duty.{number}.torque = {torque:g} N·mm")
         raise

@@ -17,7 +17,8 @@ pins) and one stands in the carrier (the torque's), so that neither race stands.
 
 **Time.** Cage and crank turn by no common measure, so in time a roller comes to each place at every crank angle. Loads are
 therefore summed as Fourier series around the race: a series about the place takes the mean over all crank angles by itself,
-where a count of the rollers that come by in a few turns would scatter.
+where a count of the rollers that come by in a few turns would scatter. Several turns leave 1e-4 of an equivalent load; one
+turn of 11 rollers leaves up to 0.7 %, harmonics of their number that have not gone round.
 """
 
 from __future__ import annotations
