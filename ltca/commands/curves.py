@@ -293,17 +293,18 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
         entry = spectrum.orders[number]
         print(f"  {entry.value:>9.4f}  {entry.name:<32}{spectrum.amplitude[number] * ARCSEC:>9.4f}″")
     print(f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″")
-    speed = None if drive.duty else _speed_words(drive, _crank_speed(drive, limits))
+    crank_speed = _crank_speed(drive, limits)
+    speed = None if drive.duty or crank_speed is None else _speed_words(drive, crank_speed)
     print("\n".join(life_lines(found.lives, drive, speed)))
     print(
         f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limits.pressure:g} MPa, largest {over}"
     )
 
 
-def _speed_words(drive: Drive, speed: float | None) -> str:
+def _speed_words(drive: Drive, speed: float) -> str:
     """Which speed it is, and what that of several cranks in the carrier is elsewhere."""
     told, ratio = f"{speed:g} turns a minute", drive.reduction_ratio
-    if speed is None or drive.crank.number == 1:
+    if drive.crank.number == 1:
         return f"{told} of the crank against the held {drive.installation.held.replace('-', ' ')}"
     told += " of the cranks against the carrier"
     if drive.installation.first_stage_ratio is not None:

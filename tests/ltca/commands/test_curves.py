@@ -11,12 +11,14 @@ import pytest
 import ltca.commands.curves as curves
 import ltca.figures.curve_figures as curve_figures
 from ltca.analysis import engines, loaded_analysis, transmission_error_orders as orders
+from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.compliance import coefficient_files
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.reading.drive_file import shipped_drive
 
 CASE, TURNS, SPEED = "CS-6", 14, 1500.0
 PER_TURN = 88  # orders of 2 z_C + 2 z_PS = 42 a turn are told apart
@@ -163,6 +165,55 @@ def test_life_is_printed_as_it_is_kept(told):
     assert kept["million_turns"] == pytest.approx(ratio ** (10.0 / 3.0), rel=1e-9)
     assert kept["hours"] == pytest.approx(kept["million_turns"] * 1e6 / 1500.0 / 60.0, rel=1e-12)
     assert f"{kept['hours']:.0f} h at 1500 turns a minute" in text
+    static = re.search(r"C0 (\d+) N, largest force (\d+) N, S0 ([\d.]+)", text).groups()
+    assert static == tuple(
+        f"{kept[name]:{form}}"
+        for name, form in (("static_load_rating_N", ".0f"), ("static_load_N", ".0f"), ("static_safety_S0", ".2f"))
+    )
+    (only,) = kept["bearings"]
+    assert only == {name: kept[name] for name in only}
+    assert kept["duty"] is None
+
+
+def test_life_is_that_of_the_analysis(told):
+    """All its turns, at the speed asked for."""
+    *_, analysis = told
+    kept, found = told[1]["bearing_life"], bearing_lives(analysis, speed=SPEED).shortest
+    assert (kept["million_turns"], kept["hours"]) == pytest.approx((found.life, found.hours), rel=1e-12)
+
+
+DUTY = """
+[[duty]]
+torque = "377.3 N m"
+speed = 1500.0
+share = 0.25
+[[duty]]
+torque = "200 N m"
+speed = 3000.0
+share = 0.75
+"""
+
+
+def test_duty_of_a_file_is_told(monkeypatch, tmp_path, capsys):
+    """Every entry, one life of all, and no speed beside it."""
+    make_coarse(monkeypatch)
+    source = tmp_path / "mine.toml"
+    source.write_text(shipped_drive().partition("\n[tolerances]")[0] + DUTY, encoding="utf-8")
+    words = ["curves", str(source), "--turns", "1", "--no-figures", "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    kept = json.loads((tmp_path / "out" / "curves.json").read_text(encoding="utf-8"))["bearing_life"]
+    first, second = kept["duty"]
+    assert (first["torque_N_mm"], second["torque_N_mm"]) == (377_300.0, 200_000.0)
+    # a quarter of the time at half the speed is a seventh of the turns
+    assert kept["million_turns"] == pytest.approx(
+        7.0 / (1.0 / first["million_turns"] + 6.0 / second["million_turns"]), rel=1e-9
+    )
+    assert kept["hours"] == pytest.approx(kept["million_turns"] * 1e6 / (60.0 * 2625.0), rel=1e-9)
+    text = capsys.readouterr().out
+    assert "over 2 entries of the duty" in text
+    assert "200 N·m: 85.7 % of the turns" in text
+    assert main([*words, "--speed", "100"]) == 2
+    assert "--speed: has no effect with [[duty]]" in capsys.readouterr().err
 
 
 def make_coarse(monkeypatch):
