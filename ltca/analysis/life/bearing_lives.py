@@ -182,7 +182,9 @@ def _at_torque(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
     try:
         return analyse(analysis.drive, analysis.full.crank_angle, torque, analysis.engine)
     except DriveError as error:
-        raise DriveError([f"duty.{number}.torque = {torque:g} N·mm: {problem}" for problem in error.problems]) from error
+        raise DriveError(
+            [f"duty.{number}.torque = {torque:g} N·mm: {problem}" for problem in error.problems]
+        ) from error
     except ConvergenceError as error:
         error.add(f"duty.{number}.torque = {torque:g} N·mm")
         raise

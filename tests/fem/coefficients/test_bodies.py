@@ -306,7 +306,15 @@ def test_cases_share_their_nominal_shape(paper_cases):
 
 
 LEFT_OUT = ("pin_wheel.support_stiffness", "installation.first_stage_ratio", "crank.circle_radius", "load.speed")
-TABLES_LEFT_OUT = ("crank.support", "pin_wheel.seat", "pin_wheel.beam", "pin_shaft.seat", "pin_shaft.beam", "duty.0", "lubricant")
+TABLES_LEFT_OUT = (
+    "crank.support",
+    "pin_wheel.seat",
+    "pin_wheel.beam",
+    "pin_shaft.seat",
+    "pin_shaft.beam",
+    "duty.0",
+    "lubricant",
+)
 
 
 def bodies(drive):

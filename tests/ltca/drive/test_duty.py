@@ -55,7 +55,11 @@ def test_fingerprints_know_them_and_those_without_stay():
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("share = 0.7", "share = 0.6", r"duty\.0\.share = 0\.3, duty\.1\.share = 0\.6: must add up to 1, they add up to 0\.9"),
+        (
+            "share = 0.7",
+            "share = 0.6",
+            r"duty\.0\.share = 0\.3, duty\.1\.share = 0\.6: must add up to 1, they add up to 0\.9",
+        ),
         ("share = 0.7", "share = 0.70001", "must add up to 1, they add up to 1.00001"),
         ("share = 0.7", "", r"duty\.1\.share: is missing"),
         ("share = 0.7", "shares = 0.7", r"duty\.1\.shares: is not a field; did you mean `share`"),

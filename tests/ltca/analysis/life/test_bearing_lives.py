@@ -213,7 +213,9 @@ def test_lubricant(paper_cases):
 
 
 def test_what_is_told(paper_cases):
-    drive = with_fields(with_duty(paper_cases["CS-1"], DUTY), {"lubricant.viscosity": 20.0, "lubricant.contamination": 0.5})
+    drive = with_fields(
+        with_duty(paper_cases["CS-1"], DUTY), {"lubricant.viscosity": 20.0, "lubricant.contamination": 0.5}
+    )
     found = lives_of_entries(drive, [loads(drive, 1e5, 1500.0, 1.0)])
     told = "\n".join(life_lines(found, drive, None))
     content, summary = life_content(found, drive), life_summary(found)
@@ -256,7 +258,9 @@ def test_a_makers_rating_scales_the_life(papers):
     ratio = 60_000.0 / own.dynamic_load_rating
     assert makers.shortest.life == pytest.approx(own.shortest.life * ratio**4, rel=1e-12)
     # P with (C/P)^(10/3)
-    assert makers.shortest.life == pytest.approx((60_000.0 / makers.shortest.equivalent_load) ** (10.0 / 3.0), rel=1e-12)
+    assert makers.shortest.life == pytest.approx(
+        (60_000.0 / makers.shortest.equivalent_load) ** (10.0 / 3.0), rel=1e-12
+    )
 
 
 def test_what_tells_no_life_is_refused(paper_cases, monkeypatch):
