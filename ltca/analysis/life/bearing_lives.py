@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ltca.analysis.life.equivalent_load import covers_whole_turns, race_load
 from ltca.analysis.life.laminae import EvenLaminae, Laminae, SolvedLaminae
 from ltca.analysis.life.modification import life_modification_factor, reference_viscosity
-from ltca.analysis.life.ratings import RaceRatings, RollerBearing
+from ltca.analysis.life.ratings import RaceRatings, RollerBearing, not_rated
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.contact.generator import generator_profile
 from ltca.drive.parts import Drive, contact_modulus
@@ -109,6 +109,9 @@ class BearingLives:
         C_r, C_0r and C_u, N.
     ratings : RaceRatings
         Q_ci and Q_ce.
+    not_rated : tuple of str
+        Why the ratings are not those of its parts: lives and safeties are numbers, and mean nothing. Empty where they
+        are, or where the maker rates.
     """
 
     bearings: tuple[BearingLife, ...]
@@ -116,6 +119,7 @@ class BearingLives:
     static_load_rating: float
     fatigue_load_limit: float
     ratings: RaceRatings
+    not_rated: tuple[str, ...] = ()
 
     @property
     def shortest(self) -> BearingLife:
@@ -297,6 +301,7 @@ def lives_of_entries(
         static_load_rating=bearing.static_load_rating,
         fatigue_load_limit=bearing.fatigue_load_limit,
         ratings=ratings,
+        not_rated=not_rated(drive) if dynamic_load_rating is None else (),
     )
 
 

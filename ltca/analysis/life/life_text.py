@@ -21,9 +21,12 @@ def life_summary(lives: BearingLives) -> dict[str, float | None]:
     Returns
     -------
     dict of str to float or None
-        ``bearing_life_million_turns``, ``bearing_life_hours`` (None without a speed), ``static_safety_S0``.
+        ``bearing_life_million_turns``, ``bearing_life_hours`` (None without a speed), ``static_safety_S0``; None where
+        nothing is rated.
     """
     shortest = lives.shortest
+    if lives.not_rated:
+        return dict.fromkeys(("bearing_life_million_turns", "bearing_life_hours", "static_safety_S0"))
     return {
         "bearing_life_million_turns": _finite(shortest.life),
         "bearing_life_hours": _finite(shortest.hours),
@@ -41,16 +44,33 @@ def life_content(lives: BearingLives, drive: Drive) -> dict[str, Any]:
     drive : Drive
         Whose they are.
     """
+    bearings = [_of_bearing(bearing) for bearing in (lives.shortest, *lives.bearings)]
+    entries = [_of_entry(entry) for entry in lives.shortest.entries] if drive.duty else None
+    if lives.not_rated:
+        for told in (*bearings, *(entries or [])):
+            told.update({name: None for name in told if name in RATED})
     return {
-        **_of_bearing(lives.shortest),
+        **bearings[0],
         "dynamic_load_rating_N": lives.dynamic_load_rating,
         "static_load_rating_N": lives.static_load_rating,
         "fatigue_load_limit_N": lives.fatigue_load_limit,
-        "least_static_safety_S0": _finite(lives.static_safety),
+        "least_static_safety_S0": None if lives.not_rated else _finite(lives.static_safety),
+        "not_rated": [*lives.not_rated],
         "laminae": LAMINAE,
-        "bearings": [_of_bearing(bearing) for bearing in lives.bearings],
-        "duty": [_of_entry(entry) for entry in lives.shortest.entries] if drive.duty else None,
+        "bearings": bearings[1:],
+        "duty": entries,
     }
+
+
+RATED = (
+    "million_turns",
+    "hours",
+    "static_safety_S0",
+    "life_modification_factor",
+    "modified_million_turns",
+    "modified_hours",
+)
+"""What is told of a bearing only where it is rated."""
 
 
 def _of_bearing(bearing: BearingLife) -> dict[str, Any]:
@@ -102,6 +122,9 @@ def life_lines(lives: BearingLives, drive: Drive, speed: str | None) -> list[str
     discs, cranks = drive.disc.number_of_discs, drive.crank.number
     named = ([f"disc {found.disc}"] if discs > 1 else []) + ([f"crank {found.crank}"] if cranks > 1 else [])
     which = f" of {', '.join(named)}, the shortest of {len(lives.bearings)}" if named else ""
+    if lives.not_rated:
+        told = "ISO 281 rates no such crank bearing (--load-rating gives the maker's): no life, no static safety"
+        return [told, *(f"  {reason}" for reason in lives.not_rated), f"  largest force {found.static_load:.0f} N"]
     lines = [
         f"rating life of the crank bearing{which} ({_over(drive)})",
         f"  C {lives.dynamic_load_rating:.0f} N, P {found.equivalent_load:.0f} N, L10r {found.life:.1f} million turns",

@@ -18,6 +18,36 @@ FATIGUE = 8.2
 """Static rating by the fatigue load limit C_u of roller bearings (ISO 281, B.3.3)."""
 LARGE_PITCH_DIAMETER = 100.0
 """Pitch diameter above which C_u falls behind, mm."""
+STEEL = 190_000.0, 225_000.0
+"""Young's moduli of steels, MPa: the ratings are those of rings and rollers of hardened bearing steel."""
+HARDENED = 653.0
+"""Least surface hardness of such rings, HV: the 58 HRC of makers' catalogues by ISO 18265."""
+
+
+def not_rated(drive: Drive) -> tuple[str, ...]:
+    """Return why ISO 281 and ISO 76 rate no crank bearing of a drive, one sentence for each part; empty where they do.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+
+    Examples
+    --------
+    >>> from ltca.reading.drive_file import load_drive
+    >>> not_rated(load_drive("paper").cases["CS-1"])
+    ()
+    """
+    told = []
+    for part in ("inner_race", "roller", "disc"):
+        material = getattr(drive.materials, part)
+        if not STEEL[0] <= material.youngs_modulus <= STEEL[1]:
+            told.append(f"materials.{part}.youngs_modulus = {material.youngs_modulus:g} MPa: no bearing steel")
+        elif material.hardness is not None and material.hardness < HARDENED:
+            told.append(
+                f"materials.{part}.hardness = {material.hardness:g} HV: less than {HARDENED:g} HV, of hardened rings"
+            )
+    return tuple(told)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

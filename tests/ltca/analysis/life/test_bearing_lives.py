@@ -231,6 +231,20 @@ def test_what_is_told(paper_cases):
     assert life_summary(idle) == dict.fromkeys(summary)
 
 
+def test_nothing_is_told_of_what_is_not_rated(paper_cases):
+    """A plastic disc has loads and no rating; a maker's rating is his."""
+    drive = with_fields(paper_cases["CS-1"], {"materials.disc.youngs_modulus": 2000.0})
+    found = lives_of_entries(drive, [loads(drive, 1e5, 1500.0, 1.0)])
+    assert set(life_summary(found).values()) == {None}
+    content, told = life_content(found, drive), "\n".join(life_lines(found, drive, None))
+    assert (content["million_turns"], content["bearings"][0]["static_safety_S0"]) == (None, None)
+    assert content["not_rated"] == [*found.not_rated]
+    assert "materials.disc.youngs_modulus = 2000 MPa: no bearing steel" in told
+    assert "million" not in told
+    rated = lives_of_entries(drive, [loads(drive, 1e5, 1500.0, 1.0)], 50_000.0)
+    assert life_summary(rated)["bearing_life_million_turns"] == rated.shortest.life
+
+
 def test_which_laminae_are_used_when(paper_cases, papers):
     """Solved along the length wherever the contact is; even slices with edge factors in plane strain alone."""
     inner, outer = laminae_of(papers)

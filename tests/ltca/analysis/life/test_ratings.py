@@ -8,7 +8,8 @@ from scipy.integrate import quad
 
 from ltca.analysis.life.equivalent_load import race_load
 from ltca.analysis.life.laminae import EvenLaminae
-from ltca.analysis.life.ratings import RollerBearing
+from ltca.analysis.life.ratings import RollerBearing, not_rated
+from ltca.reading.changes import with_fields
 
 # ISO 281:2007, Table 7: f_c of radial roller bearings by D_we cos α/D_pw.
 TABLE_7 = {
@@ -96,6 +97,22 @@ def test_life_at_the_rating_without_edge_stress_is_a_million_turns():
     assert part.race_ratings().life(inner, outer) == pytest.approx(1.0, rel=0.02)
     # the other way round it is another life: races have changed places
     assert part.race_ratings().life(outer, inner) < 0.97
+
+
+def test_what_is_no_hardened_steel_is_not_rated(paper_cases):
+    """A plastic disc "lived 5492 million turns"."""
+    drive = paper_cases["CS-1"]
+    assert not_rated(drive) == ()
+    (told,) = not_rated(with_fields(drive, {"materials.disc.youngs_modulus": 2000.0}))
+    assert told.startswith("materials.disc.youngs_modulus = 2000 MPa")
+    soft = with_fields(drive, {"materials.inner_race.hardness": 600.0, "materials.roller.youngs_modulus": 310e3})
+    assert [reason.partition(" =")[0] for reason in not_rated(soft)] == [
+        "materials.inner_race.hardness",
+        "materials.roller.youngs_modulus",
+    ]
+    hard = {f"materials.{part}.hardness": 700.0 for part in ("disc", "roller", "inner_race")}
+    # pins are no rings
+    assert not_rated(with_fields(drive, hard | {"materials.wheel_pin.youngs_modulus": 3000.0})) == ()
 
 
 def test_life_falls_with_the_fourth_power_of_the_load():
