@@ -100,6 +100,7 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     of, at, held = ("", "the disc", "disc") if len(singles) == 1 else (" of disc 0", "disc 0", "discs")
     return [
         *_installation(drive),
+        *_materials(drive),
         ("e z_P/R_C", f"{e * drive.reduction_ratio / drive.pin_wheel.pin_circle_radius:.4f} (must be below 1)"),
         ("disc radius at root, tip", f"{profile.root_radius:.4f}, {profile.tip_radius:.4f} mm"),
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
@@ -114,6 +115,16 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
         *_walls(single, profile.root_radius, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
+
+
+def _materials(drive: Drive) -> list[tuple[str, str]]:
+    """Materials that have a name, part by part."""
+    from ltca.drive.members.named_materials import named_parts
+
+    parts: dict[str, list[str]] = {}
+    for part, name in named_parts(drive.materials).items():
+        parts.setdefault(name, []).append(part)
+    return [(f"material of {', '.join(those)}", name) for name, those in parts.items()]
 
 
 def _walls(single: Drive, root_radius: float, of: str) -> list[tuple[str, str]]:

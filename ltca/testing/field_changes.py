@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, missing_part, read_field
+from ltca.drive.materials import JUDGED_BY, PARTS
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -67,6 +68,18 @@ _LEFT_OUT = {
     "installation.first_stage_ratio": 2.0,
     "crank.circle_radius": 6.0,
 }
+_LEFT_OUT |= {
+    f"materials.{part}.{name}": value
+    for part in PARTS
+    for name, value in {
+        "allowable_pressure": 1500.0,
+        "yield_strength": 1200.0,
+        "hardness": 700.0,
+        "hardness_depth": 0.8,
+        "density": 7850.0,
+        "thermal_expansion": 1.2e-5,
+    }.items()
+}
 """What may be left out, and a value that a person could give."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
 _OTHER_WORD = {
@@ -88,11 +101,13 @@ _NAME = {
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
+_NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" for part in PARTS for name in JUDGED_BY}
+_NAME |= {f"materials.{part}.thermal_expansion": "counts where the drive has temperatures" for part in PARTS}
 _OF_LIFE = dict.fromkeys(
     ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
     "duty and lubricant concern lives of bearings alone, and here none is told",
 )
-_EVERYWHERE = _NAME | _OF_LIFE
+_EVERYWHERE: Mapping[str, str] = _NAME | _OF_LIFE
 _RIGID_PIN = {
     f"materials.shaft_pin.{name}": "the shaft pin is rigid on its spring where the hole's wall yields by itself"
     for name in ("youngs_modulus", "poisson_ratio")
