@@ -116,7 +116,7 @@ def plan_study(
     names = list(file.cases)
     if not cases:
         cases = list(dict.fromkeys([names[0], names[(len(names) - 1) // 2], names[-1]]))
-    drives = file.select(cases)
+    drives = file.select_warm(cases)
     for drive in drives.values():
         require_plane_strain(drive, "validation by full finite elements")
         require_rigid_members(drive, "validation by full finite elements")

@@ -65,5 +65,5 @@ def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
     from ltca.reading.drive_file import load_drive
 
     file = load_drive(arguments.drive)
-    case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    case, drive = next(iter(file.select_warm([arguments.case] if arguments.case else None).items()))
     return file, case, drive

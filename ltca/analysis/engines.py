@@ -22,6 +22,7 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import ComplianceModel, Start
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import (
     require_fixed_pins,
@@ -189,6 +190,7 @@ class HalfSpace:
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
+        drive = warm_drive(drive)
         if self.method != "tables":
             require_frictionless(drive, f"method {self.method}")
             require_fixed_pins(drive, f"method {self.method}")
@@ -213,6 +215,7 @@ class HalfSpace:
 
     def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
         """Return the tables of several drives, each at the same number of positions."""
+        drives = [warm_drive(drive) for drive in drives]
         discs = zip(*(single_discs(drive) for drive in drives), strict=True)
         supports, pins = support_stiffnesses(drives, positions), SharedPins.of_drives(drives, positions)
         parts = [HalfSpaceCompliance.of_drives(each, positions) for each in discs]
@@ -279,6 +282,7 @@ class _Coupled:
         """Return the engine with the coefficients of a drive in it, disc by disc: read from file or cache, or derived."""
         if self._of_discs:
             return self
+        drive = warm_drive(drive)
         files: Any = self.coefficients
         near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
         found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
@@ -292,6 +296,7 @@ class _Coupled:
         DriveError
             When the coefficients are those of another number of discs.
         """
+        drive = warm_drive(drive)
         found, singles = self.with_coefficients(drive)._of_discs, single_discs(drive)
         if len(found) not in (1, len(singles)):
             raise DriveError(
@@ -311,6 +316,7 @@ class _Coupled:
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
+        drive = warm_drive(drive)
         singles, supports = single_discs(drive), support_stiffness(drive)
         pins, friction = SharedPins.of_drive(drive), TurningFriction.of_drive(drive)
         tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins, friction)

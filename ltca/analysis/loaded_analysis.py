@@ -19,7 +19,8 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures, take_positions
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
-from ltca.drive.parts import Drive
+from ltca.drive.members.temperatures import temperature_words, warm_drive
+from ltca.drive.parts import Drive, Temperature
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.units.table import range_of
@@ -39,7 +40,7 @@ from ltca.equilibrium.reducer import (
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.frozen_arrays import freeze
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-from ltca.geometry.interference import preload_warning
+from ltca.geometry.interference import lost_play, preload_warning
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -56,7 +57,7 @@ class LoadedAnalysis:
     Attributes
     ----------
     drive : Drive
-        What was analysed.
+        What was analysed, at its temperatures.
     torque : float
         Output torque, N·mm.
     engine : Engine
@@ -75,6 +76,8 @@ class LoadedAnalysis:
         Where that torque and the light torque have an answer; elsewhere numbers are none.
     back : Equilibrium or None
         At that torque with the motion reversed, poses that are no numbers where there is no answer; None without friction.
+    written : Drive or None
+        The drive as it was given, with its temperatures; None where it has none.
     """
 
     drive: Drive
@@ -90,6 +93,12 @@ class LoadedAnalysis:
     balanced: NDArray[np.bool_]
     balanced_light: NDArray[np.bool_]
     back: Equilibrium | None = None
+    written: Drive | None = None
+
+    @property
+    def as_written(self) -> Drive:
+        """The drive as it was given."""
+        return self.written or self.drive
 
     @property
     def is_complete(self) -> bool:
@@ -203,7 +212,7 @@ class LoadedAnalysis:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
-        found = [stiffness_warning(self.drive), preload_warning(self.drive)]
+        found = [stiffness_warning(self.drive), preload_warning(self.drive), self._lost_play()]
         if self.drive.load.light_torque > self.torque:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
@@ -221,6 +230,14 @@ class LoadedAnalysis:
                 told = separation_warning(disc.model, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)
         return [warning for warning in found if warning is not None]
+
+    def _lost_play(self) -> str | None:
+        """Which plays the warmth has taken."""
+        if self.written is None or self.written.temperature is None:
+            return None
+        cold = warm_drive(replace(self.written, temperature=Temperature()))
+        gone = lost_play(cold, self.drive)
+        return f"at {temperature_words(self.written.temperature)} {'; '.join(gone)}" if gone else None
 
 
 @names_unit_mistakes
@@ -262,6 +279,7 @@ def analyse(
     6738 N
     """
     angle, torque = check_positions(crank_angle), check_torque(drive, torque)
+    written, drive = None if drive.temperature is None else drive, warm_drive(drive)
     used: Engine = HalfSpace() if engine is None else engine
     prepared = used.prepare(drive)
 
@@ -298,6 +316,7 @@ def analyse(
         balanced=freeze(full.balanced),
         balanced_light=freeze(light.balanced),
         back=None if back is None else freeze(back),
+        written=written,
     )
     for failure in (full.failure, light.failure):
         if failure is not None:

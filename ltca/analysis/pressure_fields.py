@@ -214,7 +214,7 @@ def build_pressure_dataset(
         variables,
         coords=coordinates(analyses),
         attrs={
-            **provenance(drive_name, first.drive, drive_file),
+            **provenance(drive_name, first.as_written, drive_file),
             **first.engine.options,
             "cells_per_half_width": cells,
             "fingerprint": [analysis.drive.fingerprint() for analysis in analyses.values()],

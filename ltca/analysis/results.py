@@ -391,7 +391,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         variables,
         coords=coordinates(analyses),
         attrs={
-            **provenance(drive_name, first.drive, drive_file),
+            **provenance(drive_name, first.as_written, drive_file),
             **first.engine.options,
             "status": "complete" if all(analysis.is_complete for analysis in analyses.values()) else "partial",
             "held": first.drive.installation.held,

@@ -143,7 +143,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     check_compliance(arguments)
     file = load_drive(arguments.drive)
-    cases = file.select(arguments.case)
+    cases = file.select_warm(arguments.case)
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)
     from ltca.analysis.memory_need import require_room_for

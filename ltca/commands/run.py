@@ -150,7 +150,7 @@ def _solve_and_write(
 
     file, cases, engine, torque = chosen
     analyses, failures = _analyse(cases, angles, torque, engine, "cases")
-    cases = {name: cases[name] for name in analyses}
+    cases = {name: analysis.drive for name, analysis in analyses.items()}
     shown: dict[str, LoadedAnalysis] = {}
     also: dict[str, ConvergenceError] = {}
     if pressure_angles is not None:

@@ -61,7 +61,8 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         analysis = analyse(drive, angle)
         for warning in analysis.warnings:
             print(f"  warning: {warning}")
-        for title, value in _properties(drive):
+        drive = analysis.drive
+        for title, value in [*_warmth(analysis.as_written), *_properties(drive)]:
             print(f"  {title:<47} {value}")
         print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
@@ -115,6 +116,14 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
         *_walls(single, profile.root_radius, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
+
+
+def _warmth(drive: Drive) -> list[tuple[str, str]]:
+    """How warm the parts are; what is printed below are lengths at these temperatures."""
+    from ltca.drive.members.temperatures import temperature_words
+
+    held = drive.temperature
+    return [] if held is None else [("temperatures, of which all lengths are", temperature_words(held))]
 
 
 def _materials(drive: Drive) -> list[tuple[str, str]]:

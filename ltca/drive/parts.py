@@ -39,6 +39,7 @@ from ltca.drive.members.operation import (
     Installation as Installation,
     Load as Load,
     Lubricant as Lubricant,
+    Temperature as Temperature,
 )
 from ltca.drive.members.pins import (
     PinShaft as PinShaft,
@@ -162,6 +163,8 @@ class Drive:
         Torques and speeds over the life of the drive, for lives alone; that of `load` for an empty tuple.
     lubricant : Lubricant or None
         For lives alone; unmodified when left out.
+    temperature : Temperature or None
+        How warm the parts are; lengths are those at 20 °C, `ltca.drive.members.temperatures.warm_drive` makes them warm.
     """
 
     name: Name = "drive"
@@ -177,6 +180,7 @@ class Drive:
     friction: Friction | None = None
     duty: tuple[Duty, ...] = ()
     lubricant: Lubricant | None = None
+    temperature: Temperature | None = None
 
     @property
     def tooth_number_difference(self) -> int:
@@ -347,6 +351,7 @@ class Drive:
         dict of str to float
             By field, or by the name of what several fields make: mm, MPa, counts.
         """
+        self.require_warmed()
         wheel, disc, bearing, shaft = self.pin_wheel, self.disc, self.crank_bearing, self.pin_shaft
         shape = {
             "crank.eccentricity": self.crank.eccentricity,
@@ -381,6 +386,19 @@ class Drive:
             shape[f"materials.{part}.poisson_ratio"] = material.poisson_ratio
         # Sums of radii and clearances must not differ by their rounding.
         return {name: float(f"{value:.12g}") for name, value in shape.items()}
+
+    def require_warmed(self) -> None:
+        """Refuse a drive with temperatures, whose lengths are still those at 20 °C: none is to be passed over in silence.
+
+        Raises
+        ------
+        DriveError
+            When the drive has temperatures.
+        """
+        if self.temperature is not None:
+            raise DriveError(
+                ["temperature: lengths are at 20 °C still, see ltca.drive.members.temperatures.warm_drive"]
+            )
 
     def shape_fingerprint(self) -> str:
         """Return a hash of `body_shape` (hex, 16 digits): influence coefficients of the bodies belong to it."""

@@ -60,6 +60,40 @@ def drawn_interference(drive: Drive) -> Interference:
     )
 
 
+def lost_play(cold: Drive, warm: Drive) -> list[str]:
+    """Return which plays of a drive its warmth has taken, and by how much parts overlap then; empty where none is gone.
+
+    Parameters
+    ----------
+    cold, warm : Drive
+        At 20 °C and at temperature (`ltca.drive.members.temperatures.warm_drive`).
+    """
+    before, after = _overlaps(cold), _overlaps(warm)
+    return [
+        f"the play of {what} ({_zero(-before[what]):.4g} mm at 20 °C) is gone: they overlap by {after[what]:.4g} mm"
+        for what in before
+        if after[what] > ROUNDING and after[what] > before[what] + ROUNDING
+    ]
+
+
+def _zero(value: float) -> float:
+    return 0.0 if abs(value) <= ROUNDING else value
+
+
+def _overlaps(drive: Drive) -> dict[str, float]:
+    """Largest overlap of any disc, by what overlaps; the circles of holes and shaft pins as far apart as they are."""
+    found = {"wheel pins and flank": -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
+    for single in single_discs(drive):
+        drawn, shaft = drawn_interference(single), single.pin_shaft
+        holes = drawn.holes + single.crank.eccentricity_error
+        if shaft is not None and shaft.pin_errors.radial:
+            radial = shaft.pin_errors.radial
+            holes += abs(sum(radial) / len(radial))
+        for what, overlap in zip(found, (drawn.pins, drawn.rollers, holes), strict=True):
+            found[what] = max(found[what], overlap)
+    return {what: overlap for what, overlap in found.items() if overlap > -inf}
+
+
 def preload_warning(drive: Drive) -> str | None:
     """Return what to say of a drive whose parts overlap as drawn, None where none do.
 

@@ -145,6 +145,7 @@ class Placement:
     @classmethod
     def of_drive(cls, drive: Drive) -> Placement:
         """Return the places of the parts of a drive of one disc (`ltca.drive.single_discs`)."""
+        drive.require_warmed()
         wheel, bearing, crank = drive.pin_wheel, drive.crank_bearing, drive.crank
         rollers = bearing.number_of_rollers
         pitch_radius = bearing.inner_race_radius + bearing.roller_radius

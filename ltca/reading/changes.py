@@ -105,6 +105,7 @@ _NEEDED = {
     "crank.support": ("diameter", "positions", "stiffness"),
     "friction": (),
     "lubricant": ("viscosity", "contamination"),
+    "temperature": (),
 }
 """What a part that may be left out is made of."""
 

@@ -12,6 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.members.named_materials import LIKE, with_named_materials
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
@@ -80,6 +81,16 @@ class DriveFile:
                 self.source,
             )
         return {name: self.cases[name] for name in dict.fromkeys(names)}
+
+    def select_warm(self, names: list[str] | None) -> dict[str, Drive]:
+        """Return some of the cases at their temperatures, all for None; those without temperatures as they are.
+
+        Raises
+        ------
+        DriveError
+            When a name is not a case of the drive.
+        """
+        return {name: warm_drive(drive) for name, drive in self.select(names).items()}
 
 
 def shipped_drive(name: str = "paper") -> str:

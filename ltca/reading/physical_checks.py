@@ -10,10 +10,12 @@ from math import fsum, pi, sin
 import numpy as np
 
 from ltca.drive.members.pin_checks import find_pin_problems
-from ltca.drive.parts import Drive, LengthProfile, Material
+from ltca.drive.members.temperatures import temperature_words, warm_drive
+from ltca.drive.parts import Drive, LengthProfile, Material, Temperature
 from ltca.drive.single_discs import single_discs, without_own
+from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.interference import ROUNDING, drawn_interference
+from ltca.geometry.interference import ROUNDING, drawn_interference, lost_play
 from ltca.reading.deviation_checks import (
     deviation_bound,
     find_deviation_problems,
@@ -45,6 +47,8 @@ def find_contradictions(drive: Drive) -> list[str]:
     problems = [*_installation(drive), *find_disc_problems(drive)]
     if problems:
         return problems
+    if drive.temperature is not None:
+        return _find_at_temperatures(drive)
     common = single_discs(without_own(drive))[0]
     problems = _find_in_disc(common)
     for number, single in enumerate(single_discs(drive)):
@@ -55,6 +59,29 @@ def find_contradictions(drive: Drive) -> list[str]:
             own = [named_in_disc(drive, problem, number) for problem in _find_in_disc(single)]
             problems += [problem for problem in own if problem not in problems]
     return problems
+
+
+def _find_at_temperatures(drive: Drive) -> list[str]:
+    """Contradictions of the drive as written or, where it has none, as warm as it is."""
+    cold = _cold(drive)
+    if problems := find_contradictions(cold):
+        return problems
+    try:
+        warm = warm_drive(drive)
+    except DriveError as error:
+        return [*error.problems]
+    problems = find_contradictions(warm)
+    if not problems or drive.temperature is None:
+        return problems
+    at = f"temperature: {temperature_words(drive.temperature)}"
+    if gone := lost_play(cold, warm):
+        return [f"{at}: the drive seizes, {'; '.join(gone)}; parts overlap by more than bodies yield elastically"]
+    return [f"{at}: {problem}" for problem in problems]
+
+
+def _cold(drive: Drive) -> Drive:
+    """The drive as written, at 20 °C; materials that are there for their expansion alone are left out."""
+    return warm_drive(replace(drive, temperature=Temperature()))
 
 
 def _find_in_disc(drive: Drive) -> list[str]:
@@ -73,6 +100,11 @@ def is_sound(drive: Drive) -> bool:
     checks = (*FIRST, *BESIDE, _flank, find_flank_problems)
     if any(next(check(drive), None) is not None for check in (_installation, find_disc_problems)):
         return False
+    if drive.temperature is not None:
+        try:
+            return is_sound(_cold(drive)) and is_sound(warm_drive(drive))
+        except DriveError:
+            return False
     singles = single_discs(drive)
     if len(singles) > 1:  # of discs that are alike one is enough
         alike = {replace(each, disc=replace(each.disc, phases=(), planes=())): each for each in singles}
@@ -134,8 +166,12 @@ def _duty(drive: Drive) -> Iterator[str]:
 def _crank_support(drive: Drive) -> Iterator[str]:
     support = drive.crank.support
     if support is None:
-        if drive.materials.crankshaft != Material():
-            yield "materials.crankshaft: must be left out without crank.support, where cranks are rigid"
+        expands = drive.temperature is not None and drive.materials.crankshaft.thermal_expansion is not None
+        if drive.materials.crankshaft != Material() and not expands:
+            yield (
+                "materials.crankshaft: must be left out without crank.support, where cranks are rigid, but for its "
+                "thermal_expansion beside [temperature]"
+            )
         return
     start, end = support.positions
     if end <= start:

@@ -12,6 +12,7 @@ from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
 from ltca.compliance.response import ComplianceModel, Start
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
@@ -115,7 +116,7 @@ class _Batch:
     """Several drives at all angles on one engine, drive by drive."""
 
     def __init__(self, drives: Sequence[Drive], settings: BatchSettings) -> None:
-        self.drives, self.positions = drives, settings.crank_angle.size
+        self.drives, self.positions = [warm_drive(drive) for drive in drives], settings.crank_angle.size
         self.angle = np.tile(settings.crank_angle, len(drives))
         self.prepared: PreparedEngine | None = None
         if settings.engine.batches:
@@ -160,6 +161,7 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     values = np.full((len(drives), len(settings.quantities)), np.nan)
     messages = [""] * len(drives)
     groups: dict[tuple[object, ...], list[int]] = {}
+    drives = [warm_drive(drive) for drive in drives]
     for number, drive in enumerate(drives):
         discs = tuple(batch_signature(single) for single in single_discs(drive))
         key: tuple[object, ...] = discs if settings.engine.batches else (number,)
@@ -213,6 +215,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     DriveError
         When a torque cannot be carried (`ltca.analysis.half_width_guard`).
     """
+    drives = [warm_drive(drive) for drive in drives]
     stages = {QUANTITIES[name].stage for name in settings.quantities}
     solved = _Batch(drives, settings)
     known = None if nominal is None else nominal.model

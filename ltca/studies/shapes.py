@@ -29,6 +29,7 @@ from ltca.compliance.coefficient_files import (
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
@@ -59,6 +60,7 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
     given = _given(engine)
     if engine.batches or _are_coefficients(given):
         return engine
+    drive = warm_drive(drive)
     singles = single_discs(drive)
     shapes = [single.shape_fingerprint() for single in singles]
     key = (*engine.options.values(), repr(given), *shapes)
@@ -96,7 +98,7 @@ def shapes_of(drives: Iterable[Drive]) -> dict[str, Drive]:
     """Return the first drive of one disc of every distinct shape, by fingerprint."""
     found: dict[str, Drive] = {}
     for drive in drives:
-        for single in single_discs(drive):
+        for single in single_discs(warm_drive(drive)):
             found.setdefault(single.shape_fingerprint(), single)
     return found
 

@@ -102,7 +102,6 @@ _NAME = {
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
 _NAME |= {f"materials.{part}.{name}": "moves no load: results are judged by it" for part in PARTS for name in JUDGED_BY}
-_NAME |= {f"materials.{part}.thermal_expansion": "counts where the drive has temperatures" for part in PARTS}
 _OF_LIFE = dict.fromkeys(
     ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
     "duty and lubricant concern lives of bearings alone, and here none is told",
@@ -214,10 +213,23 @@ def _seat(drive: Drive, path: str, kind: str) -> dict[str, Any]:
     return {name: radii.get(name.rpartition(".")[2]) for name in names} | {f"{path}.seat.kind": kind}
 
 
+def _warmth(drive: Drive, path: str) -> dict[str, Any]:
+    """Temperatures, and the expansion of every part that the drive has and of that which is changed."""
+    part = path.split(".")[1]
+    parts = {"disc", "wheel_pin", "roller", "inner_race"} | ({"shaft_pin"} if drive.pin_shaft else set())
+    parts |= {"sleeve"} if "sleeve" in (drive.pin_wheel.seat.kind, part) else set()
+    seat = _seat(drive, "pin_wheel", "sleeve") if part == "sleeve" and drive.pin_wheel.seat.kind == "fixed" else {}
+    parts |= {part} if path.startswith("materials.") else set()
+    expansion = {f"materials.{one}.thermal_expansion": 1.1e-5 for one in parts}
+    return seat | expansion | {"temperature.housing": 30.0, "temperature.disc": 40.0, "temperature.shaft": 50.0}
+
+
 def _beside(drive: Drive, path: str) -> dict[str, Any]:
     """What a field needs beside it to count, where the drive has it not."""
     span = 3.0 * (2.0 * max(map(abs, drive.disc.disc_planes)) + drive.disc.thickness)
     wheel, shaft, name = drive.pin_wheel, drive.pin_shaft, path.rpartition(".")[2]
+    if path.endswith(".thermal_expansion") or path.startswith("temperature."):
+        return _warmth(drive, path)
     if path.startswith(("crank.support.", "materials.crankshaft.")) and drive.crank.support is None:
         return _SUPPORT
     kinds = {

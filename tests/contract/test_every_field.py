@@ -18,6 +18,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import reducer_of
@@ -55,6 +56,7 @@ def tables(drive):
 def direct(drive):
     """Grids inside every iteration; few cells, for the sake of time: which fields count does not depend on them."""
     HalfSpace(method="direct").prepare(drive)  # which refuses what grids cannot say
+    drive = warm_drive(drive)
     singles = single_discs(drive)
     supports = support_stiffness(drive)
     tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
@@ -85,7 +87,7 @@ def coefficients(tmp_path_factory):
 
     def of(drive):
         found = []
-        for single in single_discs(drive):
+        for single in single_discs(warm_drive(drive)):
             shape = single.shape_fingerprint()
             if shape not in known:
                 path = folder / f"{shape}.nc"

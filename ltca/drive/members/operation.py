@@ -1,4 +1,4 @@
-"""How the drive is built in and used: the member that is held, load, speed, duty, lubricant, and what rubs."""
+"""How the drive is built in and used: the member that is held, load, speed, duty, lubricant, friction, temperatures."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.deviations import STRICT, NonNegativeLength
 from ltca.drive.units.quantities import quantity
 
+REFERENCE_TEMPERATURE = 20.0
+"""At which lengths are given, °C (ISO 1)."""
+Celsius = Annotated[float, quantity("°C", gt=-273.15, lt=1000.0)]
 Coefficient = Annotated[float, quantity("dimensionless", ge=0.0, le=1.0)]
 
 
@@ -117,3 +120,22 @@ class Friction:
     support_bearing: Coefficient = 0.0
     support_bearing_radius: NonNegativeLength = 0.0
     no_load_torque: Annotated[float, quantity("N*mm", ge=0.0)] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Temperature:
+    """How warm the parts are in operation; lengths are given at 20 °C.
+
+    Attributes
+    ----------
+    housing : float
+        Of the wheel, its pins and their sleeves, °C.
+    disc : float
+        Of the discs, °C.
+    shaft : float
+        Of cranks, carrier and shaft pins, °C; rollers are half as warm as disc and shaft together.
+    """
+
+    housing: Celsius = REFERENCE_TEMPERATURE
+    disc: Celsius = REFERENCE_TEMPERATURE
+    shaft: Celsius = REFERENCE_TEMPERATURE

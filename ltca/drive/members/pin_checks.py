@@ -34,10 +34,18 @@ def find_pin_problems(drive: Drive) -> Iterator[str]:
             yield from _beam(drive, shaft, shaft.beam, "pin_shaft")
         yield from _one_compliance(shaft)
     kinds = {wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
-    if "slot" not in kinds and drive.materials.wheel_seat != Material():
-        yield 'materials.wheel_seat: must be left out without slots (pin_wheel.seat.kind = "slot")'
+    if "slot" not in kinds and drive.materials.wheel_seat != Material() and not _expands(drive, "wheel_seat"):
+        yield (
+            'materials.wheel_seat: must be left out without slots (pin_wheel.seat.kind = "slot"), but for its thermal_expansion '
+            "beside [temperature]"
+        )
     if "sleeve" not in kinds and drive.materials.sleeve != Material():
         yield 'materials.sleeve: must be left out without sleeves (pin_wheel.seat, pin_shaft.seat: kind = "sleeve")'
+
+
+def _expands(drive: Drive, part: str) -> bool:
+    """Whether a material counts for its expansion, whatever else it is there for."""
+    return drive.temperature is not None and getattr(drive.materials, part).thermal_expansion is not None
 
 
 def _one_compliance(shaft: PinShaft) -> Iterator[str]:
