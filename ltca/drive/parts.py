@@ -387,8 +387,13 @@ class Drive:
         # Sums of radii and clearances must not differ by their rounding.
         return {name: float(f"{value:.12g}") for name, value in shape.items()}
 
-    def require_warmed(self) -> None:
-        """Refuse a drive with temperatures, whose lengths are still those at 20 °C: none is to be passed over in silence.
+    def require_warmed(self) -> Drive:
+        """Return the drive, or refuse one with temperatures, whose lengths are still those at 20 °C.
+
+        Returns
+        -------
+        Drive
+            Itself: no temperature is passed over in silence.
 
         Raises
         ------
@@ -396,9 +401,9 @@ class Drive:
             When the drive has temperatures.
         """
         if self.temperature is not None:
-            raise DriveError(
-                ["temperature: lengths are at 20 °C still, see ltca.drive.members.temperatures.warm_drive"]
-            )
+            told = "lengths are at 20 °C still, see ltca.drive.members.temperatures.warm_drive"
+            raise DriveError([f"temperature: {told}"])
+        return self
 
     def shape_fingerprint(self) -> str:
         """Return a hash of `body_shape` (hex, 16 digits): influence coefficients of the bodies belong to it."""

@@ -111,8 +111,7 @@ class FlankProfile:
     @classmethod
     def of_drive(cls, drive: Drive) -> FlankProfile:
         """Return the flank of a drive's disc."""
-        drive.require_warmed()
-        runout = drive.disc.runout
+        runout = drive.require_warmed().disc.runout
         return cls(
             generating_radius=drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset,
             eccentricity=drive.crank.eccentricity,
@@ -143,8 +142,6 @@ class FlankProfile:
     @classmethod
     def stack(cls, drives: Sequence[Drive], positions: int) -> FlankProfile:
         """Return the flanks of several drives of equal reduction ratio, see `ltca.geometry.placement.Placement.stack`."""
-        for drive in drives:
-            drive.require_warmed()
         flanks = [(d.pin_wheel, d.disc, d.crank.eccentricity, d.disc.runout) for d in drives]
         columns = np.array(
             [
