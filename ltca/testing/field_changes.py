@@ -106,7 +106,7 @@ _OF_LIFE = dict.fromkeys(
     ("duty.0.torque", "duty.0.speed", "duty.0.share", "lubricant.viscosity", "lubricant.contamination"),
     "duty and lubricant concern lives of bearings alone, and here none is told",
 )
-_EVERYWHERE: Mapping[str, str] = _NAME | _OF_LIFE
+_EVERYWHERE = _NAME | _OF_LIFE
 _RIGID_PIN = {
     f"materials.shaft_pin.{name}": "the shaft pin is rigid on its spring where the hole's wall yields by itself"
     for name in ("youngs_modulus", "poisson_ratio")

@@ -1,4 +1,4 @@
-"""Drives at their temperatures: similar drives carry alike, offsets are those of the drawing of warm parts, lost plays are told."""
+"""Drives at their temperatures: similar drives carry alike, offsets are those of warm parts, lost plays are told."""
 
 from __future__ import annotations
 
