@@ -61,8 +61,8 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         analysis = analyse(drive, angle)
         for warning in analysis.warnings:
             print(f"  warning: {warning}")
-        drive = analysis.drive
-        for title, value in [*_warmth(analysis.as_written), *_properties(drive)]:
+        written, drive = drive, analysis.drive
+        for title, value in [*_warmth(written), *_materials(written), *_properties(drive)]:
             print(f"  {title:<47} {value}")
         print(f"  at φ_C = {angle[0]:g} rad, {drive.load_words()}, {describe_engine(analysis.engine)}")
         for title, value in _loads(analysis):
@@ -101,7 +101,6 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     of, at, held = ("", "the disc", "disc") if len(singles) == 1 else (" of disc 0", "disc 0", "discs")
     return [
         *_installation(drive),
-        *_materials(drive),
         ("e z_P/R_C", f"{e * drive.reduction_ratio / drive.pin_wheel.pin_circle_radius:.4f} (must be below 1)"),
         ("disc radius at root, tip", f"{profile.root_radius:.4f}, {profile.tip_radius:.4f} mm"),
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
@@ -133,7 +132,7 @@ def _materials(drive: Drive) -> list[tuple[str, str]]:
     parts: dict[str, list[str]] = {}
     for part, name in named_parts(drive.materials).items():
         parts.setdefault(name, []).append(part)
-    return [(f"material of {', '.join(those)}", name) for name, those in parts.items()]
+    return [(f"material {name}", ", ".join(those)) for name, those in parts.items()]
 
 
 def _walls(single: Drive, root_radius: float, of: str) -> list[tuple[str, str]]:

@@ -107,6 +107,21 @@ class LengthProfile:
         return self.crown_drop == 0.0 and self.logarithmic_factor == 0.0 and not relieved
 
 
+def elastic_alone(materials: Materials) -> Materials:
+    """Return materials of modulus and ratio alone: what loads at 20 °C follow from.
+
+    Parameters
+    ----------
+    materials : Materials
+        Of a drive.
+    """
+    bare = {}
+    for part in PARTS:
+        own: Material = getattr(materials, part)
+        bare[part] = Material(youngs_modulus=own.youngs_modulus, poisson_ratio=own.poisson_ratio)
+    return Materials(**bare)
+
+
 def contact_modulus(first: Material, second: Material) -> float:
     """Return E* of two materials, MPa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ (Johnson, Eq. 4.18)."""
     return 1.0 / (first.plane_strain_compliance + second.plane_strain_compliance)

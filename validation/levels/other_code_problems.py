@@ -11,7 +11,7 @@ import importlib.util
 import json
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from fem.drive.solution import solve_drive
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
 from ltca.contact.length_profile import LogarithmicRelief
+from ltca.drive.materials import elastic_alone
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
@@ -69,7 +70,9 @@ class OtherCode:
 
 def coarse_drive() -> Drive:
     """Return the drive that CalculiX solves, too."""
-    return load_drive("paper").cases[CASE]
+    drive = load_drive("paper").cases[CASE]
+    # What results are judged by is no part of the problem: stored answers stay those of the same drive.
+    return replace(drive, materials=elastic_alone(drive.materials))
 
 
 def has_calculix() -> bool:

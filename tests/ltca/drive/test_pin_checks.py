@@ -7,6 +7,7 @@ import pytest
 from ltca.commands.program import main
 from ltca.drive.plane_strain import require_fixed_pins
 from ltca.drive.tolerances import Factors, parse_tolerances
+from ltca.drive.materials import MAY_BE_UNKNOWN
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -21,6 +22,7 @@ FIXED = {
     "materials.wheel_seat.youngs_modulus": 206_000.0,
 }
 FIXED |= {"materials.wheel_seat.poisson_ratio": 0.3}
+FIXED |= {f"materials.wheel_seat.{name}": None for name in MAY_BE_UNKNOWN}
 SLEEVES = FIXED | {
     "pin_wheel.seat.kind": "sleeve",
     "pin_wheel.seat.pin_radius": 2.5,

@@ -7,6 +7,7 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.figures.drive_picture import _Position, draw_drive
+from ltca.drive.materials import MAY_BE_UNKNOWN
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
@@ -21,6 +22,7 @@ WHEEL = {
         "pin_wheel.seat.bore_radius": 2.8 + PLAY,
         "materials.wheel_seat.youngs_modulus": 206_000.0,
         "materials.wheel_seat.poisson_ratio": 0.3,
+        **{f"materials.wheel_seat.{name}": None for name in MAY_BE_UNKNOWN},
     },
 }
 

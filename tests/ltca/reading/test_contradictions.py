@@ -130,7 +130,7 @@ def test_two_spoilt_fields_keep_their_own_sentences(paper_table):
         ('direction = "ccw"', "load.direction = 'CCW': must be 'ccw' or 'cw'; did you mean `ccw`?"),
         ("[clearance]", "clearence: is not a field of the drive definition; did you mean `clearance`?"),
         (
-            "disc = { youngs_modulus",
+            '"100Cr6", youngs_modulus',
             "materials.disc.yongs_modulus: is not a field of the drive definition; did you mean",
         ),
         (
@@ -143,7 +143,7 @@ def test_two_spoilt_fields_keep_their_own_sentences(paper_table):
 def test_what_was_meant_is_asked(text, told):
     wrong = {
         "pin_radius = 6.5": "pin_radus = 6.5", 'direction = "ccw"': 'direction = "CCW"', "[clearance]": "[clearence]",
-        "disc = { youngs_modulus": "disc = { yongs_modulus", "crank.eccentricity_error =": "crank.excentricity_error =",
+        '"100Cr6", youngs_modulus': '"100Cr6", yongs_modulus', "crank.eccentricity_error =": "crank.excentricity_error =",
         'distribution = "normal"': 'distribution = "normel"',
     }[text]  # fmt: skip
     assert text in BASE

@@ -7,7 +7,7 @@ from ltca.errors import DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
 BASE = shipped_drive().partition("[[case]]")[0]
-STEEL = "disc = { youngs_modulus = 206000.0, poisson_ratio = 0.3 }"
+STEEL = 'disc = { like = "100Cr6", youngs_modulus = 206000.0, poisson_ratio = 0.3 }'
 ROLLER_PROFILE = "# roller_profile = { logarithmic_factor = 1.0 }"
 ROLLER_ERRORS = "# roller_errors = { tangential = […], diameter = […] }"
 PIN_ERRORS = "# pin_errors = { radial = [0.01, 0.0, …], tangential = […], diameter = […] }"
@@ -64,7 +64,7 @@ MALFORMED = [
     ("eccentricity = 4.0", "", ["crank.eccentricity: is missing"]),
     ("[crank]\n", "[kurbel]\n", ["crank: is missing", "kurbel: is not a field"]),
     ("eccentricity = 4.0", "excentricity = 4.0", ["crank.excentricity: is not a field; did you mean `eccentricity`"]),
-    (STEEL, 'disc = "steel"', ["materials.disc = 'steel'", "a table"]),
+    (STEEL, 'disc = "steel"', ["materials.disc = 'steel'", "is no named material"]),
     ('direction = "ccw"', 'direction = "left"', ["load.direction = 'left'", "'ccw' or 'cw'"]),
     ("[crank]\n", "[crank\n", ["not valid TOML", "line 8"]),
     # materials
