@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from ltca.commands.program import main
+from ltca.drive.materials import MAY_BE_UNKNOWN
 from ltca.drive.plane_strain import require_fixed_pins
 from ltca.drive.tolerances import Factors, parse_tolerances
-from ltca.drive.materials import MAY_BE_UNKNOWN
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive

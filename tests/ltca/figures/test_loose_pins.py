@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.figures.drive_picture import _Position, draw_drive
 from ltca.drive.materials import MAY_BE_UNKNOWN
+from ltca.figures.drive_picture import _Position, draw_drive
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
