@@ -90,7 +90,7 @@ _TABLE: tuple[tuple[str, tuple[str, ...], Fraction | int, Fraction | int], ...] 
     ("thermal expansion", ("1/K",), 1, 0),
     ("ratio", ("%",), Fraction(1, 100), 0),
     ("power", ("W",), 1, 0),
-    ("pressure times speed", ("MPa m/s", "MPa·m/s", "MPa*m/s"), 1, 0),
+    ("pressure times speed", ("MPa·m/s", "MPa m/s", "MPa*m/s"), 1, 0),
     ("time", ("h",), 1, 0),
     ("density", ("kg/m³", "kg/m3"), 1, 0),
     ("density", ("g/cm³", "g/cm3"), 1000, 0),
