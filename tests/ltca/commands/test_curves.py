@@ -252,6 +252,18 @@ def test_all_cases_are_there(monkeypatch, tmp_path, capsys, paper_cases):
     assert two["cases"] == {name: kept["cases"][name] for name in ("CS-4", "CS-2")}
 
 
+def test_speed_of_a_drive_whose_housing_is_held(monkeypatch, tmp_path):
+    """--speed is that of the crank against what is held; against the disc, which turns back, it is z_P/z_C as much."""
+    make_coarse(monkeypatch)
+    source = tmp_path / "held.toml"
+    text = shipped_drive().partition("\n[tolerances]")[0].replace('held = "pin-shaft"', 'held = "pin-wheel"')
+    source.write_text(text, encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["curves", str(source), "--turns", "1", "--no-figures", "--out", str(out), "--speed", "1300"]) == 0
+    kept = json.loads((out / "curves.json").read_text(encoding="utf-8"))["bearing_life"]
+    assert kept["hours"] == pytest.approx(kept["million_turns"] * 1e6 / (60.0 * 1400.0), rel=1e-12)
+
+
 def test_figures_of_several_cases_have_their_names(monkeypatch, tmp_path):
     stems = []
     monkeypatch.setattr(curve_figures, "_save", lambda figure, stem: stems.append(stem.name) or stem)
