@@ -11,7 +11,8 @@ function of ISO/TS 16281 for the ends of plain rollers stands for the edges. Pla
 roller ever changes from one to the other.
 
 The pressure of a straight end is singular, more so in thinner slices: life then belongs to a number of slices. ISO/TS
-16281 asks for at least 30; 31 are taken. Profiles that carry no peak at their ends do not feel the number.
+16281 asks for at least 30; 31 are taken (of the paper's straight rollers 51 give 9 % less life, 101 a quarter less). Profiles
+that carry no peak at their ends do not feel the number.
 """
 
 from __future__ import annotations
