@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
-from math import fsum, pi, sin
+from math import pi, sin
 
 import numpy as np
 
+from ltca.drive.members.duty_checks import find_duty_problems
 from ltca.drive.members.pin_checks import find_pin_problems
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, LengthProfile, Material, Temperature
@@ -26,8 +27,6 @@ from ltca.reading.deviation_checks import (
 
 # Parts that overlap are pressed together when they are assembled, and answered. Bodies strained by a tenth are beyond linear
 # elasticity whatever they are made of; sharper limits need a load and are those of `ltca.analysis.half_width_guard`.
-SHARES = 1e-9
-"""Round-off that shares of a duty may leave to one."""
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 
 
@@ -145,22 +144,7 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from _crank_support(drive)
-    yield from find_pin_problems(drive)
-    yield from _duty(drive)
-
-
-def _duty(drive: Drive) -> Iterator[str]:
-    """Shares of the time, and a lubricant without a speed that draws it in."""
-    total = fsum(entry.share for entry in drive.duty)
-    if drive.duty and abs(total - 1.0) > SHARES:
-        named = ", ".join(f"duty.{number}.share = {entry.share:g}" for number, entry in enumerate(drive.duty))
-        yield f"{named}: must add up to 1, they add up to {total:.10g}"
-    if drive.lubricant is not None and not drive.duty and drive.load.speed is None:
-        yield (
-            f"lubricant.viscosity = {drive.lubricant.viscosity:g} mm²/s: needs a speed, load.speed or those of [[duty]]; "
-            "without one no film can be told"
-        )
+    yield from (*_crank_support(drive), *find_pin_problems(drive), *find_duty_problems(drive))
 
 
 def _crank_support(drive: Drive) -> Iterator[str]:

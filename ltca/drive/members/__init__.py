@@ -16,5 +16,6 @@ pin_checks       What seats and beams of pins cannot be: fields that do not go t
                  bounds
 temperatures     A drive at its temperatures: every length of a part times 1 + α ΔT of its own material, said by the fields
                  there are
+duty_checks      What a duty and a lubricant cannot be: shares that do not add up, a film that no speed draws in
 ===============  ============================================================
 """

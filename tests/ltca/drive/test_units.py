@@ -82,7 +82,7 @@ TABLE = Path(__file__).parents[3] / "docs" / "units.md"
 
 def documented():
     """Kind, unit of plain numbers, and units with their spellings, as docs/units.md has them."""
-    rows = re.findall(r"^\| ([a-z ]+) \| (\S+) \| (`.*`) \|$", TABLE.read_text(encoding="utf-8"), re.MULTILINE)
+    rows = re.findall(r"^\| ([a-z ]+) \| (\S[^|]*) \| (`.*`) \|$", TABLE.read_text(encoding="utf-8"), re.MULTILINE)
     return {
         kind: (plain, [tuple(re.findall(r"`([^`]+)`", unit)) for unit in units.split("; ")])
         for kind, plain, units in rows
