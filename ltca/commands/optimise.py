@@ -111,7 +111,7 @@ def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
     """What is asked of a drive."""
     from ltca.errors import DriveError, did_you_mean, shortened, told_twice
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
-    from ltca.studies.quantities import QUANTITIES
+    from ltca.studies.quantities import QUANTITIES, with_what_varies
 
     aims = tuple(arguments.minimise)
     unknown = [aim for aim in aims if aim not in QUANTITIES]
@@ -123,6 +123,7 @@ def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
         raise DriveError(
             [f"--minimise {shortened(' '.join(aims), 200)[1:-1]}: give one quantity, or two different ones"]
         )
+    drive = with_what_varies(drive, [text.strip() for text in arguments.vary])
     variables = tuple(parse_variable(text, drive) for text in arguments.vary)
     if repeated := told_twice([variable.path for variable in variables]):
         raise DriveError([f"--vary {repeated}: is given twice"])

@@ -200,7 +200,7 @@ def _verdicts(
     told = []
     for name, analysis in analyses.items():
         if analysis.is_complete:
-            checks = judge_analysis(analysis, summaries[name], limits[name])
+            checks = judge_analysis(analysis, summaries[name], limits[name], lives=False)
             told += [f"verdict on {name}" if len(analyses) > 1 else "verdict", verdict_table(checks, limited=True)]
     return "\n".join(
         [*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"]

@@ -194,7 +194,8 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     _print_failures(study, folder, found)
     leading = next(iter(found.quantities), None)
     if leading is not None:
-        worst = found.quantities[leading].largest_sample
+        summary = found.quantities[leading]
+        worst = summary.smallest_sample if QUANTITIES[leading].more_is_better else summary.largest_sample
         words = f"{write_sample(study, folder, worst)}{compliance}"
         print(f"worst by {QUANTITIES[leading].description}: cyclo run {words}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")

@@ -436,10 +436,10 @@ def _friction(drive: Drive) -> Iterator[str]:
         )
     if friction.hole and shaft is None:
         yield f"friction.hole = {friction.hole:g}: must be left out, or 0, without a pin shaft"
-    if bool(friction.support_bearing) != bool(friction.support_bearing_radius):
+    if friction.support_bearing and not friction.support_bearing_radius:
         yield (
-            f"friction.support_bearing = {friction.support_bearing:g}, friction.support_bearing_radius = "
-            f"{friction.support_bearing_radius:g} mm: must be given together, or neither"
+            f"friction.support_bearing_radius = 0 mm: must be given, greater than 0 mm, with friction.support_bearing = "
+            f"{friction.support_bearing:g}"
         )
 
 

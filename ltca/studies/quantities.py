@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.compliance.response import ComplianceModel, ContactPressures
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import bearing_forces
@@ -125,12 +125,15 @@ class Quantity:
         For labels.
     evaluate : callable
         From the solved batch, shape (samples,).
+    more_is_better : bool
+        Whether the worst sample is that of the least value.
     """
 
     unit: str
     stage: Stage
     description: str
     evaluate: Callable[[SampleBatch], FloatArray]
+    more_is_better: bool = False
 
     @property
     def symbol(self) -> str:
@@ -194,7 +197,13 @@ QUANTITIES: dict[str, Quantity] = {
     "mean_loaded_pin_shaft_pins": _quantity(
         "1", "loaded shaft pins, mean", lambda b: b.loaded(b.full.response.hole_load)
     ),
-    "mean_efficiency": _quantity("1", "efficiency, mean", lambda b: b.efficiency()),
+    "mean_efficiency": Quantity(
+        unit="1",
+        stage="full",
+        description="efficiency, mean",
+        evaluate=lambda b: b.efficiency(),
+        more_is_better=True,
+    ),
     "mean_input_torque": _quantity(
         "N mm", "torque of the input, mean", lambda b: b.by_sample(b.losses().input_torque).mean(axis=1)
     ),
@@ -244,6 +253,12 @@ def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ..
     if absent:
         raise DriveError([f"{name}: {drive.name} has no {missing[name]}" for name in absent])
     return names
+
+
+def with_what_varies(drive: Drive, paths: Iterable[str]) -> Drive:
+    """Return a drive of which a study varies fields, with the table of friction where coefficients of it are varied."""
+    rubs = any(path.startswith("friction.") for path in paths)
+    return replace(drive, friction=Friction()) if rubs and drive.friction is None else drive
 
 
 def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -40,7 +40,7 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import listed, load_drive
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.designs import SweepDesign, SweepFactor
-from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities, quantities_for
+from ltca.studies.quantities import DEFAULT_QUANTITIES, check_quantities, quantities_for, with_what_varies
 from ltca.studies.study import Study
 
 KINDS = ("grid", "list", "latin-hypercube", "sobol")
@@ -128,7 +128,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         selected = file.select(None if case is None else [case])
     except DriveError as error:
         raise DriveError([f"{problem} (of {drive})" for problem in error.problems], source) from error
-    base = next(iter(selected.values()))
+    base = with_what_varies(next(iter(selected.values())), factors_table)
     try:
         names = quantities_for(base, names if "quantities" in table else None)
     except DriveError as error:
@@ -138,7 +138,8 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     reader.check()
     assert design is not None
     varied = "case" in design.names
-    cases = tuple((file.cases if varied else {next(iter(selected)): base}).items())
+    several = {name: with_what_varies(drive, factors_table) for name, drive in file.cases.items()}
+    cases = tuple((several if varied else {next(iter(selected)): base}).items())
     return Study(
         name=file.name if varied else f"{file.name} {cases[0][0]}",
         cases=cases,

@@ -316,7 +316,6 @@ def test_powers_need_a_speed(paper):
     [
         ({"seat": 0.05}, "friction.seat = 0.05"),
         ({"support_bearing": 0.002}, "friction.support_bearing_radius = 0 mm"),
-        ({"support_bearing_radius": 10.0}, "friction.support_bearing = 0,"),
     ],
 )
 def test_coefficients_of_joints_that_are_not_there(paper, change, told):

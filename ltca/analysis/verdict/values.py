@@ -36,11 +36,13 @@ DEMANDED = {
     )
 }  # fmt: skip
 """What theories demand, by quantity."""
+LIVES = ("bearing_life_million_turns", "bearing_life_hours", "static_safety_S0")
+"""What `ltca.analysis.life` tells."""
 DEEPEST_SHEAR = 0.786
 """Depth of the largest shear stress below a line contact, in half-widths (Johnson, Contact Mechanics, 1985, sect. 4.2)."""
 
 
-def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> list[Value]:
+def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *, lives: bool = True) -> list[Value]:
     """Return everything that may be judged of one case.
 
     Parameters
@@ -49,24 +51,28 @@ def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -
         The case.
     summary : mapping of str to (float or None)
         Its scalars (`ltca.analysis.summary.summarise`).
+    lives : bool
+        Whether lives of the crank bearings are wanted, which take a second.
     """
     found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
+    found += _of_lives(analysis) if lives else []
     return [*found, *_of_theory(analysis, summary), *_of_supports(analysis), *_of_friction(analysis, summary)]
 
 
 def judge_analysis(
-    analysis: LoadedAnalysis, summary: Mapping[str, float | None], limits: Mapping[str, Limit]
+    analysis: LoadedAnalysis, summary: Mapping[str, float | None], limits: Mapping[str, Limit], *, lives: bool = True
 ) -> list[Check]:
     """Return the checks of one case.
 
     Parameters
     ----------
-    analysis, summary
-        As for `find_values`.
+    analysis, summary, lives
+        As for `find_values`; lives that have a limit are told in any case.
     limits : mapping of str to Limit
         Of the drive file.
     """
-    return judge(analysis.drive, find_values(analysis, summary), limits, DEMANDED)
+    wanted = lives or any(limit.quantity in LIVES for limit in limits.values())
+    return judge(analysis.drive, find_values(analysis, summary, lives=wanted), limits, DEMANDED)
 
 
 def _of_shape(analysis: LoadedAnalysis) -> Iterator[Value]:
@@ -165,6 +171,22 @@ def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
         for kind, name in kinds
         if kind.half_width.size
     )
+
+
+def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
+    """Shortest life and least static safety of the crank bearings, of positions that cover whole turns."""
+    from ltca.analysis.life.bearing_lives import bearing_lives
+    from ltca.analysis.life.equivalent_load import covers_whole_turns
+    from ltca.analysis.life.life_text import life_summary
+
+    if not covers_whole_turns(analysis.full.crank_angle):
+        told = "positions cover no whole turns"
+        yield from (Value(quantity=name, value=None, reason=told) for name in LIVES)
+        return
+    lives = bearing_lives(analysis)
+    told = ("; ".join(lives.not_rated)) if lives.not_rated else "there is no speed (load.speed)"
+    for name, value in life_summary(lives).items():
+        yield Value(quantity=name, value=value, reason="" if value is not None else told)
 
 
 def _of_theory(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:

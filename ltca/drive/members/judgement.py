@@ -47,7 +47,7 @@ TITLES = {
     "hole_stress": "stress along holes (ligaments)",
     "bearing_life_hours": "life of the crank bearings, L10",
     "bearing_life_million_turns": "life of the crank bearings, L10",
-    "static_safety": "static safety S0 of the crank bearings",
+    "static_safety_S0": "static safety S0 of the crank bearings",
     "mean_efficiency": "efficiency, mean",
     "mean_efficiency_back": "efficiency, motion reversed",
     "moves_back": "moves back",
@@ -218,15 +218,15 @@ def _of_materials(drive: Drive, value: Value) -> list[Limit]:
 
 
 FIRST_YIELD = "1.67: first yield below a line contact (Johnson, Contact Mechanics, 1985, sect. 4.2)"
-SHEAR_BY_HARDNESS = 0.4
-"""Shear strength by Vickers hardness, MPa by HV (ISO/TS 6336-4)."""
+SHEAR_BY_HARDNESS = 9.81 / 6.0
+"""Shear yield strength by Vickers hardness, MPa by HV: a third of the hardness is the yield strength (Tabor, The Hardness of
+Metals, 1951), half of that the shear strength of Tresca. Fatigue is a matter of the allowable pressure."""
 
 
 def _shear(value: Value, disc: Material) -> list[Limit]:
     if disc.hardness is not None:
-        return [
-            _limit(value, "max", SHEAR_BY_HARDNESS * disc.hardness, "0.4 HV of materials.disc.hardness (ISO/TS 6336-4)")
-        ]
+        source = "materials.disc.hardness · 9.81/6: yield by hardness (Tabor 1951) and Tresca"
+        return [_limit(value, "max", SHEAR_BY_HARDNESS * disc.hardness, source)]
     if disc.yield_strength is not None:
         return [_limit(value, "max", 0.5 * disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")]
     return []

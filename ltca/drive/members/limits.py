@@ -46,7 +46,7 @@ LIMITED: dict[str, str] = {
     "hole_stress": "MPa",
     "bearing_life_hours": "h",
     "bearing_life_million_turns": "1",
-    "static_safety": "1",
+    "static_safety_S0": "1",
     "mean_efficiency": "1",
     "mean_efficiency_back": "1",
     "moves_back": "1",
