@@ -19,6 +19,7 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ComplianceModel, ContactPressures, take_positions
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
+from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.single_discs import single_discs
@@ -213,6 +214,7 @@ class LoadedAnalysis:
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
         found = [stiffness_warning(self.drive), preload_warning(self.drive), self._lost_play()]
+        found.append(strength_warning(self.drive.materials))
         if self.drive.load.light_torque > self.torque:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "

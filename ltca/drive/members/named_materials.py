@@ -14,6 +14,8 @@ from ltca.errors import DriveError, nearest, shortened
 FILE = "named_materials.toml"
 LIKE = "like"
 """Key of a table that takes what it does not say from a named material."""
+FAR = 1.25
+"""Factor beyond the scatter of a modulus at which it is that of another material."""
 MOST_OTHER = 3
 """Numbers in which a material may differ from a named one and still be told as like it."""
 
@@ -190,15 +192,43 @@ def name_of(material: Material) -> str | None:
     >>> name_of(replace(named_material("PA12"), youngs_modulus=1400.0))
     'like PA12, but youngs_modulus'
     """
-    best, fewest = None, MOST_OTHER + 1
+    name, other = _nearest(material)
+    return name if not other or name is None else f"like {name}, but {', '.join(other)}"
+
+
+def _nearest(material: Material) -> tuple[str | None, list[str]]:
+    """The named material that a material differs least from, and in which fields; None where it differs in too many."""
+    best: str | None = None
+    least = [item.name for item in fields(Material)][: MOST_OTHER + 1]
     for name, entry in named_materials().items():
         known = entry.material
         other = [item.name for item in fields(Material) if getattr(known, item.name) != getattr(material, item.name)]
-        if not other:
-            return name
-        if len(other) < fewest:
-            best, fewest = f"like {name}, but {', '.join(other)}", len(other)
-    return best
+        if len(other) < len(least):
+            best, least = name, other
+    return best, least
+
+
+def strength_warning(materials: Materials) -> str | None:
+    """Return a warning where a part has the strength of a named material but a modulus far from it, None elsewhere.
+
+    Parameters
+    ----------
+    materials : Materials
+        Of a drive.
+    """
+    told = []
+    for part in PARTS:
+        material: Material = getattr(materials, part)
+        name, other = _nearest(material)
+        if name is None or "youngs_modulus" not in other or "allowable_pressure" in other:
+            continue
+        known = named_materials()[name].numbers["youngs_modulus"]
+        if not known.low / FAR < material.youngs_modulus < known.high * FAR:
+            told.append(
+                f"materials.{part}: youngs_modulus = {material.youngs_modulus:g} MPa is none of {name} ({known.low:g} … "
+                f"{known.high:g} MPa), by whose strength it is judged"
+            )
+    return "; ".join(told) or None
 
 
 def with_named_materials(table: Mapping[str, Any], problems: list[str]) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ltca
+from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.materials import MAY_BE_UNKNOWN, PARTS, Material, Materials, elastic_alone
 from ltca.drive.members.named_materials import (
     FILE,
@@ -20,6 +21,7 @@ from ltca.drive.members.named_materials import (
     named_materials,
     named_parts,
     sourced_material,
+    strength_warning,
 )
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -189,6 +191,18 @@ def test_named_materials_are_told_by_name():
         Materials(), disc=named_material("PA12"), roller=replace(named_material("100Cr6"), density=None)
     )
     assert named_parts(materials) == {"disc": "PA12", "roller": "like 100Cr6, but density"}
+
+
+def test_another_modulus_beside_a_name_is_warned_of():
+    """A case of aluminium made by its modulus alone would be judged by the strength of the steel below it."""
+    assert strength_warning(PAPER.materials) is None  # 206 GPa beside the name of bearing steel
+    aluminium = with_fields(PAPER, {"materials.disc.youngs_modulus": 71e3, "materials.disc.poisson_ratio": 0.33})
+    told = "materials.disc: youngs_modulus = 71000 MPa is none of 100Cr6 (200000 … 212000 MPa), by whose strength it is judged"
+    assert strength_warning(aluminium.materials) == told
+    assert told in analyse(aluminium, np.array([0.5])).warnings
+    assert strength_warning(with_fields(PAPER, {"materials.disc": "7075"}).materials) is None
+    given = with_fields(aluminium, {"materials.disc.allowable_pressure": 700.0})
+    assert strength_warning(given.materials) is None
 
 
 def test_parts_and_fields_are_those_of_the_definition():
