@@ -325,11 +325,8 @@ def bodies(drive):
     nominal = nominal_shape(drive)
     shapes, parts = DriveShapes.of_drive(nominal), nominal.materials
     round_bodies = (shapes.wheel_pins[0], shapes.rollers[0], shapes.inner_race)
-    elastic = (
-        (part.youngs_modulus, part.poisson_ratio)
-        for part in (parts.disc, parts.wheel_pin, parts.roller, parts.inner_race)
-    )
-    materials = tuple(elastic)
+    made_of = (parts.disc, parts.wheel_pin, parts.roller, parts.inner_race)
+    materials = tuple((part.youngs_modulus, part.poisson_ratio) for part in made_of)
     return repr((shapes.disc, round_bodies, materials, nominal.disc.thickness))
 
 
