@@ -17,14 +17,18 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from ltca.analysis.engines import Engine
     from ltca.analysis.friction.hysteresis import HysteresisLoop
     from ltca.analysis.life.bearing_lives import BearingLives
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.torque_curve import TorqueCurve
     from ltca.analysis.transmission_error_orders import Order, Spectrum
+    from ltca.drive.members.limits import Limit
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
+    from ltca.reading.drive_file import DriveFile
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
 POSITIONS_PER_TURN = 192
@@ -52,8 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--pressure-limit",
         metavar="P",
         type=quantity_argument("--pressure-limit", "MPa", gt=0.0),
-        default=1500.0,
-        help="permissible flank pressure in MPa (or a text such as '1.5 GPa'); default 1500",
+        help="permissible flank pressure in MPa (or a text such as '1.5 GPa'); default that of [limits] or of the materials",
     )
     parser.add_argument(
         "--lost-motion",
@@ -86,8 +89,8 @@ class Limits(NamedTuple):
 
     Attributes
     ----------
-    pressure : float
-        Permissible flank pressure, MPa.
+    pressure : float or None
+        Permissible flank pressure, MPa; that of the drive file or its materials otherwise.
     load_rating : float or None
         Of the crank bearing, N; by ISO 281 otherwise.
     speed : float or None
@@ -96,7 +99,7 @@ class Limits(NamedTuple):
         Part of the rated torque at which lost motion is read.
     """
 
-    pressure: float
+    pressure: float | None
     load_rating: float | None
     speed: float | None
     lost_motion: float
@@ -166,7 +169,7 @@ def execute(arguments: argparse.Namespace) -> int:
     figures = figure_files(*(name + ending for name in FIGURES for ending in endings))
     with claimed_folder(out, "curves", writes=["curves.json", *([] if arguments.no_figures else figures)]):
         find_coefficients_of(cases, arguments)
-        return _solve_and_write(file.name, cases, limits, engine, arguments, out)
+        return _solve_and_write(file, cases, limits, engine, arguments, out)
 
 
 def _orders(drive: Drive) -> tuple[Order, ...]:
@@ -199,7 +202,7 @@ def _require_turns(drive: Drive, turns: int) -> None:
 
 
 def _solve_and_write(
-    file: str, cases: dict[str, Drive], limits: Limits, engine: Engine, arguments: argparse.Namespace, out: Path
+    file: DriveFile, cases: dict[str, Drive], limits: Limits, engine: Engine, arguments: argparse.Namespace, out: Path
 ) -> int:
     from ltca.output.files import write_json
     from ltca.output.progress import progress
@@ -207,10 +210,13 @@ def _solve_and_write(
     contents, figures = {}, []
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
-            title = f"{file} {name}"
-            found = _solve(drive, arguments.turns or drive.pin_wheel.number_of_pins, limits, engine)
+            title = f"{file.name} {name}"
+            own = (
+                limits if limits.pressure is not None else limits._replace(pressure=_allowed(drive, file.limits[name]))
+            )
+            found = _solve(drive, arguments.turns or drive.pin_wheel.number_of_pins, own, engine)
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
-            _print(found, title, drive, engine, limits)
+            _print(found, title, drive, engine, own)
             if not arguments.no_figures:
                 ending = f"_{name}" if len(cases) > 1 else ""
                 figures += _draw(found, title, drive.disc.number_of_discs, out / "figures", ending)
@@ -218,9 +224,18 @@ def _solve_and_write(
     if figures:
         print(f"figures: {out / 'figures'} ({len(figures)} as SVG and PNG)")
     (first, *others) = contents.values()
-    write_json(out / "curves.json", {"drive": file, "cases": contents} if others else first)
+    write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
     print(f"results: {out / 'curves.json'}")
     return 0
+
+
+def _allowed(drive: Drive, limits: Mapping[str, Limit]) -> float | None:
+    """Permissible flank pressure of a case: of the drive file, or of its materials, MPa; None where neither has one."""
+    from ltca.drive.members.judgement import Value, judge
+
+    known = {key: limit for key, limit in limits.items() if key == "max_pin_pressure_mid"}
+    (check,) = judge(drive, [Value(quantity="pin_pressure_mid", value=None)], known)
+    return None if check.limit is None else check.limit.value
 
 
 def _crank_speed(drive: Drive, limits: Limits) -> float | None:
@@ -262,7 +277,9 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
         spectrum=spectrum,
         lives=bearing_lives(analysis, dynamic_load_rating=limits.load_rating, speed=speed),
         pressure=analysis.pressures.pins.mid,
-        safety=pressure_safety(analysis.pressures.pins.mid, limits.pressure),
+        safety=pressure_safety(
+            analysis.pressures.pins.mid, float("inf") if limits.pressure is None else limits.pressure
+        ),
     )
 
 
@@ -296,9 +313,10 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     crank_speed = _crank_speed(drive, limits)
     speed = None if drive.duty or crank_speed is None else _speed_words(drive, crank_speed)
     print("\n".join(life_lines(found.lives, drive, speed)))
-    print(
-        f"flank pressure {safety.largest:.1f} MPa, safety {safety.safety:.3f} against {limits.pressure:g} MPa, largest {over}"
+    told = (
+        "without a limit" if limits.pressure is None else f"safety {safety.safety:.3f} against {limits.pressure:g} MPa"
     )
+    print(f"flank pressure {safety.largest:.1f} MPa, {told}, largest {over}")
 
 
 def _speed_words(drive: Drive, speed: float) -> str:
@@ -334,6 +352,10 @@ def _draw(found: CaseCurves, title: str, discs: int, folder: Path, ending: str) 
             found.crank_angle[turn], found.pressure[turn], shown, title, folder / f"flank_pressure{ending}", discs
         ),
     ]
+
+
+def _finite(value: float) -> float | None:
+    return None if value == float("inf") else value
 
 
 def _loop(loop: HysteresisLoop | None) -> dict[str, Any] | None:
@@ -377,10 +399,10 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
         },
         "bearing_life": life_content(found.lives, drive),
         "pressure_safety": {
-            "limit_MPa": safety.limit,
+            "limit_MPa": _finite(safety.limit),
             "largest_MPa": safety.largest,
-            "safety": safety.safety,
-            "load_factor": safety.load_factor,
+            "safety": _finite(safety.safety),
+            "load_factor": _finite(safety.load_factor),
             "pin": safety.pin % drive.pin_wheel.number_of_pins,
             "disc": safety.pin // drive.pin_wheel.number_of_pins,
         },

@@ -117,11 +117,18 @@ def draw_pressure(
         for column in range(pressure.shape[1]):
             axes.plot(degrees, pressure[:, column], color="#b8cfe0", linewidth=0.7)
         axes.plot(degrees, pressure.max(axis=1), color=COLOURS[1])
-        axes.axhline(safety.limit, color=COLOURS[2], linewidth=1.0, linestyle=(0, (4, 2)))
+        bounded = np.isfinite(safety.limit)
+        if bounded:
+            axes.axhline(safety.limit, color=COLOURS[2], linewidth=1.0, linestyle=(0, (4, 2)))
         axes.plot(degrees[safety.position], safety.largest, "o", color=COLOURS[0], markersize=4.0)
         axes.set_xlim(degrees[0], degrees[-1])
-        axes.set_ylim(0.0, 1.12 * max(safety.limit, safety.largest))
+        axes.set_ylim(0.0, 1.12 * (max(safety.limit, safety.largest) if bounded else safety.largest))
         axes.set_xlabel("crank angle φ_C [°]")
         axes.set_ylabel("flank pressure at mid-width [MPa]")
-        axes.set_title(f"{title}: safety {safety.safety:.3f} against {safety.limit:g} MPa ({pin})")
+        told = (
+            f"safety {safety.safety:.3f} against {safety.limit:g} MPa"
+            if bounded
+            else f"{safety.largest:.0f} MPa, no limit"
+        )
+        axes.set_title(f"{title}: {told} ({pin})")
         return _save(figure, stem)
