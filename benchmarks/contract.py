@@ -97,13 +97,17 @@ def full_solution(drive: Drive) -> np.ndarray:
 def optimum(drive: Drive) -> np.ndarray:
     """What an optimisation computes of a candidate, with every quantity aimed at or limited."""
     from ltca.studies.optimiser import Limit, Problem, batch_analysis, parse_variable
-    from ltca.studies.quantities import QUANTITIES
+    from ltca.studies.quantities import quantities_for
 
     problem = Problem(
         drive=drive,
         variables=(parse_variable("disc.equidistant_offset", drive),),
         aims=("max_pin_load",),
-        limits=tuple(Limit(quantity=name, sense=1, value=1e9) for name in QUANTITIES if name != "max_pin_load"),
+        limits=tuple(
+            Limit(quantity=name, sense=1, value=1e9)
+            for name in quantities_for(drive, ("all",))
+            if name != "max_pin_load"
+        ),
     )
     return np.asarray(batch_analysis(problem, 4)([drive]))
 

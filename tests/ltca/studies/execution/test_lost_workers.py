@@ -132,7 +132,7 @@ def test_killed_study_resumes_to_the_same_dataset(tmp_path):
 
     process = start(one)
     deadline = time.monotonic() + 60.0
-    while len(list(one.glob("batches/*.npz"))) < 3 and time.monotonic() < deadline:
+    while len(list(one.glob("batches/[0-9]*.npz"))) < 3 and time.monotonic() < deadline:
         time.sleep(0.02)
     process.kill()
     process.communicate()
