@@ -35,12 +35,8 @@ def judge_solution(
         "roller_load": [("roller", [each.roller_load_outer for each in contacts])],
         "pin_shaft_load": [("shaft pin", [each.pin_shaft_load for each in contacts])],
         "pin_pressure_mid": [("wheel pin", [each.pin_pressure_max for each in contacts])],
-        "roller_pressure_mid": [
-            (
-                "roller",
-                [np.maximum(each.roller_pressure_max_outer, each.roller_pressure_max_inner) for each in contacts],
-            )
-        ],
+        "roller_pressure_mid_outer": [("roller", [each.roller_pressure_max_outer for each in contacts])],
+        "roller_pressure_mid_inner": [("roller", [each.roller_pressure_max_inner for each in contacts])],
         "pin_shaft_pressure_mid": [("shaft pin", [each.hole_pressure_max for each in contacts])],
         "disc_shear": [
             ("below wheel pin", [stress.pin_shear for stress in stresses]),
@@ -56,7 +52,7 @@ def judge_solution(
         for quantity, kinds in found.items()
         if (value := _largest(quantity, kinds, solution.crank_angle)) is not None
     ]
-    told = {value.quantity for value in values}
+    told = {value.quantity for value in values} | {"roller_pressure_mid"}
     return judge(solution.drive, values, {key: limit for key, limit in limits.items() if limit.quantity in told})
 
 

@@ -28,6 +28,8 @@ DEFAULT_POSITIONS = 360
 ADVICE_POSITIONS = 60
 """Positions at which changed drives are compared."""
 BESIDE = 1e-3
+LEAST_PART = 1e-3
+"""Part of the torque below which it is not tried whether the drive carries it."""
 FAILED = 1
 
 
@@ -68,22 +70,25 @@ def execute(arguments: argparse.Namespace) -> int:
 
     require_room_for(cases.values(), arguments.positions, out, f"--positions {arguments.positions}")
     engine, contents, failed = compliance_of(arguments), {}, 0
+    notes: dict[str, list[str]] = {}
     with claimed_folder(out, "check", writes=["check.json"]):
         find_coefficients_of(cases, arguments)
         with progress("cases", len(cases)) as advance:
             for name, drive in cases.items():
-                checks, drivers, warnings = _judge(drive, file.limits[name], engine, arguments)
+                checks, drivers, told = _judge(drive, file.limits[name], engine, arguments)
                 contents[name] = [
                     check_content(check, name) | {"drivers": _drivers(drivers.get(check.value.quantity, ()))}
                     for check in checks
                 ]
-                failed += sum(check.verdict == "fail" for check in checks)
+                failed += sum(check.fails for check in checks)
                 print(f"{file.name} {name}, {drive.load_words(arguments.torque)}")
                 print(verdict_table(checks))
-                print("".join(f"  note: {warning}\n" for warning in warnings), end="")
+                print("".join(f"  note: {note}\n" for note in told), end="")
+                notes[name] = told
                 print(_advice(checks, drivers), end="")
                 advance(name)
-        write_json(out / "check.json", {"drive": file.name, "verdict": "fail" if failed else "pass", "cases": contents})
+        verdict = "fail" if failed else "pass"
+        write_json(out / "check.json", {"drive": file.name, "verdict": verdict, "cases": contents, "notes": notes})
     print(f"results: {out / 'check.json'}")
     return FAILED if failed else 0
 
@@ -94,16 +99,36 @@ def _judge(
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.summary import summarise
     from ltca.analysis.verdict.advice import advise
-    from ltca.analysis.verdict.values import judge_analysis
+    from ltca.analysis.verdict.values import judge_analysis, notes
+    from ltca.drive.members.judgement import WHOLE, Check, Value
+    from ltca.errors import DriveError
     from ltca.geometry.placement import position_angles
 
-    analysis = analyse(drive, position_angles(arguments.positions), arguments.torque, engine.with_coefficients(drive))
+    used, whole = engine.with_coefficients(drive), drive.load.torque if arguments.torque is None else arguments.torque
+    part, refusal = 1.0, ""
+    while True:
+        try:
+            analysis = analyse(drive, position_angles(arguments.positions), part * whole, used)
+            break
+        except DriveError as error:
+            # Contacts wider than the bodies are curved: less of the torque tells how far it is from being carried.
+            if "cannot be carried" not in str(error) or part < LEAST_PART:
+                raise
+            part, refusal = 0.5 * part, refusal or error.problems[0]
     checks = judge_analysis(analysis, summarise(analysis), limits)
+    told = notes(analysis)
+    if refusal:
+        checks.insert(0, Check(value=Value(quantity="carried_torque", value=part), limit=WHOLE))
+        told.insert(
+            0,
+            f"{refusal}; the checks are those at {part:g} of the torque. All sizes × {part ** (-1.0 / 3.0):.3g} would about "
+            "carry the whole: at equal stress torques grow with the cube of the size",
+        )
     if arguments.no_advice:
-        return checks, {}, analysis.warnings
+        return checks, {}, told
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + BESIDE
-    return checks, advise(drive, checks, angles, arguments.torque), analysis.warnings
+    return checks, advise(drive, checks, angles, part * whole), told
 
 
 def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:
@@ -112,11 +137,12 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
 
     lines = []
     for check in checks:
-        if check.verdict != "fail":
+        if not check.fails:
             continue
         limit = check.limit
         source = "" if limit is None else f" (limit: {limit.source})"
-        lines.append(f"  {check.title} fails{source}")
+        told = "fails" if check.verdict == "fail" else f"cannot be judged: {check.value.reason}"
+        lines.append(f"  {check.title} {told}{source}")
         each = drivers.get(check.value.quantity, ())
         helping = [driver for driver in each if driver.change]
         lines += [

@@ -22,7 +22,8 @@ QUANTITIES: tuple[tuple[str, str, tuple[Kind, ...]], ...] = (
     ("roller_load", "load", ("roller_outer",)),
     ("pin_shaft_load", "load", ("hole",)),
     ("pin_pressure_mid", "pressure", ("pin",)),
-    ("roller_pressure_mid", "pressure", ("roller_outer", "roller_inner")),
+    ("roller_pressure_mid_outer", "pressure", ("roller_outer",)),
+    ("roller_pressure_mid_inner", "pressure", ("roller_inner",)),
     ("pin_shaft_pressure_mid", "pressure", ("hole",)),
 )
 """What is judged, what it is of a contact, and of which kinds."""
@@ -42,7 +43,7 @@ def verdicts(study: Study) -> dict[str, dict[str, list[Check]]]:
         found[case] = {}
         for model in (FULL, *MODELS):
             values = [value for spec in QUANTITIES if (value := _largest(items, model, *spec)) is not None]
-            told = {value.quantity for value in values}
+            told = {value.quantity for value in values} | {"roller_pressure_mid"}
             own = {key: limit for key, limit in limits.items() if limit.quantity in told}
             found[case][model] = judge(study.plan.drives[case], values, own)
     return found

@@ -2,7 +2,7 @@
 
 Every input is changed by a little, with what belongs to it, and the drive is solved again, on half-spaces: elasticities
 d ln v/d ln x of all values come from one solution for each input. What a change would have to be follows from a power law,
-so it is about as much as said, and nothing is said of changes beyond `FARTHEST`.
+so it is about as much as said; nothing is said of changes beyond `FARTHEST`, nor of such that make no drive.
 """
 
 from __future__ import annotations
@@ -65,6 +65,7 @@ class _Input:
     start: float | None
     unit: str
     changed: Callable[[float], dict[str, Any]]
+    beside: tuple[str, ...] = ()
 
 
 def advise(
@@ -103,13 +104,13 @@ def advise(
                 continue
             elasticity = log(after / before) / log(1.0 + step)
             if abs(elasticity) >= LEAST:
-                found[quantity].append(_driver(one, elasticity, check))
+                found[quantity].append(_driver(drive, one, elasticity, check))
     return {
         quantity: sorted(drivers, key=lambda driver: -abs(driver.elasticity)) for quantity, drivers in found.items()
     }
 
 
-def _driver(one: _Input, elasticity: float, check: Check) -> Driver:
+def _driver(drive: Drive, one: _Input, elasticity: float, check: Check) -> Driver:
     safety = check.safety
     if safety is None or safety <= 0.0 or check.verdict == "pass" or check.limit is None:
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
@@ -117,9 +118,15 @@ def _driver(one: _Input, elasticity: float, check: Check) -> Driver:
     if not isfinite(wanted) or abs(wanted) > log(FARTHEST):
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
     factor = exp(wanted)
+    try:
+        with_fields(drive, one.changed(factor))
+    except CycloError:  # such a drive cannot be built
+        return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
     told = f"× {factor:.3g}"
     if one.start is not None:
         told = f"{one.start:.4g} → {factor * one.start:.4g}{f' {label(one.unit)}' if label(one.unit) else ''}"
+    if one.beside:
+        told += f" (with {', '.join(one.beside)})"
     return Driver(input=one.name, elasticity=elasticity, change=told, factor=factor)
 
 
@@ -146,7 +153,8 @@ def _inputs(drive: Drive) -> list[_Input]:
             }
             return {path: factor * start, **extra}
 
-        return _Input(name=path, start=float(start), unit=field_kinds()[path].unit, changed=changed)
+        unit = field_kinds()[path].unit
+        return _Input(name=path, start=float(start), unit=unit, changed=changed, beside=tuple(beside or ()))
 
     def grown(value: float, more: float) -> float:
         return value + more

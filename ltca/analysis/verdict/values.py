@@ -75,6 +75,24 @@ def judge_analysis(
     return judge(analysis.drive, find_values(analysis, summary, lives=wanted), limits, DEMANDED)
 
 
+STIFF_PINS = 10.0
+"""Stiffness of a shaft pin, by E times thickness of the disc, beyond which it is pointed out: walls of holes yield alike."""
+
+
+def notes(analysis: LoadedAnalysis) -> list[str]:
+    """Return what to know beside the checks, one sentence each: warnings of the analysis, pins that dwarf the disc."""
+    drive, shaft = analysis.drive, analysis.drive.pin_shaft
+    found = list(analysis.warnings)
+    if shaft is not None and shaft.stiffness is not None:
+        disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
+        if shaft.stiffness > STIFF_PINS * disc:
+            found.append(
+                f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm dwarfs the disc (E times thickness {disc:.4g} N/mm): the wall "
+                "of the hole yields more than the pin, and half-spaces leave it out; try --compliance hybrid"
+            )
+    return found
+
+
 def _of_shape(analysis: LoadedAnalysis) -> Iterator[Value]:
     singles = single_discs(analysis.drive)
     yield _least(
@@ -111,19 +129,20 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
         yield Value(quantity=key.rpartition("_")[0], value=summary[key])
     yield Value(quantity="mean_loaded_pins", value=summary["mean_loaded_pins"])
     yield Value(quantity="ptp_transmission_error", value=refined_value(summary, "ptp_transmission_error_arcsec"))
-    roller = np.maximum(pressures.outer.mid, pressures.inner.mid)
     bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)
-    for quantity, key, each, name in (
+    kinds: tuple[tuple[str, str | None, FloatArray, str], ...] = (
         ("pin_load", "max_pin_load_N", contacts.pin_load, "wheel pin"),
         ("roller_load", "max_roller_load_N", contacts.rollers.outer_load, "roller"),
         ("pin_shaft_load", "max_pin_shaft_load_N", contacts.hole_load, "shaft pin"),
         ("bearing_load", "max_bearing_load_N", bearing, "bearing"),
         ("pin_pressure_mid", "max_pin_pressure_mid_MPa", pressures.pins.mid, "wheel pin"),
-        ("roller_pressure_mid", "max_roller_pressure_mid_MPa", roller, "roller"),
+        ("roller_pressure_mid_outer", None, pressures.outer.mid, "roller"),
+        ("roller_pressure_mid_inner", None, pressures.inner.mid, "roller"),
         ("pin_shaft_pressure_mid", "max_pin_shaft_pressure_mid_MPa", pressures.holes.mid, "shaft pin"),
-    ):
+    )
+    for quantity, scalar, each, name in kinds:
         if each.shape[1]:
-            yield _largest(analysis, quantity, each, name, refined_value(summary, key))
+            yield _largest(analysis, quantity, each, name, None if scalar is None else refined_value(summary, scalar))
 
 
 def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:

@@ -7,16 +7,17 @@ limit of zero, what a theory demands (half-spaces, sampling) is that theory's bo
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from ltca.drive.materials import Material
-from ltca.drive.members.limits import LIMITED, Limit
+from ltca.drive.members.limits import LIMITED, SENSES, Limit
 from ltca.drive.parts import Drive
 
 Verdict = Literal["pass", "fail", "no limit", "not known"]
 
 TITLES = {
+    "carried_torque": "part of the torque that is carried",
     "undercut_margin": "undercut: pin radius to spare",
     "wall": "thinnest wall",
     "pin_hollow_margin": "hollow of the flank against the pin",
@@ -34,6 +35,8 @@ TITLES = {
     "pin_pressure_mid": "flank pressure",
     "pin_shaft_pressure_mid": "hole pressure",
     "roller_pressure_mid": "roller pressure",
+    "roller_pressure_mid_outer": "roller pressure in the bore",
+    "roller_pressure_mid_inner": "roller pressure on the inner race",
     "pin_seat_pressure": "pressure in wheel-pin seats",
     "hole_seat_pressure": "pressure in shaft-pin sleeves",
     "disc_shear": "shear below the surface of the disc",
@@ -45,8 +48,8 @@ TITLES = {
     "root_stress": "stress along lobe roots",
     "bore_stress": "stress along bores",
     "hole_stress": "stress along holes (ligaments)",
-    "bearing_life_hours": "life of the crank bearings, L10",
-    "bearing_life_million_turns": "life of the crank bearings, L10",
+    "bearing_life_hours": "life of the crank bearings in hours",
+    "bearing_life_million_turns": "life of the crank bearings, million turns",
     "static_safety_S0": "static safety S0 of the crank bearings",
     "mean_efficiency": "efficiency, mean",
     "mean_efficiency_back": "efficiency, motion reversed",
@@ -107,10 +110,18 @@ class Check:
         What is judged.
     limit : Limit or None
         By what.
+    asked : bool
+        Whether the limit is one of the drive file, whose author wants it judged.
     """
 
     value: Value
     limit: Limit | None
+    asked: bool = False
+
+    @property
+    def fails(self) -> bool:
+        """Whether the design fails by it: beyond its limit, or unjudged though asked for."""
+        return self.verdict == "fail" or (self.asked and self.verdict == "not known")
 
     @property
     def title(self) -> str:
@@ -137,6 +148,10 @@ class Check:
         return "pass" if kept else "fail"
 
 
+WHOLE = Limit(quantity="carried_torque", sense="min", value=1.0, source="theory of half-spaces: half-widths by radii")
+"""A drive carries all of its torque."""
+
+
 def judge(
     drive: Drive, values: Sequence[Value], limits: Mapping[str, Limit], demanded: Mapping[str, Limit] | None = None
 ) -> list[Check]:
@@ -155,17 +170,36 @@ def judge(
     """
     checks = []
     for value in values:
-        own = [limits[key] for key in (f"max_{value.quantity}", f"min_{value.quantity}") if key in limits]
-        found = own or [*_of_materials(drive, value), *_of_shape(value)]
-        if not own and demanded is not None and value.quantity in demanded:
-            found = [demanded[value.quantity]]
-        checks += [Check(value=value, limit=limit) for limit in found] or [Check(value=value, limit=None)]
-    told = {value.quantity for value in values}
+        own = [one for sense in SENSES if (one := _own(limits, sense, value.quantity)) is not None]
+        allowed, lacking = _of_materials(drive, value)
+        found = [
+            *own,
+            *(limit for limit in allowed if limit.sense not in {one.sense for one in own}),
+            *_of_shape(value),
+        ]
+        if demanded is not None and value.quantity in demanded:
+            found.append(demanded[value.quantity])
+        judged = value if found or not lacking else replace(value, reason=lacking)
+        checks += [Check(value=judged, limit=limit, asked=limit in own) for limit in found] or [
+            Check(value=judged, limit=None)
+        ]
+    told = {value.quantity for value in values} | {_BOTH.get(value.quantity) for value in values}
     for limit in limits.values():
         if limit.quantity not in told:
             reason = "there is none in this drive, or this engine cannot say it"
-            checks.append(Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit))
+            checks.append(
+                Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit, asked=True)
+            )
     return checks
+
+
+_BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}
+"""Quantities that a limit on another one bounds as well."""
+
+
+def _own(limits: Mapping[str, Limit], sense: str, quantity: str) -> Limit | None:
+    found = limits.get(f"{sense}_{quantity}")
+    return found if found is not None or quantity not in _BOTH else limits.get(f"{sense}_{_BOTH[quantity]}")
 
 
 def _of_shape(value: Value) -> list[Limit]:
@@ -175,14 +209,15 @@ def _of_shape(value: Value) -> list[Limit]:
     return []
 
 
-def _of_materials(drive: Drive, value: Value) -> list[Limit]:
-    """The lowest allowable of the materials that a value is one of."""
+def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
+    """The lowest allowable of the materials that a value is one of; of which it lacks one that could be lower."""
     parts, quantity = drive.materials, value.quantity
     disc, flank_pin, hole_pin = ("disc", parts.disc), _flank_pin(drive), _hole_pin(drive)
     pressed = {
         "pin_pressure_mid": (disc, flank_pin),
         "pin_shaft_pressure_mid": (disc, hole_pin),
-        "roller_pressure_mid": (disc, ("roller", parts.roller), ("inner_race", parts.inner_race)),
+        "roller_pressure_mid_outer": (disc, ("roller", parts.roller)),
+        "roller_pressure_mid_inner": (("roller", parts.roller), ("inner_race", parts.inner_race)),
         "pin_seat_pressure": (("wheel_pin", parts.wheel_pin), _seat(drive)),
         "hole_seat_pressure": (("shaft_pin", parts.shaft_pin), ("sleeve", parts.sleeve)),
     }
@@ -190,43 +225,53 @@ def _of_materials(drive: Drive, value: Value) -> list[Limit]:
         given = [
             (part.allowable_pressure, name) for name, part in pressed[quantity] if part.allowable_pressure is not None
         ]
-        return _lowest(value, given, "allowable_pressure")
+        lacking = [f"materials.{name}" for name, part in pressed[quantity] if part.allowable_pressure is None]
+        found = _lowest(value, given, "allowable_pressure")
+        # What one body bears says nothing of the other, but for what is too much already.
+        kept = value.value is None or not found or value.value <= found[0].value
+        told = f"{' and '.join(lacking)} has no allowable_pressure" if lacking else ""
+        return ([] if lacking and kept else found), told
     bent = {"wheel": ("wheel_pin", parts.wheel_pin), "shaft": ("shaft_pin", parts.shaft_pin)}
     which, _, rest = quantity.partition("_pin_")
     if rest in ("bending_stress", "shear_stress"):
         name, part = bent[which]
         factor, how = (1.0, "yield_strength") if rest.startswith("bending") else (3.0**-0.5, "yield_strength/√3")
-        return [] if part.yield_strength is None else _lowest(value, [(factor * part.yield_strength, name)], how)
+        given = [] if part.yield_strength is None else [(factor * part.yield_strength, name)]
+        return _lowest(value, given, how), f"materials.{name} has no yield_strength"
     if quantity in ("root_stress", "bore_stress", "hole_stress"):
         given = [] if parts.disc.yield_strength is None else [(parts.disc.yield_strength, "disc")]
-        return _lowest(value, given, "yield_strength")
+        return _lowest(value, given, "yield_strength"), "materials.disc has no yield_strength"
     if quantity == "contact_strain":
-        given = [
-            (part.yield_strength / part.youngs_modulus, name)
-            for name, part in (disc, flank_pin)
-            if part.yield_strength is not None
-        ]
-        return [
-            _limit(value, "max", 1.67 * strain, f"{FIRST_YIELD} of materials.{name}.yield_strength / youngs_modulus")
-            for strain, name in sorted(given)[:1]
-        ]
+        name, part = min((disc, flank_pin), key=lambda body: body[1].youngs_modulus)
+        return _strain(value, name, part), f"materials.{name} has neither hardness nor yield_strength"
     if quantity == "shear_depth" and parts.disc.hardness_depth is not None:
-        return [_limit(value, "max", parts.disc.hardness_depth, "materials.disc.hardness_depth")]
+        return [_limit(value, "max", parts.disc.hardness_depth, "materials.disc.hardness_depth")], ""
     if quantity == "disc_shear":
-        return _shear(value, parts.disc)
-    return []
+        return _shear(value, parts.disc), "materials.disc has neither hardness nor yield_strength"
+    return [], ""
 
 
 FIRST_YIELD = "1.67: first yield below a line contact (Johnson, Contact Mechanics, 1985, sect. 4.2)"
-SHEAR_BY_HARDNESS = 9.81 / 6.0
-"""Shear yield strength by Vickers hardness, MPa by HV: a third of the hardness is the yield strength (Tabor, The Hardness of
-Metals, 1951), half of that the shear strength of Tresca. Fatigue is a matter of the allowable pressure."""
+YIELD_BY_HARDNESS = 9.81 / 3.0
+"""Yield strength of a surface by its Vickers hardness, MPa by HV (Tabor, The Hardness of Metals, 1951): of hardened parts the
+yield strength is that of the core. Fatigue is a matter of the allowable pressure."""
+
+
+def _strain(value: Value, name: str, part: Material) -> list[Limit]:
+    if part.hardness is not None:
+        strength, field = YIELD_BY_HARDNESS * part.hardness, "hardness · 9.81/3 (Tabor 1951)"
+    elif part.yield_strength is not None:
+        strength, field = part.yield_strength, "yield_strength"
+    else:
+        return []
+    source = f"{FIRST_YIELD} of materials.{name}.{field} / youngs_modulus"
+    return [_limit(value, "max", 1.67 * strength / part.youngs_modulus, source)]
 
 
 def _shear(value: Value, disc: Material) -> list[Limit]:
     if disc.hardness is not None:
         source = "materials.disc.hardness · 9.81/6: yield by hardness (Tabor 1951) and Tresca"
-        return [_limit(value, "max", SHEAR_BY_HARDNESS * disc.hardness, source)]
+        return [_limit(value, "max", 0.5 * YIELD_BY_HARDNESS * disc.hardness, source)]
     if disc.yield_strength is not None:
         return [_limit(value, "max", 0.5 * disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")]
     return []

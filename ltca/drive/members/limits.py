@@ -16,6 +16,7 @@ from ltca.drive.units.table import label
 from ltca.errors import did_you_mean, printable, shortened
 
 LIMITED: dict[str, str] = {
+    "carried_torque": "1",
     "undercut_margin": "mm",
     "wall": "mm",
     "pin_hollow_margin": "mm",
@@ -33,6 +34,8 @@ LIMITED: dict[str, str] = {
     "pin_pressure_mid": "MPa",
     "pin_shaft_pressure_mid": "MPa",
     "roller_pressure_mid": "MPa",
+    "roller_pressure_mid_outer": "MPa",
+    "roller_pressure_mid_inner": "MPa",
     "pin_seat_pressure": "MPa",
     "hole_seat_pressure": "MPa",
     "disc_shear": "MPa",

@@ -48,7 +48,7 @@ def _symbol(unit: str) -> str:
 
 def _where(check: Check) -> str:
     value = check.value
-    if value.value is None:
+    if value.value is None or (check.limit is None and value.reason):
         return value.reason
     at = "" if value.crank_angle is None else f"φ_C = {degrees(value.crank_angle):.4g}°"
     return ", ".join(part for part in (value.part, at) if part)
