@@ -115,7 +115,9 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
-    values |= _of_cranks(analysis) | _of_pins(analysis) | _of_friction(analysis)
+    values |= _of_cranks(analysis) | _of_pins(analysis)
+    if analysis.losses is not None:
+        values |= friction_scalars(analysis, rubbing_pressures(analysis))
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
     if analysis.wall_stresses:
         for wall in ("root", "bore", "hole"):
@@ -144,15 +146,13 @@ def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:
     }
 
 
-def _of_friction(analysis: LoadedAnalysis) -> dict[str, float]:
-    """What friction costs; nothing without."""
-    if analysis.losses is None:
-        return {}
+def rubbing_pressures(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """Return the pressures of what rubs by their names in the dataset, shape (discs, positions, pairs), MPa."""
     seats = [seat_values(disc) for disc in analysis.discs]
     pressures = {name: np.stack([values[name] for values in seats]) for name in seats[0]}
     for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
         pressures[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
-    return friction_scalars(analysis, pressures)
+    return pressures
 
 
 def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:

@@ -75,6 +75,7 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
 def _properties(drive: Drive) -> list[tuple[str, str]]:
     import numpy as np
 
+    from ltca.analysis.verdict.geometry import roller_gap
     from ltca.drive.single_discs import single_discs
     from ltca.drive.units.quantities import ARCMIN
     from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -94,8 +95,6 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
     e = float(place.mean_eccentricity[0])
     bearing = drive.crank_bearing
-    pitch = bearing.inner_race_radius + bearing.roller_radius
-    between_rollers = 2.0 * (pitch * np.sin(np.pi / bearing.number_of_rollers) - bearing.roller_radius)
     roller_play = single.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius
     tangential = abs(drive.wheel_moment()) / (len(singles) * drive.reduction_ratio * e)
     of, at, held = ("", "the disc", "disc") if len(singles) == 1 else (" of disc 0", "disc 0", "discs")
@@ -111,8 +110,8 @@ def _properties(drive: Drive) -> list[tuple[str, str]]:
         (f"backlash at the wheel, {held} held", f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)"),
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
-        ("gap between neighbouring rollers", f"{between_rollers:.4f} mm"),
-        *_walls(single, profile.root_radius, of),
+        ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
+        *_walls(single, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
     ]  # fmt: skip
 
@@ -135,26 +134,23 @@ def _materials(drive: Drive) -> list[tuple[str, str]]:
     return [(f"material {name}", ", ".join(those)) for name, those in parts.items()]
 
 
-def _walls(single: Drive, root_radius: float, of: str) -> list[tuple[str, str]]:
+def _walls(single: Drive, of: str) -> list[tuple[str, str]]:
     """What is left between holes, bores and roots of a disc."""
-    import numpy as np
+    from ltca.analysis.verdict.geometry import walls
 
-    rows, shaft, crank = [], single.pin_shaft, single.crank
-    bores, bore = np.array(crank.places), single.bore_radius
-    if shaft is not None:
-        holes = shaft.pin_circle_radius * np.exp(2j * np.pi * np.arange(shaft.number_of_pins) / shaft.number_of_pins)
-        between = float(np.min(np.abs(holes[:, None] - bores))) - single.hole_radius - bore
-        outside = root_radius - shaft.pin_circle_radius - single.hole_radius
+    rows, found = [], dict(walls(single))
+
+    def both(first: str, second: str) -> str:
+        return f"{found[first]:.4f}, {found[second]:.4f} mm"
+
+    if single.pin_shaft is not None:
         rows += [
             (f"hole radius{of} with clearance", f"{single.hole_radius:.4f} mm"),
-            ("wall between hole and root circle, bore", f"{outside:.4f}, {between:.4f} mm"),
+            ("wall between hole and root circle, bore", both("between hole and root circle", "between hole and bore")),
         ]
-    if crank.number > 1:
-        circle = float(np.abs(bores[0]))
-        between = 2.0 * (circle * np.sin(np.pi / crank.number) - bore)
-        rows.append(
-            ("wall between bore and root circle, next bore", f"{root_radius - circle - bore:.4f}, {between:.4f} mm")
-        )
+    if single.crank.number > 1:
+        between = both("between bore and root circle", "between neighbouring bores")
+        rows.append(("wall between bore and root circle, next bore", between))
     return rows
 
 

@@ -129,7 +129,7 @@ def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: flo
     if not isinstance(friction, TurningFriction) or coefficients is None:
         raise ValueError("losses are those of a drive with friction that turns")
     angle, parts = found.crank_angle, disc_responses(found.response)
-    force = np.stack([np.zeros(0) if part.friction is None else np.abs(part.friction) for part in parts])
+    force = np.abs(np.stack([part.friction for part in parts if part.friction is not None]))
     slips = [
         Slip.of_disc(disc.geometry, angle, found.pose[:, model.coordinates.columns(number)], part).by_crank
         for number, (disc, part) in enumerate(zip(model.discs, parts, strict=True))
@@ -179,14 +179,3 @@ def _joint(
         energy=force * slip,
         rolls=rolls,
     )
-
-
-def moves_back(reversed_losses: Losses) -> NDArray[np.bool_]:
-    """Tell where the load at the output turns the input without help, shape (positions,).
-
-    Parameters
-    ----------
-    reversed_losses : Losses
-        Of the drive driven at its output.
-    """
-    return np.asarray(reversed_losses.at_input < 0.0)

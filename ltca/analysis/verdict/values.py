@@ -13,7 +13,7 @@ from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
-from ltca.analysis.summary import refined_value
+from ltca.analysis.summary import refined_value, rubbing_pressures
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress
 from ltca.contact.subsurface import line_contact_shear
@@ -247,11 +247,7 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
     ):
         missing = "there is no speed (load.speed)" if summary[key] is None else ""
         yield Value(quantity=quantity, value=summary[key], reason=missing)
-    seats = [seat_values(disc) for disc in analysis.discs]
-    given = {name: np.stack([one[name] for one in seats]) for name in seats[0]}
-    for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
-        given[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
-    values = friction_values(analysis, given)
+    values = friction_values(analysis, rubbing_pressures(analysis))
     for quantity, part in (
         ("pin_pv", "wheel pin"),
         ("pin_seat_pv", "wheel pin"),

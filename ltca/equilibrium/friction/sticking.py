@@ -136,7 +136,6 @@ class StickingFriction:
             tangential=tangential,
             force=np.einsum("bp,bpj->bj", tangential, slip.by_pose),
             tangent=np.matmul(slip.by_pose.swapaxes(1, 2), change),
-            slip=slip,
         )
 
     def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:

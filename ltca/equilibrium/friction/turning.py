@@ -70,14 +70,11 @@ class Rubbing:
         Generalised force that has to overcome it, N and N·mm.
     tangent : array, shape (positions, coordinates, coordinates)
         Its derivative by the pose, but for what turns with the contacts.
-    slip : Slip
-        Of the contacts.
     """
 
     tangential: FloatArray
     force: FloatArray
     tangent: FloatArray
-    slip: Slip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -181,7 +178,7 @@ class TurningFriction:
         tangent = np.matmul(slip.by_pose.swapaxes(1, 2), sense[..., None] * part.slopes.by_pose)
         push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks)).sum(axis=1)
         force[:, DISC_ROTATION] -= self.motion * self.strength * self.rolling * push
-        return Rubbing(tangential=tangential, force=force, tangent=tangent, slip=slip)
+        return Rubbing(tangential=tangential, force=force, tangent=tangent)
 
     def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
