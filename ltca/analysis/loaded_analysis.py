@@ -235,11 +235,21 @@ class LoadedAnalysis:
 
     def _lost_play(self) -> str | None:
         """Which plays the warmth has taken."""
-        if self.written is None or self.written.temperature is None:
-            return None
-        cold = warm_drive(replace(self.written, temperature=Temperature()))
-        gone = lost_play(cold, self.drive)
-        return f"at {temperature_words(self.written.temperature)} {'; '.join(gone)}" if gone else None
+        return None if self.written is None else seizing_words(self.written)
+
+
+def seizing_words(written: Drive) -> str | None:
+    """Return which plays of a drive its warmth has taken, in words; None where it has taken none.
+
+    Parameters
+    ----------
+    written : Drive
+        As given, with its temperatures.
+    """
+    if written.temperature is None:
+        return None
+    gone = lost_play(warm_drive(replace(written, temperature=Temperature())), warm_drive(written))
+    return f"at {temperature_words(written.temperature)} {'; '.join(gone)}" if gone else None
 
 
 @names_unit_mistakes
@@ -293,7 +303,13 @@ def analyse(
 
     full = balance_what_can_be(at_torque, angle.size)
     pressures = prepared.model.pressures(full.found.response)
-    check_half_widths(drive, full.found.response, pressures, torque)
+    try:
+        check_half_widths(drive, full.found.response, pressures, torque)
+    except DriveError as error:
+        seized = None if written is None else seizing_words(written)
+        if seized is None:
+            raise
+        raise DriveError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
     start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
     start[full.rows] = full.found.pose
     try:

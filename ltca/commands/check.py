@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
+    from ltca.errors import DriveError
 
 SUMMARY = "judge a design: value, limit and safety of every check, what drives it and what would mend it"
 DEFAULT_POSITIONS = 360
@@ -112,7 +113,11 @@ def _judge(
             break
         except DriveError as error:
             # Contacts wider than the bodies are curved: less of the torque tells how far it is from being carried.
-            if "cannot be carried" not in str(error) or part < LEAST_PART:
+            if "cannot be carried" not in str(error):
+                raise
+            if part < LEAST_PART and drive.temperature is not None:
+                return _seized(drive, limits, error)
+            if part < LEAST_PART:
                 raise
             part, refusal = 0.5 * part, refusal or error.problems[0]
     checks = judge_analysis(analysis, summarise(analysis), limits)
@@ -126,9 +131,21 @@ def _judge(
         )
     if arguments.no_advice:
         return checks, {}, told
+    if arguments.compliance != "half-space" and any(check.fails for check in checks):
+        told.append("what drives each value is found on half-spaces, whatever judges it")
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + BESIDE
     return checks, advise(drive, checks, angles, part * whole), told
+
+
+def _seized(drive: Drive, limits: Limits, error: DriveError) -> tuple[list[Check], dict[str, list[Driver]], list[str]]:
+    """A drive that its warmth presses together more than its bodies carry: what is known without an answer."""
+    from ltca.analysis.verdict.assembly import play_at_temperature
+    from ltca.drive.members.judgement import WHOLE, Check, Value, judge
+    from ltca.drive.members.temperatures import warm_drive
+
+    carried = Check(value=Value(quantity="carried_torque", value=0.0), limit=WHOLE)
+    return [carried, *judge(drive, list(play_at_temperature(drive, warm_drive(drive))), limits)], {}, [*error.problems]
 
 
 def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:

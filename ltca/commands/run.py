@@ -194,6 +194,7 @@ def _verdicts(
     analyses: dict[str, LoadedAnalysis], summaries: dict[str, dict[str, float | None]], limits: dict[str, Limits]
 ) -> str:
     """The checks that have a limit, case by case; nothing of cases without an answer everywhere."""
+    from ltca.analysis.verdict.proportions import odd_proportions
     from ltca.analysis.verdict.values import judge_analysis
     from ltca.drive.members.verdict_words import verdict_table
 
@@ -202,6 +203,7 @@ def _verdicts(
         if analysis.is_complete:
             checks = judge_analysis(analysis, summaries[name], limits[name], lives=False)
             told += [f"verdict on {name}" if len(analyses) > 1 else "verdict", verdict_table(checks, limited=True)]
+            told += [f"  note: {note}" for note in odd_proportions(analysis.as_written)]
     return "\n".join(
         [*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"]
     )

@@ -180,6 +180,8 @@ def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> Subs
 
 LINE_SHEAR = 0.3002831
 """Largest shear stress below a Hertz line contact by its peak pressure: the largest of ζ (1 − ζ/√(1 + ζ²))."""
+LINE_SHEAR_DEPTH = 0.7861514
+"""Where it lies, in half-widths."""
 
 LINE_DEPTH = 0.7861514
 """Its depth ζ in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
@@ -210,3 +212,35 @@ def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> Floa
     """
     pressure = np.asarray(peak_pressure, dtype=float)
     return np.where(pressure > 0.0, LINE_SHEAR * pressure + 0.5 * np.asarray(wall_stress, dtype=float), 0.0)
+
+
+def line_contact_shear_at(peak_pressure: ArrayLike, half_width: ArrayLike, depth: ArrayLike) -> FloatArray:
+    """Largest shear stress at a depth below the middle of a line contact and deeper, MPa.
+
+    On the axis it is p0 (ζ − ζ²/√(1 + ζ²)), ζ = depth/half-width, which grows to `LINE_SHEAR` p0 at 0.786 half-widths and falls
+    below (Johnson, Contact Mechanics, 1985, Eq. 4.46 and 4.47).
+
+    Parameters
+    ----------
+    peak_pressure : array_like
+        p0 of the contact, MPa.
+    half_width : array_like
+        Of the contact, mm.
+    depth : array_like
+        Below the surface, mm.
+
+    Returns
+    -------
+    ndarray
+        Zero where nothing presses; `LINE_SHEAR` p0 where the largest shear lies deeper.
+
+    Examples
+    --------
+    >>> line_contact_shear_at(1000.0, 0.2, [0.05, 0.6]).round(1)
+    array([300.3, 153.9])
+    """
+    pressure, width = np.asarray(peak_pressure, dtype=float), np.asarray(half_width, dtype=float)
+    relative = np.asarray(depth, dtype=float) / np.where(width > 0.0, width, 1.0)
+    falling = relative - relative**2 / np.hypot(1.0, relative)
+    below = np.where(relative < LINE_SHEAR_DEPTH, LINE_SHEAR, falling)
+    return np.where((pressure > 0.0) & (width > 0.0), below * pressure, 0.0)

@@ -68,11 +68,11 @@ def lost_play(cold: Drive, warm: Drive) -> list[str]:
     cold, warm : Drive
         At 20 °C and at temperature (`ltca.drive.members.temperatures.warm_drive`).
     """
-    before, after = _overlaps(cold), _overlaps(warm)
+    before, after = drawn_plays(cold), drawn_plays(warm)
     return [
-        f"the play of {what} ({_zero(-before[what]):.4g} mm at 20 °C) is gone: they overlap by {after[what]:.4g} mm"
+        f"the play of {what} ({before[what]:.4g} mm at 20 °C) is gone: they overlap by {-after[what]:.4g} mm"
         for what in before
-        if after[what] > ROUNDING and after[what] > before[what] + ROUNDING
+        if after[what] < 0.0 and after[what] < before[what] - ROUNDING
     ]
 
 
@@ -80,8 +80,19 @@ def _zero(value: float) -> float:
     return 0.0 if abs(value) <= ROUNDING else value
 
 
-def _overlaps(drive: Drive) -> dict[str, float]:
-    """Largest overlap of any disc, by what overlaps; the circles of holes and shaft pins as far apart as they are."""
+def drawn_plays(drive: Drive) -> dict[str, float]:
+    """Return the least play of any disc, by what touches; the circles of holes and shaft pins as far apart as they are.
+
+    Parameters
+    ----------
+    drive : Drive
+        At one temperature.
+
+    Returns
+    -------
+    dict of str to float
+        mm, negative where parts overlap as drawn, without the rounding of sums.
+    """
     found = {"wheel pins and flank": -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
     for single in single_discs(drive):
         drawn, shaft = drawn_interference(single), single.pin_shaft
@@ -91,7 +102,7 @@ def _overlaps(drive: Drive) -> dict[str, float]:
             holes += abs(sum(radial) / len(radial))
         for what, overlap in zip(found, (drawn.pins, drawn.rollers, holes), strict=True):
             found[what] = max(found[what], overlap)
-    return {what: overlap for what, overlap in found.items() if overlap > -inf}
+    return {what: _zero(-overlap) for what, overlap in found.items() if overlap > -inf}
 
 
 def preload_warning(drive: Drive) -> str | None:

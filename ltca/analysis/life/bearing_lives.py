@@ -175,16 +175,30 @@ def bearing_lives(
         )
     entries = []
     for number, entry in enumerate(drive.duty):
-        solved = analysis if entry.torque == analysis.torque else _at_torque(analysis, number)
+        solved = analysis if entry.torque == analysis.torque else at_entry(analysis, number)
         entries.append(entry_loads(solved, abs(drive.crank_turns_per_input) * entry.speed, entry.share))
     return lives_of_entries(drive, entries, dynamic_load_rating)
 
 
-def _at_torque(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
-    """The same positions under an entry of the duty, which is named where they do not balance."""
-    torque = analysis.drive.duty[number].torque
+def at_entry(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
+    """Return the same positions at torque and speed of an entry of the duty.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        Of a drive with duty.
+    number : int
+        Of the entry.
+
+    Raises
+    ------
+    DriveError, ConvergenceError
+        Where the entry has no answer; it is named.
+    """
+    drive, torque = analysis.drive, analysis.drive.duty[number].torque
+    load = replace(drive.load, torque=torque, speed=drive.duty[number].speed)
     try:
-        return analyse(analysis.drive, analysis.full.crank_angle, torque, analysis.engine)
+        return analyse(replace(drive, load=load), analysis.full.crank_angle, torque, analysis.engine)
     except DriveError as error:
         raise DriveError(
             [f"duty.{number}.torque = {torque:g} N·mm: {problem}" for problem in error.problems]

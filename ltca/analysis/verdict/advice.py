@@ -2,14 +2,15 @@
 
 Every input is changed by a little, with what belongs to it, and the drive is solved again, on half-spaces: elasticities
 d ln v/d ln x of all values come from one solution for each input. What a change would have to be follows from a power law,
-so it is about as much as said; nothing is said of changes beyond `FARTHEST`, nor of such that make no drive.
+so it is about as much as said; nothing is said of changes beyond `FARTHEST`, nor of such that make no drive. Of counts it is the
+next whole number; those of wheel pins and teeth are the ratio, and no advice.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import exp, isfinite, log
+from math import ceil, exp, floor, isfinite, log
 from typing import Any
 
 import numpy as np
@@ -66,6 +67,14 @@ class _Input:
     unit: str
     changed: Callable[[float], dict[str, Any]]
     beside: tuple[str, ...] = ()
+    is_count: bool = False
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """Changes to try, by the input: the first that makes a drive is taken."""
+        if self.is_count and self.start:
+            return (1.0 / self.start, -1.0 / self.start)
+        return (STEP, -STEP, 0.5 * STEP, -0.5 * STEP)
 
 
 def advise(
@@ -90,7 +99,7 @@ def advise(
     base = _values(drive, crank_angle, torque)
     found: dict[str, list[Driver]] = {quantity: [] for quantity in wanted}
     for one in _inputs(drive):
-        for step in (STEP, -STEP, 0.5 * STEP, -0.5 * STEP):
+        for step in one.steps:
             try:
                 changed = _values(with_fields(drive, one.changed(1.0 + step)), crank_angle, torque)
             except CycloError:
@@ -118,6 +127,8 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check) -> Drive
     if not isfinite(wanted) or abs(wanted) > log(FARTHEST):
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
     factor = exp(wanted)
+    if one.is_count and one.start:  # the next whole number beyond
+        factor = (ceil(factor * one.start) if factor > 1.0 else floor(factor * one.start)) / one.start
     try:
         with_fields(drive, one.changed(factor))
     except CycloError:  # such a drive cannot be built
@@ -156,6 +167,15 @@ def _inputs(drive: Drive) -> list[_Input]:
         unit = field_kinds()[path].unit
         return _Input(name=path, start=float(start), unit=unit, changed=changed, beside=tuple(beside or ()))
 
+    def count(path: str) -> _Input | None:
+        try:
+            start = read_field(drive, path)
+        except CycloError:
+            return None
+        return _Input(
+            name=path, start=start, unit="1", changed=lambda factor: {path: round(factor * start)}, is_count=True
+        )
+
     def grown(value: float, more: float) -> float:
         return value + more
 
@@ -171,7 +191,10 @@ def _inputs(drive: Drive) -> list[_Input]:
         field("disc.thickness", {"crank_bearing.roller_length": lambda value, more: value * (1.0 + more / thickness)}),
         field("crank_bearing.roller_length") if wide < 0.98 * thickness else None,
         field("crank_bearing.roller_radius", {"crank_bearing.inner_race_radius": shrunk}),
+        field("pin_wheel.pin_circle_radius"),
         field("pin_wheel.pin_radius"),
+        count("crank_bearing.number_of_rollers"),
+        count("pin_shaft.number_of_pins") if shaft else None,
         field("crank.eccentricity", hole),
         field("pin_shaft.pin_radius", hole) if shaft else None,
         field("pin_shaft.pin_circle_radius") if shaft else None,

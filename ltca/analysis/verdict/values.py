@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from math import isfinite
 
 import numpy as np
@@ -14,9 +14,13 @@ from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
 from ltca.analysis.summary import refined_value, rubbing_pressures
+from ltca.analysis.verdict.assembly import assembly_values
+from ltca.analysis.verdict.duty import worst_of_duty
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.pin_stress import pin_stress
-from ltca.contact.subsurface import line_contact_shear
+from ltca.analysis.verdict.places import largest_value, most_of
+from ltca.analysis.verdict.proportions import odd_proportions
+from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_contact_shear_at
 from ltca.drive.members.judgement import Check, Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
@@ -36,10 +40,8 @@ DEMANDED = {
     )
 }  # fmt: skip
 """What theories demand, by quantity."""
-LIVES = ("bearing_life_million_turns", "bearing_life_hours", "static_safety_S0")
+LIVES = ("bearing_life_million_turns", "bearing_life_hours", "bearing_life_modified_hours", "static_safety_S0")
 """What `ltca.analysis.life` tells."""
-DEEPEST_SHEAR = 0.786
-"""Depth of the largest shear stress below a line contact, in half-widths (Johnson, Contact Mechanics, 1985, sect. 4.2)."""
 
 
 def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *, lives: bool = True) -> list[Value]:
@@ -56,7 +58,7 @@ def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *
     """
     found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
     found += _of_lives(analysis) if lives else []
-    return [*found, *_of_theory(analysis, summary), *_of_supports(analysis), *_of_friction(analysis, summary)]
+    return [*found, *_of_theory(analysis, summary), *assembly_values(analysis), *_of_friction(analysis, summary)]
 
 
 def judge_analysis(
@@ -72,7 +74,8 @@ def judge_analysis(
         Of the drive file.
     """
     wanted = lives or any(limit.quantity in LIVES for limit in limits.values())
-    return judge(analysis.drive, find_values(analysis, summary, lives=wanted), limits, DEMANDED)
+    values = worst_of_duty(analysis, find_values(analysis, summary, lives=wanted), find_values)
+    return judge(analysis.drive, values, limits, DEMANDED)
 
 
 STIFF_PINS = 10.0
@@ -80,9 +83,9 @@ STIFF_PINS = 10.0
 
 
 def notes(analysis: LoadedAnalysis) -> list[str]:
-    """Return what to know beside the checks, one sentence each: warnings of the analysis, pins that dwarf the disc."""
+    """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
-    found = list(analysis.warnings)
+    found = [*analysis.warnings, *odd_proportions(analysis.as_written)]
     if shaft is not None and shaft.stiffness is not None:
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:
@@ -142,7 +145,9 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     )
     for quantity, scalar, each, name in kinds:
         if each.shape[1]:
-            yield _largest(analysis, quantity, each, name, None if scalar is None else refined_value(summary, scalar))
+            yield largest_value(
+                analysis, quantity, each, name, None if scalar is None else refined_value(summary, scalar)
+            )
 
 
 def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
@@ -154,7 +159,7 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
             if stress is None:
                 yield Value(quantity=quantity, value=None, reason=f"{name}s are no beams (pin_{pins}.beam)")
             else:
-                yield _largest(analysis, quantity, getattr(stress, kind), name, discs=1)
+                yield largest_value(analysis, quantity, getattr(stress, kind), name, discs=1)
     each = [seat_values(disc) for disc in analysis.discs]
     for quantity, variable, name in (
         ("pin_seat_pressure", "pin_seat_pressure_max", "wheel pin"),
@@ -163,7 +168,7 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
         ("shaft_pin_deflection", "shaft_pin_deflection", "shaft pin"),
     ):
         if variable in each[0]:
-            yield _largest(analysis, quantity, np.concatenate([one[variable] for one in each], axis=1), name)
+            yield largest_value(analysis, quantity, np.concatenate([one[variable] for one in each], axis=1), name)
 
 
 def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
@@ -176,20 +181,30 @@ def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
         parts = [np.asarray(getattr(walls_of, wall)) for walls_of in analysis.wall_stresses]
         each = np.concatenate([part.reshape(part.shape[0], -1) for part in parts], axis=1)
         if np.any(np.isfinite(each)):
-            yield _largest(analysis, f"{wall}_stress", each, {"root": "lobe", "bore": "bore", "hole": "hole"}[wall])
+            yield largest_value(
+                analysis, f"{wall}_stress", each, {"root": "lobe", "bore": "bore", "hole": "hole"}[wall]
+            )
     pressures = analysis.pressures
     shear = [
         (line_contact_shear(kind.mid, np.zeros_like(kind.mid)), name)
         for kind, name in ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
         if kind.mid.size
     ]
-    yield _most(_largest(analysis, "disc_shear", each, f"below {name}") for each, name in shear)
-    kinds = ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
-    yield _most(
-        _largest(analysis, "shear_depth", DEEPEST_SHEAR * kind.half_width, f"below {name}")
-        for kind, name in kinds
+    yield most_of(largest_value(analysis, "disc_shear", each, f"below {name}") for each, name in shear)
+    kinds = [
+        (kind, f"below {name}")
+        for kind, name in ((pressures.pins, "wheel pin"), (pressures.outer, "roller"), (pressures.holes, "shaft pin"))
         if kind.half_width.size
+    ]
+    yield most_of(
+        largest_value(analysis, "shear_depth", LINE_SHEAR_DEPTH * kind.half_width, name) for kind, name in kinds
     )
+    case = analysis.drive.materials.disc.hardness_depth
+    if case is not None:
+        yield most_of(
+            largest_value(analysis, "core_shear", line_contact_shear_at(kind.mid, kind.half_width, case), name)
+            for kind, name in kinds
+        )
 
 
 def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
@@ -200,12 +215,21 @@ def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
 
     if not covers_whole_turns(analysis.full.crank_angle):
         told = "positions cover no whole turns"
-        yield from (Value(quantity=name, value=None, reason=told) for name in LIVES)
+        named = [name for name in LIVES if "modified" not in name or analysis.drive.lubricant is not None]
+        yield from (Value(quantity=name, value=None, reason=told) for name in named)
         return
     lives = bearing_lives(analysis)
     told = ("; ".join(lives.not_rated)) if lives.not_rated else "there is no speed (load.speed)"
     for name, value in life_summary(lives).items():
         yield Value(quantity=name, value=value, reason="" if value is not None else told)
+    if analysis.drive.lubricant is not None:
+        modified = [one.modified_hours for one in lives.bearings if one.modified_hours is not None]
+        known = not lives.not_rated and len(modified) == len(lives.bearings)
+        yield Value(
+            quantity="bearing_life_modified_hours",
+            value=min(modified) if known else None,
+            reason="" if known else "; ".join(lives.not_rated) or "below κ = 0.1 ISO 281 tells no a_ISO",
+        )
 
 
 def _of_theory(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
@@ -219,19 +243,10 @@ def _of_theory(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) ->
             "roller",
         ),
     )
-    yield _most(_largest(analysis, "half_width_ratio", each, name) for each, name in ratios)
+    yield most_of(largest_value(analysis, "half_width_ratio", each, name) for each, name in ratios)
     softer = min(drive.materials.disc.youngs_modulus, drive.flank_pin.youngs_modulus)
-    yield _largest(analysis, "contact_strain", pressures.pins.mid / softer, "wheel pin")
+    yield largest_value(analysis, "contact_strain", pressures.pins.mid / softer, "wheel pin")
     yield Value(quantity="distinct_mesh_phases", value=summary["distinct_mesh_phases"])
-
-
-def _of_supports(analysis: LoadedAnalysis) -> Iterator[Value]:
-    moved, coordinates = np.abs(analysis.crank_deflections), analysis.model.coordinates
-    if moved.shape[2]:
-        yield _largest(analysis, "crank_deflection", moved.reshape(moved.shape[0], -1), "crank")
-    if coordinates.wheel:
-        place = analysis.full.pose[:, coordinates.wheel_place]
-        yield _largest(analysis, "wheel_deflection", np.hypot(place[:, :1], place[:, 1:]), "", discs=1)
 
 
 def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
@@ -258,38 +273,6 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
             continue
         each = np.concatenate(list(values[quantity]), axis=1)
         if np.any(np.isfinite(each)):
-            yield _largest(analysis, quantity, each, part)
+            yield largest_value(analysis, quantity, each, part)
         else:
             yield Value(quantity=quantity, value=None, reason="there is no speed (load.speed)")
-
-
-def _most(values: Iterable[Value]) -> Value:
-    """The largest of one quantity at several kinds of contacts."""
-    return max(values, key=lambda one: -1.0 if one.value is None else one.value)
-
-
-def _largest(
-    analysis: LoadedAnalysis,
-    quantity: str,
-    values: FloatArray,
-    name: str,
-    refined: float | None = None,
-    discs: int | None = None,
-) -> Value:
-    """Largest of values by position and pair; the refined one where there is one, at the place of the sampled."""
-    if not np.any(np.isfinite(values)):
-        return Value(quantity=quantity, value=None, reason="the engine cannot say it")
-    position, pair = np.unravel_index(int(np.nanargmax(values)), values.shape)
-    count = len(analysis.model.discs) if discs is None else discs
-    disc, number = divmod(int(pair), values.shape[1] // count)
-    alone = values.shape[1] == count
-    part = name if alone else f"{name} {number}"
-    if count > 1:
-        part = f"{part} of disc {disc}"
-    largest = float(values[position, pair])
-    return Value(
-        quantity=quantity,
-        value=largest if refined is None else max(refined, largest),
-        part=part,
-        crank_angle=float(analysis.full.crank_angle[position]),
-    )

@@ -41,6 +41,7 @@ TITLES = {
     "hole_seat_pressure": "pressure in shaft-pin sleeves",
     "disc_shear": "shear below the surface of the disc",
     "shear_depth": "depth of that shear",
+    "core_shear": "shear in the core of the disc, below its case",
     "wheel_pin_bending_stress": "bending of wheel pins",
     "wheel_pin_shear_stress": "shear of wheel pins",
     "shaft_pin_bending_stress": "bending of shaft pins",
@@ -49,6 +50,7 @@ TITLES = {
     "bore_stress": "stress along bores",
     "hole_stress": "stress along holes (ligaments)",
     "bearing_life_hours": "life of the crank bearings in hours",
+    "bearing_life_modified_hours": "life of the crank bearings by a_ISO in hours",
     "bearing_life_million_turns": "life of the crank bearings, million turns",
     "static_safety_S0": "static safety S0 of the crank bearings",
     "mean_efficiency": "efficiency, mean",
@@ -64,8 +66,13 @@ TITLES = {
     "distinct_mesh_phases": "different places in a mesh period",
     "pin_deflection": "deflection of wheel pins",
     "shaft_pin_deflection": "deflection of shaft pins",
+    "play_at_temperature": "least play at temperature",
+    "bearing_deflection": "deflection of the crank bearings",
+    "bearing_deflection_by_clearance": "deflection of crank bearings by their radial clearance",
     "crank_deflection": "deflection of cranks",
+    "crank_deflection_by_clearance": "deflection of cranks by the bearings' radial clearance",
     "wheel_deflection": "deflection of the wheel on its bearing",
+    "wheel_deflection_by_clearance": "deflection of the wheel by the crank bearings' radial clearance",
 }
 """What each quantity is called in tables."""
 
@@ -177,6 +184,8 @@ def judge(
             *(limit for limit in allowed if limit.sense not in {one.sense for one in own}),
             *_of_shape(value),
         ]
+        if value.quantity == "play_at_temperature" and not own:
+            found.append(_limit(value, "min", 0.0, SEIZED))
         if demanded is not None and value.quantity in demanded:
             found.append(demanded[value.quantity])
         judged = value if found or not lacking else replace(value, reason=lacking)
@@ -207,6 +216,9 @@ def _of_shape(value: Value) -> list[Limit]:
     if value.quantity in ("undercut_margin", "wall", "pin_hollow_margin", "roller_gap"):
         return [_limit(value, "min", 0.0, "geometry: less is no part")]
     return []
+
+
+SEIZED = "geometry: parts that had play at 20 °C overlap at [temperature]"
 
 
 def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
@@ -246,6 +258,8 @@ def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
         return _strain(value, name, part), f"materials.{name} has neither hardness nor yield_strength"
     if quantity == "shear_depth" and parts.disc.hardness_depth is not None:
         return [_limit(value, "max", parts.disc.hardness_depth, "materials.disc.hardness_depth")], ""
+    if quantity == "core_shear" and parts.disc.yield_strength is not None:
+        return [_limit(value, "max", 0.5 * parts.disc.yield_strength, "materials.disc.yield_strength/2 (Tresca)")], ""
     if quantity == "disc_shear":
         return _shear(value, parts.disc), "materials.disc has neither hardness nor yield_strength"
     return [], ""

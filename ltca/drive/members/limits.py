@@ -40,6 +40,7 @@ LIMITED: dict[str, str] = {
     "hole_seat_pressure": "MPa",
     "disc_shear": "MPa",
     "shear_depth": "mm",
+    "core_shear": "MPa",
     "wheel_pin_bending_stress": "MPa",
     "wheel_pin_shear_stress": "MPa",
     "shaft_pin_bending_stress": "MPa",
@@ -48,6 +49,7 @@ LIMITED: dict[str, str] = {
     "bore_stress": "MPa",
     "hole_stress": "MPa",
     "bearing_life_hours": "h",
+    "bearing_life_modified_hours": "h",
     "bearing_life_million_turns": "1",
     "static_safety_S0": "1",
     "mean_efficiency": "1",
@@ -63,13 +65,22 @@ LIMITED: dict[str, str] = {
     "distinct_mesh_phases": "1",
     "pin_deflection": "mm",
     "shaft_pin_deflection": "mm",
+    "play_at_temperature": "mm",
+    "bearing_deflection": "mm",
+    "bearing_deflection_by_clearance": "1",
     "crank_deflection": "mm",
+    "crank_deflection_by_clearance": "1",
     "wheel_deflection": "mm",
+    "wheel_deflection_by_clearance": "1",
 }
 """Quantities that may be limited, named as in the summary without ``max_`` and unit, and their units there."""
 SUFFIXES = {"MPa": "MPa", "N": "N", "mm": "mm", "arcmin": "arcmin", "arcsec": "arcsec", "W": "W", "MPa_m_s": "MPa m/s"}
 """Units as they end the keys of the summary."""
 SENSES = ("max", "min")
+MARGINS = ("undercut_margin", "wall", "pin_hollow_margin", "roller_gap", "play_at_temperature", "mean_efficiency_back")
+"""Quantities that may be less than nothing; limits of others are at least 0."""
+PARTS_OF_ONE = ("carried_torque", "mean_efficiency", "mean_efficiency_back", "moves_back")
+"""Quantities that are at most 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +147,7 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
                 f"{path}: is no limit; limits are max_… or min_… of a quantity{did_you_mean(str(key), known)}"
             )
             continue
-        value, source = entry, f"[{where}]"
+        value, source = entry, f"[{where}], no source given"
         if isinstance(entry, Mapping):
             if not {"value"} <= set(entry) <= {"value", "source"} or not isinstance(entry.get("source", ""), str):
                 problems.append(f"{path}: must be a number, a text with a unit, or a table of value and source")
@@ -144,11 +155,11 @@ def parse_limits(table: Any, problems: list[str], where: str = "limits") -> Limi
             value, source = entry["value"], entry.get("source") or source
         unit = LIMITED[name]
         try:
-            number = _quantity(unit)(value)
+            number = _quantity(name)(value)
         except PydanticCustomError as error:
-            problems.append(
-                f"{path} = {shortened(value)}: {error.message()}{f' ({label(unit)})' if unit != '1' else ''}"
-            )
+            told = error.message()
+            beside = f" ({label(unit)})" if unit != "1" and label(unit) not in told else ""
+            problems.append(f"{path} = {shortened(value)}: {told}{beside}")
             continue
         limit = Limit(quantity=name, sense=sense, value=number, source=source)
         if limit.key in found:
@@ -171,6 +182,12 @@ def _without_unit(name: str) -> str:
     return name
 
 
-def _quantity(unit: str) -> QuantityCheck:
-    bounds = (("greater than", None), ("at least", None), ("less than", None), ("at most", None))
+def _quantity(name: str) -> QuantityCheck:
+    unit = LIMITED[name]
+    bounds = (
+        ("greater than", None),
+        ("at least", None if name in MARGINS else 0.0),
+        ("less than", None),
+        ("at most", 1.0 if name in PARTS_OF_ONE else None),
+    )
     return QuantityCheck(unit="dimensionless" if unit == "1" else unit, bounds=bounds)

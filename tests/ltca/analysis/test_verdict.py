@@ -353,7 +353,7 @@ def test_check_ends_with_1_where_something_fails(tmp_path, capsys):
     assert row["verdict"] == "fail"
     assert row["safety"] == pytest.approx(1300.0 / row["value"])
     assert row["part"].startswith("wheel pin")
-    assert row["source"] == "[limits]"
+    assert row["source"] == "[limits], no source given"
     assert "FAIL" in capsys.readouterr().out
 
 

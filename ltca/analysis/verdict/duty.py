@@ -1,0 +1,65 @@
+"""Entries of a duty that ask more than the load: the worst of their values beside those of the load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.summary import summarise
+from ltca.drive.members.judgement import Value
+
+BY_LOAD = frozenset(
+    (
+        "pin_load", "roller_load", "pin_shaft_load", "bearing_load", "pin_pressure_mid", "pin_shaft_pressure_mid",
+        "roller_pressure_mid_outer", "roller_pressure_mid_inner", "pin_seat_pressure", "hole_seat_pressure", "disc_shear",
+        "core_shear", "shear_depth", "wheel_pin_bending_stress", "wheel_pin_shear_stress", "shaft_pin_bending_stress",
+        "shaft_pin_shear_stress", "root_stress", "bore_stress", "hole_stress", "power_loss", "pin_pv", "pin_shaft_pv",
+        "pin_seat_pv", "hole_seat_pv", "half_width_ratio", "contact_strain", "pin_deflection", "shaft_pin_deflection",
+        "bearing_deflection", "crank_deflection", "wheel_deflection", "bearing_deflection_by_clearance",
+        "crank_deflection_by_clearance", "wheel_deflection_by_clearance",
+    )
+)  # fmt: skip
+"""Quantities that torque and speed raise, and of which the largest of all entries counts."""
+
+FindValues = Callable[..., list[Value]]
+
+
+def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values: FindValues) -> list[Value]:
+    """Return the values of a case, where an entry of its duty has a larger one that, with the entry as its part.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        The case at its load.
+    values : sequence of Value
+        Of it.
+    find_values : callable
+        ``find_values(analysis, summary, lives=False)`` returns values alike for an entry.
+
+    Raises
+    ------
+    DriveError, ConvergenceError
+        When an entry has no answer; it is named.
+    """
+    found = list(values)
+    for number, entry in _heavier(analysis):
+        others = {one.quantity: one for one in find_values(entry, summarise(entry), lives=False)}
+        for at, value in enumerate(found):
+            other = others.get(value.quantity, value) if value.quantity in BY_LOAD else value
+            if other.value is not None and (value.value is None or other.value > value.value):
+                found[at] = replace(other, part=f"{other.part} in duty.{number}".strip())
+    return found
+
+
+def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis]]:
+    """Entries that are heavier or quicker than the load, solved at the same positions by the same engine."""
+    from ltca.analysis.life.bearing_lives import at_entry  # which runs need only where there is a duty
+
+    drive, speed = analysis.drive, analysis.drive.load.speed
+    for number, entry in enumerate(drive.duty):
+        if entry.torque <= analysis.torque and (speed is not None and entry.speed <= speed):
+            continue
+        if drive.friction is None and entry.torque <= analysis.torque:
+            continue  # nothing there goes with speed
+        yield number, at_entry(analysis, number)

@@ -1,0 +1,67 @@
+"""Where a quantity is largest: part and crank angle of a value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.drive.members.judgement import Value
+
+FloatArray = NDArray[np.float64]
+
+
+def most_of(values: Iterable[Value]) -> Value:
+    """Return the largest of one quantity at several kinds of contacts.
+
+    Parameters
+    ----------
+    values : iterable of Value
+        At least one.
+    """
+    return max(values, key=lambda one: -1.0 if one.value is None else one.value)
+
+
+def largest_value(
+    analysis: LoadedAnalysis,
+    quantity: str,
+    values: FloatArray,
+    name: str,
+    refined: float | None = None,
+    discs: int | None = None,
+) -> Value:
+    """Return the largest of values by position and pair; the refined one where there is one, at the place of the sampled.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        Whose positions these are.
+    quantity : str
+        One of `ltca.drive.members.limits.LIMITED`.
+    values : array, shape (positions, pairs)
+        Those of disc 0 first.
+    name : str
+        What a pair is called.
+    refined : float, optional
+        Largest between the positions.
+    discs : int, optional
+        How many discs' pairs there are; all by default.
+    """
+    if not np.any(np.isfinite(values)):
+        return Value(quantity=quantity, value=None, reason="the engine cannot say it")
+    position, pair = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    count = len(analysis.model.discs) if discs is None else discs
+    disc, number = divmod(int(pair), values.shape[1] // count)
+    alone = values.shape[1] == count
+    part = name if alone else f"{name} {number}"
+    if count > 1:
+        part = f"{part} of disc {disc}"
+    largest = float(values[position, pair])
+    return Value(
+        quantity=quantity,
+        value=largest if refined is None else max(refined, largest),
+        part=part,
+        crank_angle=float(analysis.full.crank_angle[position]),
+    )

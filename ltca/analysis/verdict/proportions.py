@@ -1,0 +1,99 @@
+"""What looks odd in the sizes of a drive: proportions beside those of all published drives, as of diameters for radii.
+
+Nothing is judged by it: a note names the proportion, the span of published drives and the radius that may be a diameter. Holes
+that do not fit pin and eccentricity are refused anyway, walls that are gone fail.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from math import pi, sin
+
+from ltca.drive.parts import Drive
+
+ALIKE = 1.6
+"""Numbers of pins by which drives are compared differ by less than this factor: pins stand closer the more there are."""
+BESIDE = 0.1
+"""Part by which a proportion has to be beside the span before it is told."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Published:
+    source: str
+    number_of_pins: int
+    pin_circle_radius: float
+    pin_radius: float
+    eccentricity: float
+
+
+def odd_proportions(drive: Drive) -> list[str]:
+    """Return what looks odd in the sizes of a drive, one sentence each; empty where nothing does.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+
+    Examples
+    --------
+    >>> from ltca.reading.changes import with_fields
+    >>> from ltca.reading.drive_file import load_drive
+    >>> paper = load_drive("paper").cases["CS-1"]
+    >>> odd_proportions(paper)
+    []
+    >>> print(odd_proportions(with_fields(paper, {"pin_wheel.pin_radius": 13.0}, check=False))[0].split(":")[0])
+    pin_wheel.pin_radius = 13 mm looks odd
+    """
+    return list(_odd(drive))
+
+
+def _odd(drive: Drive) -> Iterator[str]:
+    wheel = drive.pin_wheel
+    own = _Published(
+        source="",
+        number_of_pins=wheel.number_of_pins,
+        pin_circle_radius=wheel.pin_circle_radius,
+        pin_radius=wheel.pin_radius,
+        eccentricity=drive.crank.eccentricity,
+    )
+    shortening = [_shortening(one) for one in _published()]
+    if told := _beside(_shortening(own), shortening):
+        yield (
+            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm looks odd: eccentricity by rolling circle, "
+            f"e z_P/R_C, is {told[0]}, in published drives {told[1]}; with {0.5 * wheel.pin_circle_radius:g} mm it were "
+            f"{told[2]}: is it a diameter?"
+        )
+    alike = [one for one in _published() if 1.0 / ALIKE < one.number_of_pins / wheel.number_of_pins < ALIKE]
+    spacing = [_spacing(one) for one in alike]
+    if spacing and (told := _beside(_spacing(own), spacing)):
+        yield (
+            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm looks odd: half the distance of neighbouring pins is {told[0]} "
+            f"of it, in published drives with about as many pins {told[1]}; with {0.5 * wheel.pin_radius:g} mm it were "
+            f"{told[2]}: is it a diameter?"
+        )
+
+
+def _beside(value: float, published: list[float]) -> tuple[str, str, str] | None:
+    """The value, the span and what it were with a radius halved, where it is beside the span and would be in it."""
+    low, high = min(published), max(published)
+    if value >= (1.0 - BESIDE) * low or not low <= 2.0 * value <= high:
+        return None
+    return f"{value:.3g}", f"{low:.3g} … {high:.3g}", f"{2.0 * value:.3g}"
+
+
+def _shortening(drive: _Published) -> float:
+    return drive.eccentricity * drive.number_of_pins / drive.pin_circle_radius
+
+
+def _spacing(drive: _Published) -> float:
+    return drive.pin_circle_radius * sin(pi / drive.number_of_pins) / drive.pin_radius
+
+
+@cache
+def _published() -> tuple[_Published, ...]:
+    text = (resources.files("ltca.analysis.verdict") / "published_drives.toml").read_text(encoding="utf-8")
+    return tuple(_Published(**one) for one in tomllib.loads(text)["drive"])
