@@ -237,7 +237,7 @@ def line_contact_shear_at(peak_pressure: ArrayLike, half_width: ArrayLike, depth
     Examples
     --------
     >>> line_contact_shear_at(1000.0, 0.2, [0.05, 0.6]).round(1)
-    array([300.3, 153.9])
+    array([300.3, 154. ])
     """
     pressure, width = np.asarray(peak_pressure, dtype=float), np.asarray(half_width, dtype=float)
     relative = np.asarray(depth, dtype=float) / np.where(width > 0.0, width, 1.0)

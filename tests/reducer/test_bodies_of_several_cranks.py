@@ -266,6 +266,7 @@ def test_every_disc_is_in_equilibrium_by_hand(small, derived):
     np.testing.assert_allclose(wheel, -found.full.wheel_moment, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_numbering_of_the_cranks_is_a_matter_of_names(small, closed_forms):
     """The first crank a pitch further on: the same drive with other numbers, bores and rollers with theirs."""
     drive = with_fields(kind(small, "cranks"), {"crank.of.1.eccentricity_error": 0.002, "crank.of.5.phase_error": 1e-3})

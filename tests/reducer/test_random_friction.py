@@ -114,6 +114,7 @@ def test_a_disc_that_friction_does_not_let_rest_carries_nothing():
     assert first < 1e-3 * second
 
 
+@pytest.mark.slow
 def test_a_drive_that_jams_says_so():
     """At μ = 0.5 this one's loads grow by the inverse of what friction leaves of their moment, without end at 80 % of it."""
     drive, angle = friction_drive(2)

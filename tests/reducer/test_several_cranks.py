@@ -64,6 +64,7 @@ SLOWLY = [pytest.param(name, marks=pytest.mark.slow) for name in ("wheel", "carr
 KINDS = ["rigid", "cranks", "central crank yields", "holes", *SLOWLY]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_every_kind_is_balanced_by_energies_alone(rv, name):
     drive = kind(rv, name)

@@ -178,6 +178,7 @@ def test_stresses_of_bores_name_the_crank(drive):
     assert {row.contact for row in rows} >= {"crank 0 roller 1 bore", "crank 1 roller 2 bore", "root 0"}
 
 
+@pytest.mark.slow
 def test_a_model_knows_the_stress_of_every_bore(drive):
     """The largest of them is what the LTCA reports of all bores together."""
     plain, stations = without_coupling(drive), 12
@@ -282,6 +283,7 @@ def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(crank_study, tmp
     assert "bearing of crank 2" in page
 
 
+@pytest.mark.slow
 def test_power_balance_of_several_cranks(drive):
     (row,) = _power(drive)
     assert row.quantity.endswith("sum of all cranks")

@@ -102,6 +102,7 @@ def test_circles_leave_their_tangent():
     np.testing.assert_allclose(circle_departure(x[:3], -5.0), [0.0, np.sqrt(24.0) - 5.0, -1.0])
 
 
+@pytest.mark.slow
 def test_fields_survive_their_file(fields, tmp_path):
     path = tmp_path / "pressure.nc"
     fields.to_netcdf(path, engine="h5netcdf")

@@ -70,6 +70,7 @@ def stiffer(drive, factor):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "drive", [with_fields(PAPER, DEVIATIONS), shipped("rv"), shipped("sleeved")], ids=["paper", "rv", "sleeved"]
 )

@@ -131,6 +131,7 @@ def test_compliance_is_passed_on(paper_cases):
     assert np.all(walls.stiffness < plain.stiffness)
 
 
+@pytest.mark.slow
 def test_backlash_is_the_play_of_rigid_parts(paper_cases):
     """A linear programme over the gaps knows nothing of loads; 1e-4 of the torque winds the drive up by 3e-7 rad."""
     drive = paper_cases["CS-6"]

@@ -63,6 +63,7 @@ def test_every_quantity_has_a_title():
     assert set(TITLES) == set(LIMITED)
 
 
+@pytest.mark.slow
 def test_a_value_without_a_limit_is_said_to_have_none(paper, checked):
     (check,) = named(checks_of(paper, checked, {}), "pin_pressure_mid")
     assert check.verdict == "no limit"
@@ -102,6 +103,7 @@ def test_a_body_without_an_allowable_is_not_judged_by_the_other(paper, checked):
     assert check.verdict == "fail"
 
 
+@pytest.mark.slow
 def test_strain_is_judged_by_the_body_it_is_of(paper, checked):
     """The strain of a soft disc was held against the yield strength of the pin, that of a hardened one against its core's."""
     largest = float(np.max(checked[0].pressures.pins.mid))
@@ -163,6 +165,7 @@ def test_pins_that_dwarf_the_disc_are_pointed_out(paper):
     assert not any("dwarfs" in note for note in notes(analyse(paper, ANGLES)))
 
 
+@pytest.mark.slow
 def test_a_small_drive_with_a_large_torque_fails_with_sizes(tmp_path, capsys):
     """A drive of 30 mm at 377 N·m was refused without a word on sizes."""
     found = load_drive("paper").cases["CS-1"]
@@ -262,6 +265,7 @@ def test_margins_of_the_shape(paper):
     assert dict(walls(paper))["between hole and bore"] == pytest.approx(between, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pins", ["wheel", "shaft"])
 def test_pins_bend_under_the_forces_of_all_discs(pins):
     """Moments of single pins by quadrature of the load about every section: two supports by statics, a free tip from the tip."""

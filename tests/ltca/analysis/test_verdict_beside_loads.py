@@ -42,6 +42,7 @@ def warm(housing, disc, shaft):
     return {"temperature.housing": housing, "temperature.disc": disc, "temperature.shaft": shaft}
 
 
+@pytest.mark.slow
 def test_play_that_warmth_takes_from_the_holes_fails():
     """A note alone said so. Radius of pin and eccentricity by hand: the carrier stays, the disc grows about its centre."""
     drive = with_fields(PAPER, warm(20.0, 60.0, 20.0))
@@ -62,6 +63,7 @@ def test_a_limit_of_the_file_on_that_play_stands_before():
     assert "play_at_temperature" not in checks_of(PAPER)
 
 
+@pytest.mark.slow
 def test_a_drive_too_hot_for_any_torque_is_judged_and_named(tmp_path, capsys):
     """It was refused by disc.equidistant_offset = 0.178808 mm, which nobody had written."""
     path = tmp_path / "hot.toml"
@@ -93,6 +95,7 @@ def test_deflection_of_a_bearing_is_what_its_rollers_are_pressed():
     assert "no clearance" in tight.value.reason
 
 
+@pytest.mark.slow
 def test_deflections_of_supports_stand_against_the_clearance_too():
     drive = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
     drive = with_fields(drive, {"clearance.bearing": 0.02})
@@ -101,6 +104,7 @@ def test_deflections_of_supports_stand_against_the_clearance_too():
     assert found["crank_deflection_by_clearance"].value.value == pytest.approx(crank.value / 0.01, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_heavier_entry_of_the_duty_is_what_counts():
     """Pressures of entries were judged by nobody. A drive loaded with that torque alone reaches the same."""
     duty = (Duty(torque=1.5 * PAPER.load.torque, speed=100.0, share=0.2), Duty(torque=1e4, speed=900.0, share=0.8))
@@ -131,6 +135,7 @@ def test_life_by_a_iso_is_judged():
     assert check.value.value != found["bearing_life_hours"].value.value
 
 
+@pytest.mark.slow
 def test_shear_below_the_case_is_judged_by_the_core():
     """Johnson's closed form; where the case is thinner than the depth of the largest shear, that one counts."""
     drive = with_fields(PAPER, {"materials.disc": "16MnCr5", "materials.disc.hardness_depth": 0.05})

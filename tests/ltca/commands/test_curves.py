@@ -264,6 +264,7 @@ def test_speed_of_a_drive_whose_housing_is_held(monkeypatch, tmp_path):
     assert kept["hours"] == pytest.approx(kept["million_turns"] * 1e6 / (60.0 * 1400.0), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_figures_of_several_cases_have_their_names(monkeypatch, tmp_path):
     stems = []
     monkeypatch.setattr(curve_figures, "_save", lambda figure, stem: stems.append(stem.name) or stem)

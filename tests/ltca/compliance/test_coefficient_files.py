@@ -193,6 +193,7 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
     assert found["large"].fingerprint == cases["large"].shape_fingerprint()
 
 
+@pytest.mark.slow
 def test_equal_discs_are_derived_once(paper_cases, derived):
     """Also where one of them has a runout: that is no matter of its body."""
     drive = with_fields(paper_cases["CS-1"], {"disc.number_of_discs": 2})

@@ -98,6 +98,7 @@ def test_a_returned_response_never_changes(paper_cases, balanced):
             assert not any(array.flags.writeable for array in arrays_of(pieces))
 
 
+@pytest.mark.slow
 def test_equilibrium_does_not_depend_on_its_start(paper_cases, balanced):
     """From first contact as from the tables: the same pose to the tolerance of the balance."""
     drive = paper_cases["CS-4"]

@@ -43,6 +43,7 @@ def test_a_light_torque_beyond_reason(vary):
         analyse(vary(load={"light_torque": 1e9}), ANGLE)
 
 
+@pytest.mark.slow
 def test_a_stiffness_in_another_unit(vary):
     with pytest.raises(DriveError, match=r"pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
         analyse(vary(pin_shaft={"stiffness": 1.0}), ANGLE)

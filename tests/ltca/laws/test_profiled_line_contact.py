@@ -127,6 +127,7 @@ def test_radii_between_the_nodes():
             law.load_and_stiffness(4e-3, radius)
 
 
+@pytest.mark.slow
 def test_radii_outside_the_table_are_refused():
     law = law_at(LOGARITHMIC)
     for radius in (1.9, 2.1):

@@ -21,6 +21,7 @@ from ltca.laws.shipped_tables import tabulate_line_contact
 ROOT = Path(__file__).parents[3]
 
 
+@pytest.mark.slow
 def test_line_contact_remade():
     """The same bits on the processor that made them, with one thread."""
     shipped, made = line_contact_table(), tabulate_line_contact()
@@ -60,6 +61,7 @@ def test_the_wheel_has_the_tables():
         assert any(fnmatch(table.relative_to(ROOT / "ltca").as_posix(), pattern) for pattern in data["ltca"])
 
 
+@pytest.mark.slow
 def test_an_analysis_on_tables_needs_no_scipy():
     """A second of a cold start was spent on its import and on tables that are data."""
     words = (

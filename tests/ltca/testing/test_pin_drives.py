@@ -31,6 +31,7 @@ def test_drives_of_all_pins_quick():
     check_seeds(0, 3)
 
 
+@pytest.mark.slow
 def test_shared_pins_settle_to_round_off_and_no_further(monkeypatch):
     """Of pins on a circle of 150 mm displacements were wanted to less than round-off: eight evaluations instead of four."""
     counts = []

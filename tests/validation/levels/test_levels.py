@@ -8,8 +8,9 @@ import validation.levels.closed_forms as closed_forms
 import validation.levels.printed_results as printed_results
 from validation.rows import failed_rows
 
+pytestmark = pytest.mark.slow
 
-@pytest.mark.slow
+
 def test_closed_forms(paper_cases):
     rows = closed_forms.check_closed_forms(paper_cases["CS-1"])
     assert len(rows) >= 12
@@ -30,7 +31,6 @@ def printed_rows():
     return printed_results.compare_printed_results()
 
 
-@pytest.mark.slow
 def test_printed_results(printed_rows):
     rows = printed_rows
     assert not failed_rows(rows)
@@ -94,7 +94,6 @@ def test_printed_figures_and_their_ranges_stay_what_they_are(printed_rows):
         assert (row.value > 0.0, row.difference) == (True, 0.0)
 
 
-@pytest.mark.slow
 def test_a_wrong_drive_fails_the_printed_results(monkeypatch, paper_cases):
     """With the bearing clearance read as radial (twice as much) the printed changes are not met."""
     from dataclasses import replace

@@ -81,6 +81,7 @@ def test_a_broken_solution_of_ours_fails_against_the_stored_answers(alone, monke
     assert [row.quantity for row in failed_rows(rows_of())] == ["wheel angle"]
 
 
+@pytest.mark.slow
 def test_a_broken_law_of_ours_fails_against_the_stored_answers(alone, monkeypatch):
     only(monkeypatch, "tamaas")
     assert not failed_rows(rows_of())

@@ -119,6 +119,7 @@ def test_every_bearing_is_rated_and_the_shortest_named(rv, rvs):
     assert max(lives) > 1.2 * min(lives)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("even")
 def test_a_bearing_of_several_cranks_against_a_count_of_what_passes(rv):
     """The rollers that pass at 45 places of either race over 20 turns, one by one; then the standard's own sum.
@@ -199,6 +200,7 @@ def test_a_duty_of_the_load_itself_is_the_load(paper_cases, papers):
         assert found.static_safety == pytest.approx(plain.static_safety, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("even")
 def test_every_entry_is_solved_at_its_torque(paper_cases):
     """Against analyses of their own; what the drive's load is has no say."""

@@ -44,6 +44,7 @@ def test_a_crown_of_a_nanometre_is_a_straight_roller():
     assert falls[0] < 2.0 * falls[2]
 
 
+@pytest.mark.slow
 def test_shares_are_those_of_the_load():
     for of in (laminae(), laminae(logarithmic_factor=1.0), laminae(end_relief_length=2.0, end_relief_depth=0.005)):
         loads = np.array([10.0, 200.0, 2999.0, 3000.0])
