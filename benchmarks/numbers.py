@@ -1,0 +1,108 @@
+"""What a release moves: summaries of all shipped drives by two versions of the code, side by side.
+
+    python benchmarks/numbers.py v0.1.0            # against the tree as it is
+    python benchmarks/numbers.py v0.1.0 v0.2.0
+
+Each version is installed apart, with what it depends on (``pip install --target``), and runs the drives that it ships and the other one reads; a line
+for every scalar of ``summary.json`` that moved by more than ``--beyond`` (a part of itself), as Markdown.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+PROGRAM = (
+    "import sys; from importlib.metadata import entry_points; "
+    "(script,) = entry_points(group='console_scripts', name='cyclo'); sys.exit(script.load()())"
+)
+
+
+def install(revision: str | None, folder: Path) -> Path:
+    """Install a revision, or the tree as it is, into a folder of its own."""
+    tree = folder / "tree"
+    if revision is None:
+        tree = ROOT
+    else:
+        tree.mkdir(parents=True)
+        archive = subprocess.run(["git", "archive", revision], cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
+        subprocess.run(["tar", "-x", "-C", str(tree)], input=archive, check=True)
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--target", str(folder / "site"), str(tree)]
+    subprocess.run(command, check=True)
+    return folder / "site"
+
+
+def summaries(site: Path, drive: Path, positions: int, folder: Path) -> dict[str, dict[str, Any]] | None:
+    """Return the summary of every case of a drive file; None where this version cannot read it."""
+    environment = os.environ | {"PYTHONPATH": str(site), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    words = ["run", str(drive), "--no-figures", "--positions", str(positions), "--out", str(folder)]
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, *words], env=environment, cwd=folder.parent, check=False, capture_output=True
+    )
+    if done.returncode != 0:
+        print(done.stderr.decode(errors="replace")[-400:], file=sys.stderr)
+        return None
+    content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    cases: dict[str, dict[str, Any]] = content.get("cases", content)
+    return {name: values for name, values in cases.items() if isinstance(values, dict)}
+
+
+def rows(before: dict[str, Any], after: dict[str, Any], beyond: float) -> list[str]:
+    """Return a line for every scalar that both have and that moved."""
+    lines = []
+    for name, old in before.items():
+        new = after.get(name)
+        numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in (old, new))
+        if not numbers:
+            if old != new and name in after:
+                lines.append(f"| `{name}` | {old} | {new} | |")
+            continue
+        scale = max(abs(old), abs(new))
+        if scale > 0.0 and abs(new - old) > beyond * scale:
+            lines.append(f"| `{name}` | {old:.6g} | {new:.6g} | {(new - old) / scale:+.2e} |")
+    return lines
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("before", help="revision or tag")
+    parser.add_argument("after", nargs="?", help="revision or tag; the tree as it is by default")
+    parser.add_argument("--positions", type=int, default=360)
+    parser.add_argument("--beyond", type=float, default=1e-9, help="part of itself that a scalar has to move by")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        sites = [install(arguments.before, folder / "before"), install(arguments.after, folder / "after")]
+        drives = {path.stem: path for site in sites for path in sorted((site / "ltca" / "drives").glob("*.toml"))}
+        for number, (drive, own) in enumerate(sorted(drives.items())):
+            found = []
+            for side, site in zip(("before", "after"), sites, strict=True):
+                shipped = site / "ltca" / "drives" / f"{drive}.toml"
+                found.append(
+                    summaries(site, shipped if shipped.exists() else own, arguments.positions, folder / f"{side}{number}")
+                )
+            print(f"\n#### `{drive}`\n")
+            if found[0] is None or found[1] is None:
+                which = arguments.before if found[0] is None else arguments.after or "the tree"
+                print(f"{which} does not read it.")
+                continue
+            for case, values in found[1].items():
+                if case not in found[0]:
+                    continue
+                moved = rows(found[0][case], values, arguments.beyond)
+                told = len(set(values) - set(found[0][case]))
+                print(f"{case}: {len(moved)} of {len(found[0][case])} moved, {told} new\n")
+                if moved:
+                    print("\n".join(["| scalar | before | after | by |", "|---|---|---|---|", *moved]), "\n")
+
+
+if __name__ == "__main__":
+    main()
