@@ -135,7 +135,7 @@ def _judge(
         told.append("what drives each value is found on half-spaces, whatever judges it")
     # Between those of a turn, so that nothing is refined.
     angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + BESIDE
-    return checks, advise(drive, checks, angles, part * whole), told
+    return checks, advise(drive, checks, angles, whole, part), told
 
 
 def _seized(drive: Drive, limits: Limits, error: DriveError) -> tuple[list[Check], dict[str, list[Driver]], list[str]]:

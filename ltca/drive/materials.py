@@ -10,6 +10,11 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength
 from ltca.drive.units.quantities import quantity
 
+STEEL = 190_000.0, 225_000.0
+"""Young's moduli of steels, MPa: bearings are rated with rings and rollers of hardened bearing steel."""
+HARDENED = 653.0
+"""Least surface hardness of such rings, HV: the 58 HRC of makers' catalogues by ISO 18265."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Material:
@@ -52,6 +57,11 @@ class Material:
     def plane_strain_compliance(self) -> float:
         """(1 − ν²)/E in 1/MPa, the part of one body in 1/E*."""
         return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
+
+    @property
+    def is_bearing_steel(self) -> bool:
+        """Whether ISO 76 and ISO 281 rate races of it: a steel, and hardened where its hardness is told."""
+        return STEEL[0] <= self.youngs_modulus <= STEEL[1] and (self.hardness is None or self.hardness >= HARDENED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)

@@ -81,7 +81,9 @@ def _zero(value: float) -> float:
 
 
 def drawn_plays(drive: Drive) -> dict[str, float]:
-    """Return the least play of any disc, by what touches; the circles of holes and shaft pins as far apart as they are.
+    """Return the least play of any disc, by what touches, discs in the middle of their eccentrics as these are.
+
+    The circles of holes and shaft pins, and those of bores and several cranks, are as far apart as they are in the mean.
 
     Parameters
     ----------
@@ -96,11 +98,16 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
     found = {"wheel pins and flank": -inf, "rollers and races": -inf, "shaft pins and holes": -inf}
     for single in single_discs(drive):
         drawn, shaft = drawn_interference(single), single.pin_shaft
-        holes = drawn.holes + single.crank.eccentricity_error
+        error = single.crank.eccentricity_error
+        pins, holes = drawn.pins + abs(error), drawn.holes + error
+        rollers = drawn.rollers
+        for own in single.disc.of:  # bores that stand farther out than the cranks press all bearings alike
+            if own.bore_errors is not None and own.bore_errors.radial:
+                rollers += abs(sum(own.bore_errors.radial) / len(own.bore_errors.radial))
         if shaft is not None and shaft.pin_errors.radial:
             radial = shaft.pin_errors.radial
             holes += abs(sum(radial) / len(radial))
-        for what, overlap in zip(found, (drawn.pins, drawn.rollers, holes), strict=True):
+        for what, overlap in zip(found, (pins, rollers, holes), strict=True):
             found[what] = max(found[what], overlap)
     return {what: _zero(-overlap) for what, overlap in found.items() if overlap > -inf}
 

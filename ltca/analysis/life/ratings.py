@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ltca.drive.materials import HARDENED, STEEL
 from ltca.drive.parts import Drive
 
 EDGE_ALLOWANCE = 0.83
@@ -18,10 +19,6 @@ FATIGUE = 8.2
 """Static rating by the fatigue load limit C_u of roller bearings (ISO 281, B.3.3)."""
 LARGE_PITCH_DIAMETER = 100.0
 """Pitch diameter above which C_u falls behind, mm."""
-STEEL = 190_000.0, 225_000.0
-"""Young's moduli of steels, MPa: the ratings are those of rings and rollers of hardened bearing steel."""
-HARDENED = 653.0
-"""Least surface hardness of such rings, HV: the 58 HRC of makers' catalogues by ISO 18265."""
 
 
 def not_rated(drive: Drive) -> tuple[str, ...]:

@@ -32,10 +32,13 @@ STEP = 0.01
 """Change of an input, as a part of it; half of it where the whole makes no drive."""
 FARTHEST = 3.0
 """Factor on an input up to which a power law is followed."""
+FARTHEST_SIZE = 10.0
+"""The same of all sizes together, which keep the shape."""
 LEAST = 0.02
 """Elasticity below which an input is not said to drive a value."""
 TOLD = 3
 """Inputs that are told of each value."""
+TORQUE, SIZES = "load.torque", "all sizes"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +81,7 @@ class _Input:
 
 
 def advise(
-    drive: Drive, checks: Sequence[Check], crank_angle: FloatArray, torque: float | None = None
+    drive: Drive, checks: Sequence[Check], crank_angle: FloatArray, torque: float | None = None, part: float = 1.0
 ) -> dict[str, list[Driver]]:
     """Return what drives every value that has a limit, the strongest first, by quantity.
 
@@ -92,16 +95,27 @@ def advise(
         φ_C at which values are compared, rad.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
+    part : float
+        Of the torque that the drive carries and is judged at: sizes are told for the whole of it, and nothing else is.
     """
-    wanted = {check.value.quantity: check for check in checks if check.limit is not None and check.value.value}
+    torque = part * (drive.load.torque if torque is None else torque)
+    wanted: dict[str, Check] = {}
+    for check in checks:  # of two limits on one quantity that which fails
+        if (
+            check.limit is not None
+            and check.value.value
+            and not (check.value.quantity in wanted and wanted[check.value.quantity].fails)
+        ):
+            wanted[check.value.quantity] = check
     if not wanted:
         return {}
     base = _values(drive, crank_angle, torque)
     found: dict[str, list[Driver]] = {quantity: [] for quantity in wanted}
-    for one in _inputs(drive):
+    for one in _inputs(drive, torque):
         for step in one.steps:
+            by_torque = 1.0 + step if one.name == TORQUE else 1.0
             try:
-                changed = _values(with_fields(drive, one.changed(1.0 + step)), crank_angle, torque)
+                changed = _values(with_fields(drive, one.changed(1.0 + step)), crank_angle, by_torque * torque)
             except CycloError:
                 continue
             break
@@ -113,20 +127,30 @@ def advise(
                 continue
             elasticity = log(after / before) / log(1.0 + step)
             if abs(elasticity) >= LEAST:
-                found[quantity].append(_driver(drive, one, elasticity, check))
+                found[quantity].append(_driver(drive, one, elasticity, check, part))
     return {
         quantity: sorted(drivers, key=lambda driver: -abs(driver.elasticity)) for quantity, drivers in found.items()
     }
 
 
-def _driver(drive: Drive, one: _Input, elasticity: float, check: Check) -> Driver:
+def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: float) -> Driver:
     safety = check.safety
-    if safety is None or safety <= 0.0 or check.verdict == "pass" or check.limit is None:
+    farthest, whole = FARTHEST, 1.0
+    if one.name == SIZES:  # which are told for the whole torque: at equal stress torques grow with their cube
+        farthest, whole = FARTHEST_SIZE, part ** (-1.0 / 3.0)
+    elif part < 1.0 and one.name != TORQUE:
+        safety = None
+    linear = check.safety is None and part == 1.0 and check.limit is not None and check.value.value
+    if check.verdict == "pass" or check.limit is None or not (linear or safety):
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
-    wanted = log(safety) / elasticity * (1.0 if check.limit.sense == "max" else -1.0)
-    if not isfinite(wanted) or abs(wanted) > log(FARTHEST):
+    if linear:  # margins and plays at or below nothing follow no power law
+        factor = 1.0 + (check.limit.value / (check.value.value or 1.0) - 1.0) / elasticity
+    else:
+        wanted = log(safety or 1.0) / elasticity * (1.0 if check.limit.sense == "max" else -1.0)
+        factor = exp(wanted) if isfinite(wanted) and abs(wanted) <= log(farthest) else 0.0
+    if not 1.0 / farthest <= factor <= farthest:
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
-    factor = exp(wanted)
+    factor *= whole
     if one.is_count and one.start:  # the next whole number beyond
         factor = (ceil(factor * one.start) if factor > 1.0 else floor(factor * one.start)) / one.start
     try:
@@ -147,7 +171,7 @@ def _values(drive: Drive, crank_angle: FloatArray, torque: float | None) -> dict
     return {value.quantity: value.value for value in found}
 
 
-def _inputs(drive: Drive) -> list[_Input]:
+def _inputs(drive: Drive, torque: float) -> list[_Input]:
     """What a designer turns: sizes with what belongs to them, torque, materials, friction."""
 
     def field(path: str, beside: Mapping[str, Callable[[float, float], Any]] | None = None) -> _Input | None:
@@ -187,7 +211,6 @@ def _inputs(drive: Drive) -> list[_Input]:
     thickness = drive.disc.thickness
     hole = {"pin_shaft.hole_radius": grown} if shaft else {}
     chosen = [
-        field("load.torque"),
         field("disc.thickness", {"crank_bearing.roller_length": lambda value, more: value * (1.0 + more / thickness)}),
         field("crank_bearing.roller_length") if wide < 0.98 * thickness else None,
         field("crank_bearing.roller_radius", {"crank_bearing.inner_race_radius": shrunk}),
@@ -209,7 +232,8 @@ def _inputs(drive: Drive) -> list[_Input]:
         field("load.speed"),
         *(field(f"friction.{name}") for name in ("pin", "seat", "hole", "roller", "support_bearing", "no_load_torque")),
     ]
-    return [_all_sizes(drive), *(one for one in chosen if one is not None)]
+    turned = _Input(name=TORQUE, start=torque, unit="N*mm", changed=lambda factor: {TORQUE: factor * torque})
+    return [_all_sizes(drive), turned, *(one for one in chosen if one is not None)]
 
 
 def _all_sizes(drive: Drive) -> _Input:
@@ -233,4 +257,4 @@ def _all_sizes(drive: Drive) -> _Input:
             found[path] = tuple(factor * one for one in value) if isinstance(value, tuple) else factor * value
         return found
 
-    return _Input(name="all sizes", start=None, unit="", changed=changed)
+    return _Input(name=SIZES, start=None, unit="", changed=changed)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import summarise
 from ltca.drive.members.judgement import Value
+from ltca.errors import DriveError
 
 BY_LOAD = frozenset(
     (
@@ -40,10 +41,15 @@ def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values
     Raises
     ------
     DriveError, ConvergenceError
-        When an entry has no answer; it is named.
+        When an entry has no answer; it is named. One that bodies cannot carry is a value of its own.
     """
     found = list(values)
     for number, entry in _heavier(analysis):
+        if isinstance(entry, DriveError):
+            carried = analysis.torque / analysis.drive.duty[number].torque
+            part = f"duty.{number}, of which the load is carried"
+            found.insert(0, Value(quantity="carried_torque", value=carried, part=part))
+            continue
         others = {one.quantity: one for one in find_values(entry, summarise(entry), lives=False)}
         for at, value in enumerate(found):
             other = others.get(value.quantity, value) if value.quantity in BY_LOAD else value
@@ -52,7 +58,7 @@ def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values
     return found
 
 
-def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis]]:
+def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | DriveError]]:
     """Entries that are heavier or quicker than the load, solved at the same positions by the same engine."""
     from ltca.analysis.life.bearing_lives import at_entry  # which runs need only where there is a duty
 
@@ -62,4 +68,9 @@ def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis]]:
             continue
         if drive.friction is None and entry.torque <= analysis.torque:
             continue  # nothing there goes with speed
-        yield number, at_entry(analysis, number)
+        try:
+            yield number, at_entry(analysis, number)
+        except DriveError as error:
+            if "cannot be carried" not in str(error):
+                raise
+            yield number, error

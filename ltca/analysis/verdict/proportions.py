@@ -78,9 +78,9 @@ def _odd(drive: Drive) -> Iterator[str]:
 
 
 def _beside(value: float, published: list[float]) -> tuple[str, str, str] | None:
-    """The value, the span and what it were with a radius halved, where it is beside the span and would be in it."""
+    """The value, the span and what it were with a radius halved, where it is below the span."""
     low, high = min(published), max(published)
-    if value >= (1.0 - BESIDE) * low or not low <= 2.0 * value <= high:
+    if value >= (1.0 - BESIDE) * low:
         return None
     return f"{value:.3g}", f"{low:.3g} … {high:.3g}", f"{2.0 * value:.3g}"
 

@@ -21,15 +21,17 @@ from ltca.analysis.verdict.pin_stress import pin_stress
 from ltca.analysis.verdict.places import largest_value, most_of
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_contact_shear_at
-from ltca.drive.members.judgement import Check, Value, judge
+from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
+from ltca.errors import DriveError
 
 FloatArray = NDArray[np.float64]
 
 DEMANDED = {
     limit.quantity: limit
     for limit in (
+        WHOLE,
         Limit(
             quantity="half_width_ratio", sense="max", value=HALF_WIDTH_BOUND,
             source="theory of half-spaces (ltca.analysis.half_width_guard)",
@@ -213,14 +215,23 @@ def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
     from ltca.analysis.life.equivalent_load import covers_whole_turns
     from ltca.analysis.life.life_text import life_summary
 
+    named = [name for name in LIVES if "modified" not in name or analysis.drive.lubricant is not None]
     if not covers_whole_turns(analysis.full.crank_angle):
         told = "positions cover no whole turns"
-        named = [name for name in LIVES if "modified" not in name or analysis.drive.lubricant is not None]
         yield from (Value(quantity=name, value=None, reason=told) for name in named)
         return
-    lives = bearing_lives(analysis)
+    try:
+        lives = bearing_lives(analysis)
+    except DriveError as error:
+        if "cannot be carried" not in str(error):
+            raise
+        yield from (Value(quantity=name, value=None, reason=error.problems[0]) for name in named)
+        return
     told = ("; ".join(lives.not_rated)) if lives.not_rated else "there is no speed (load.speed)"
     for name, value in life_summary(lives).items():
+        if name == "static_safety_S0" and value is not None:  # the load counts beside the entries of a duty
+            largest = float(np.max(np.hypot(analysis.bearing_radial, analysis.bearing_tangential)))
+            value = min(value, lives.static_load_rating / largest)
         yield Value(quantity=name, value=value, reason="" if value is not None else told)
     if analysis.drive.lubricant is not None:
         modified = [one.modified_hours for one in lives.bearings if one.modified_hours is not None]

@@ -137,9 +137,9 @@ class Check:
 
     @property
     def safety(self) -> float | None:
-        """Limit by value where the value is to be less, value by limit where it is to be more; None where neither counts."""
+        """Limit by value where less is wanted, value by limit where more is; None where one of them is no more than 0."""
         value, limit = self.value.value, self.limit
-        if value is None or limit is None or limit.value == 0.0 or value == 0.0:
+        if value is None or limit is None or limit.value <= 0.0 or value <= 0.0:
             return None
         return limit.value / value if limit.sense == "max" else value / limit.value
 
@@ -182,9 +182,10 @@ def judge(
         found = [
             *own,
             *(limit for limit in allowed if limit.sense not in {one.sense for one in own}),
+            *_of_soft_races(drive, value, own),
             *_of_shape(value),
         ]
-        if value.quantity == "play_at_temperature" and not own:
+        if value.quantity == "play_at_temperature" and not any(one.sense == "min" for one in own):
             found.append(_limit(value, "min", 0.0, SEIZED))
         if demanded is not None and value.quantity in demanded:
             found.append(demanded[value.quantity])
@@ -204,6 +205,17 @@ def judge(
 
 _BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}
 """Quantities that a limit on another one bounds as well."""
+
+
+def _of_soft_races(drive: Drive, value: Value, own: Sequence[Limit]) -> list[Limit]:
+    """What a race bears that is no hardened steel, where one limit of the file stands for all races: it is of bearing steel."""
+    race = {"roller_pressure_mid_outer": "disc", "roller_pressure_mid_inner": "inner_race"}.get(value.quantity)
+    if race is None or not any(one.sense == "max" and one.quantity != value.quantity for one in own):
+        return []
+    part: Material = getattr(drive.materials, race)
+    if part.is_bearing_steel or part.allowable_pressure is None:
+        return []
+    return _lowest(value, [(part.allowable_pressure, race)], "allowable_pressure")
 
 
 def _own(limits: Mapping[str, Limit], sense: str, quantity: str) -> Limit | None:

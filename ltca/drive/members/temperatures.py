@@ -327,9 +327,11 @@ def _rollers(errors: RollerErrors, factor: float) -> RollerErrors:
 
 def _bearing(drive: Drive, grown: Growth) -> CrankBearing:
     bearing = drive.crank_bearing
-    # Rollers touch the bore where both are: a roller as long as the disc stays so.
+    # A roller as long as the disc stays so: a ten-thousandth of its length is no end that presses.
     length = bearing.roller_length * grown.roller
-    if bearing.roller_length <= drive.disc.thickness:
+    if bearing.roller_length == drive.disc.thickness:
+        length = drive.disc.thickness * grown.disc
+    elif bearing.roller_length < drive.disc.thickness:
         length = min(length, drive.disc.thickness * grown.disc)
     return replace(
         bearing,

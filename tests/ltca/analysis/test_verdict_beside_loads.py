@@ -10,15 +10,17 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.verdict.advice import _inputs
+from ltca.analysis.verdict.advice import _inputs, advise
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.analysis.verdict.values import judge_analysis
 from ltca.commands.program import main
 from ltca.contact.subsurface import LINE_SHEAR, LINE_SHEAR_DEPTH, line_contact_shear_at
 from ltca.drive.members.limits import parse_limits
+from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Duty
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
+from ltca.geometry.interference import drawn_plays
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
@@ -200,8 +202,98 @@ def test_limits_that_nothing_can_keep_are_refused(table, told):
 
 
 def test_counts_are_advised_in_whole_numbers():
-    found = {one.name: one for one in _inputs(PAPER)}
+    found = {one.name: one for one in _inputs(PAPER, PAPER.load.torque)}
     rollers = found["crank_bearing.number_of_rollers"]
     assert rollers.changed(1.0 + rollers.steps[0]) == {"crank_bearing.number_of_rollers": 12}
     assert "pin_wheel.pin_circle_radius" in found
     assert "pin_wheel.number_of_pins" not in found  # that is the ratio
+
+
+def test_a_soft_disc_is_not_judged_by_the_limit_of_bearing_steel():
+    """Its bore passed by the 4000 MPa of ISO 76 that shipped files carry for rollers between hardened races."""
+    limits = {"max_roller_pressure_mid": 4000.0}
+    analysis = analyse(with_fields(PAPER, {"materials.disc": "42CrMo4"}), ANGLES)
+    found = judge_analysis(analysis, summarise(analysis), parse_limits(limits, []))
+    bore = [check for check in found if check.value.quantity == "roller_pressure_mid_outer"]
+    assert [check.limit.source.split(".")[-1] for check in bore] == ["[limits], no source given", "allowable_pressure"]
+    assert bore[1].limit.value == analysis.drive.materials.disc.allowable_pressure
+    race = [check for check in found if check.value.quantity == "roller_pressure_mid_inner"]
+    assert len(race) == 1
+    own = judge_analysis(analysis, summarise(analysis), parse_limits({"max_roller_pressure_mid_outer": 4000.0}, []))
+    assert len([check for check in own if check.value.quantity == "roller_pressure_mid_outer"]) == 1
+
+
+def test_bores_that_move_off_their_cranks_take_the_play_of_the_bearings():
+    """An RV whose bearings seized was passed: 42 mm of disc and carrier grow apart by more than the rollers' play."""
+    drive = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+    warmer = with_fields(drive, warm(100.0, 100.0, 20.0))
+    plays = drawn_plays(warm_drive(warmer))
+    expansion = drive.materials.disc.thermal_expansion * 80.0
+    bearing = drive.crank_bearing
+    play = drive.bore_radius * (1.0 + expansion) - bearing.inner_race_radius
+    play -= 2.0 * bearing.roller_radius * (1.0 + 0.5 * expansion)
+    by_hand = play - drive.crank.circle_radius * expansion
+    assert by_hand < -0.01
+    assert plays["rollers and races"] == pytest.approx(by_hand, abs=1e-6)
+
+
+def test_an_upper_limit_does_not_take_the_lower_one_of_a_play():
+    drive = with_fields(PAPER, warm(20.0, 60.0, 20.0))
+    analysis = analyse(drive, ANGLES)
+    limits = parse_limits({"max_play_at_temperature": 0.5}, [])
+    found = [
+        c for c in judge_analysis(analysis, summarise(analysis), limits) if c.value.quantity == "play_at_temperature"
+    ]
+    assert sorted(check.verdict for check in found) == ["fail", "pass"]
+    assert all(check.safety is None for check in found)
+
+
+def test_an_eccentric_that_does_not_grow_with_its_disc_takes_play_from_the_flank():
+    drive = with_fields(PAPER, {"crank.eccentricity_error": -0.02})
+    assert drawn_plays(drive)["wheel pins and flank"] == pytest.approx(
+        drawn_plays(PAPER)["wheel pins and flank"] - 0.02
+    )
+
+
+@pytest.mark.slow
+def test_of_two_limits_the_one_that_fails_is_advised_on():
+    """The last limit of a quantity counted: a backlash in a range had "no single change"."""
+    analysis = analyse(PAPER, ANGLES)
+    limits = parse_limits({"max_backlash_output": 5.0, "min_backlash_output": 1.0}, [])
+    checks = [c for c in judge_analysis(analysis, summarise(analysis), limits) if c.value.quantity == "backlash_output"]
+    drivers = {one.input: one for one in advise(PAPER, checks, ANGLES)["backlash_output"]}
+    offset = drivers["disc.equidistant_offset"].factor * PAPER.disc.equidistant_offset
+    mended = with_fields(PAPER, {"disc.equidistant_offset": offset})
+    assert 1.0 < summarise(analyse(mended, ANGLES))["backlash_output_arcmin"] < 5.0
+
+
+@pytest.mark.slow
+def test_torque_drives_pressures():
+    """An explicitly given torque left it out of every change."""
+    analysis = analyse(PAPER, ANGLES)
+    limits = parse_limits({"max_bearing_load": 1000.0}, [])
+    checks = [c for c in judge_analysis(analysis, summarise(analysis), limits) if c.value.quantity == "bearing_load"]
+    drivers = {one.input: one for one in advise(PAPER, checks, ANGLES, 0.5 * PAPER.load.torque)["bearing_load"]}
+    # forces of the bearing go with the torque but for what clearances shift
+    assert drivers["load.torque"].elasticity == pytest.approx(1.0, abs=0.1)
+
+
+def test_static_safety_is_of_the_load_and_its_duty():
+    """A light duty beside a heavy load had the S0 of the duty."""
+    angles = 2.0 * np.pi * np.arange(12) / 12.0
+    light = (Duty(torque=0.25 * PAPER.load.torque, speed=100.0, share=1.0),)
+    found = {}
+    for name, drive in {"alone": PAPER, "duty": replace(PAPER, duty=light)}.items():
+        analysis = analyse(drive, angles)
+        checks = judge_analysis(analysis, summarise(analysis), {})
+        found[name] = next(c.value.value for c in checks if c.value.quantity == "static_safety_S0")
+    assert found["duty"] == pytest.approx(found["alone"], rel=1e-12)
+
+
+def test_an_entry_that_bodies_cannot_carry_fails():
+    """It ended the command without a verdict on the rest."""
+    duty = (Duty(torque=400.0 * PAPER.load.torque, speed=100.0, share=1.0),)
+    found = checks_of(replace(PAPER, duty=duty))
+    assert found["carried_torque"].verdict == "fail"
+    assert found["carried_torque"].value.value == pytest.approx(1.0 / 400.0)
+    assert found["pin_pressure_mid"].verdict in ("pass", "fail")
