@@ -143,7 +143,7 @@ def test_one_file_one_step(path):
     assert len([other for other in path.parent.glob("*.py") if other.stem != "__init__"]) <= FILES
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("*/commands/*.py")), ids=relative)
+@pytest.mark.parametrize("path", sorted(ROOT.glob("*/commands/**/*.py")), ids=relative)
 def test_commands_import_lightly(path):
     """`cyclo --help` loads every command: at their head they may import light modules only."""
     tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -7,7 +7,7 @@ rows      Rows of the report: one compared figure each, with its limit and why t
 compare   One position in any model, and all metrics of a difference
 levels    The levels of the validation, from closed forms to what the flexible disc changes
 study     The whole validation of a drive: which positions, in which order, and the rows of all six levels
-seats     Figures of docs/seats.md: laws of conforming seats against finite elements, Persson and Hertz
+seats     Figures of docs/theory/seats.md: laws of conforming seats against finite elements, Persson and Hertz
 report    The page and files of a validation
 commands  ``cyclo validate``
 ========  ============================================================

@@ -1,4 +1,4 @@
-"""Figures of docs/seats.md: laws of conforming seats against finite elements, Persson and Hertz.
+"""Figures of docs/theory/seats.md: laws of conforming seats against finite elements, Persson and Hertz.
 
 ``python -m validation.seats [--out docs/pictures]`` prints the tables and draws the picture; half a minute.
 """

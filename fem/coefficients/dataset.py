@@ -90,7 +90,7 @@ def derive_coefficients(
     Returns
     -------
     Dataset
-        As ``docs/coefficients.md`` describes it; mm/N.
+        As ``docs/theory/coefficients.md`` describes it; mm/N.
 
     Raises
     ------

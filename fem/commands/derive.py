@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from ltca.reading.coefficient_laws import Check
 
 SUMMARY: str = "derive the bodies' influence coefficients by finite elements, or check a file of them"
+EXAMPLES = (
+    ("cyclo derive paper --case CS-1 --out coefficients.nc", "for cyclo run --compliance fe or hybrid"),
+    ("cyclo derive --check coefficients.nc paper", "any file of coefficients against schema and laws"),
+)
 # Options that say how to derive, and their defaults.
 DERIVING = {"stations": 1.0, "size": 1.0, "plane": "strain", "without_clearance": False, "out": None}
 COEFFICIENTS = "coefficients.nc"
@@ -61,9 +65,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--check",
         metavar="FILE",
-        help="derive nothing; check this file, whichever code made it: its schema (docs/coefficients.md), then reciprocity, "
-        "positive work, rigid motions, near field and closed forms; with DRIVE also that it belongs to the bodies of that "
-        "drive in --case. What a file of another code leaves out (wider patches, resultants, how it was derived) is said "
+        help="derive nothing; check this file, whichever code made it: its schema (docs/theory/coefficients.md), then "
+        "reciprocity, positive work, rigid motions, near field and closed forms; with DRIVE also that it belongs to the bodies "
+        "of that drive in --case. What a file of another code leaves out (wider patches, resultants, how it was derived) is said "
         "not to be in it. Exit status: 0 all laws held, 1 one is broken, 2 unreadable or of another schema or drive",
     )
 

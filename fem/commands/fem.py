@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
 SUMMARY: str = "solve the whole drive by finite elements at one crank angle"
+EXAMPLES = (
+    ("cyclo fem paper --case CS-1 --angle 0.5", "one position by finite elements alone"),
+    ("cyclo fem paper --case CS-1 --angle 0.5 --referee calculix", "solved by CalculiX as well"),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from ltca.drive.parts import Drive
 
 SUMMARY: str = "mesh the bodies of a drive for the contacts expected at a crank angle"
+EXAMPLES = (
+    ("cyclo mesh paper --case CS-1 --angle 0.5", "meshes of all bodies of one position"),
+    ("cyclo mesh my.toml --size 2", "with elements twice as large"),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

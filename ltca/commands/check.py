@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from ltca.errors import DriveError
 
 SUMMARY = "judge a design: value, limit and safety of every check, what drives it and what would mend it"
+EXAMPLES = (
+    ("cyclo check my.toml", "every check of every case; exit status 1 where one fails"),
+    ("cyclo check paper --case CS-3 --no-advice", "verdicts alone"),
+)
 DEFAULT_POSITIONS = 360
 ADVICE_POSITIONS = 60
 """Positions at which changed drives are compared."""

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
     from ltca.reading.drive_file import DriveFile
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
+EXAMPLES = (
+    ("cyclo curves my.toml", "torque curve, orders, bearing lives; curves.json"),
+    ("cyclo curves my.toml --speed '1500 rpm' --load-rating '40 kN'", "lives at a speed and a maker's load rating"),
+)
 POSITIONS_PER_TURN = 192
 """Least positions in a turn; more where the highest order asks for them (`positions_per_turn`)."""
 ANGLES = 4

@@ -12,6 +12,10 @@ from ltca.reading.arguments import path_argument
 SUMMARY = (
     "write a commented drive file to start from: the paper's drive, a robot joint's, an RV reducer's, one of loose pins"
 )
+EXAMPLES = (
+    ("cyclo init my.toml", "a commented copy of the paper's drive"),
+    ("cyclo init joint.toml --like robot-joint", "two discs, the housing held"),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

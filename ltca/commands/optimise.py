@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from ltca.studies.optimiser import Optimum, Problem
 
 SUMMARY = "vary fields of a drive for the least of one quantity, or the Pareto front of two"
+EXAMPLES = (
+    (
+        "cyclo optimise paper --vary equidistant_offset shifting_offset --minimise ptp_transmission_error "
+        "--subject 'max_pin_pressure_mid <= 1500 MPa'",
+        "one aim under a limit",
+    ),
+    (
+        "cyclo optimise my.toml --vary disc.equidistant_offset=0:0.2 --minimise max_pin_load mean_backlash_wheel",
+        "the Pareto front of two",
+    ),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

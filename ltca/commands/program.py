@@ -1,7 +1,8 @@
 """The program ``cyclo``: finds the commands of all installed packages and runs one of them.
 
-Commands register in the entry-point group ``cyclo.commands``; an entry names a module with ``SUMMARY``,
-``configure(parser)`` and ``execute(arguments) -> int``. The modules import lightly, so ``cyclo --help`` is quick.
+Commands register in the entry-point group ``cyclo.commands``; an entry names a module with ``SUMMARY``, ``EXAMPLES``
+(pairs of a command line and what it does), ``configure(parser)`` and ``execute(arguments) -> int``. The modules import
+lightly, so ``cyclo --help`` is quick.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ ORDER = (
     "check",
     "show",
     "init",
+    "fields",
+    "quantities",
     "curves",
     "tolerance",
     "sweep",
@@ -39,6 +42,14 @@ ORDER = (
 USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
 DEBUG = "--debug"
+EXAMPLES = "examples:"
+
+
+class _Help(argparse.HelpFormatter):
+    """Help that leaves examples as they are written."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return text if text.startswith(EXAMPLES) else super()._fill_text(text, width, indent)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -97,10 +108,36 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
     known = [name for name in ORDER if name in found]
     for name in known + sorted(set(found) - set(known)):
         module = found[name].load()
-        command = commands.add_parser(name, help=module.SUMMARY, description=module.SUMMARY)
+        command = commands.add_parser(
+            name,
+            help=module.SUMMARY,
+            description=module.SUMMARY,
+            epilog=examples_text(getattr(module, "EXAMPLES", ())),
+            formatter_class=_Help,
+        )
         module.configure(command)
         command.set_defaults(execute=module.execute, options=tuple(command._option_string_actions))
     return parser
+
+
+def examples_text(examples: Sequence[tuple[str, str]]) -> str | None:
+    """Return the end of a command's help; None without examples.
+
+    Parameters
+    ----------
+    examples : sequence of (str, str)
+        Command lines, each with what it does.
+
+    Examples
+    --------
+    >>> print(examples_text([("cyclo run paper", "the paper's drive")]))
+    examples:
+      cyclo run paper
+          the paper's drive
+    """
+    if not examples:
+        return None
+    return "\n".join([EXAMPLES, *(f"  {line}\n      {told}" for line, told in examples)])
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -32,6 +32,14 @@ if TYPE_CHECKING:
     from ltca.reading.drive_file import DriveFile
 
 SUMMARY = "loaded tooth contact analysis: loads, pressures, bearing forces, transmission error"
+EXAMPLES = (
+    ("cyclo run paper", "the paper's six cases over a turn of the crank; out/paper"),
+    (
+        "cyclo run my.toml --angles 0.5 '20 deg' --pressure 0.5",
+        "two crank angles, and the pressure over every contact at one",
+    ),
+    ("cyclo run my.toml --positions 97 --torque '200 N m' --compliance hybrid", "bodies that yield as a whole"),
+)
 DEFAULT_POSITIONS = 360
 
 

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "derived geometry, backlash, checks and a picture with contact normals and loads"
+EXAMPLES = (
+    ("cyclo show my.toml", "what follows from the numbers of a drive file"),
+    ("cyclo show paper --case CS-3 --angle '20 deg'", "a picture at that crank angle"),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

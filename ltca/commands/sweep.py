@@ -8,8 +8,12 @@ from pathlib import Path
 from ltca.commands.study_arguments import add_study_arguments
 from ltca.reading.arguments import default_folder
 
-MISSING = "no such file; the README says what a study file holds"
+MISSING = "no such file; docs/how-to/studies.md says what a study file holds"
 SUMMARY = "vary any fields of a drive: grid, list, Latin hypercube, Sobol"
+EXAMPLES = (
+    ("cyclo sweep study.toml", "solve what a study file describes"),
+    ("cyclo sweep study.toml --scheduler tcp://host:8786", "by the workers of a cluster"),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

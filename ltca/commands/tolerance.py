@@ -8,6 +8,14 @@ from ltca.commands.study_arguments import add_positions_argument, add_seed_argum
 from ltca.reading.arguments import add_case_argument, add_drive_argument, count_argument, default_folder
 
 SUMMARY = "tolerance study: percentiles, worst sample, what matters"
+EXAMPLES = (
+    (
+        "cyclo tolerance paper --case CS-6 --samples 1000 --workers 2 --out out/t",
+        "percentiles, worst sample, what matters",
+    ),
+    ("cyclo tolerance paper --case CS-6 --samples 1000 --out out/t --resume", "go on with an interrupted one"),
+    ("cyclo tolerance paper --case CS-6 --samples 1000 --out out/t --sample 7", "the drive file of one sample"),
+)
 DEFAULT_SAMPLES = 1000
 
 

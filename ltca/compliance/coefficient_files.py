@@ -2,7 +2,7 @@
 
 `ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package
 `fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` and ``processes`` (how many
-of its kind share the memory) that returns the dataset of ``docs/coefficients.md``.
+of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
 """
 
 from __future__ import annotations
@@ -229,7 +229,7 @@ def _kept(drive: Drive, plane: str) -> InfluenceCoefficients | None:
 
 
 def expected_seconds(drives: Iterable[Drive]) -> list[float]:
-    """Return about how long the derivation of each drive of one disc takes on one core, s (docs/coefficients.md)."""
+    """Return about how long the derivation of each drive of one disc takes on one core, s (docs/theory/coefficients.md)."""
     return [
         SECONDS
         + SECONDS_PER_TOOTH * drive.disc.number_of_teeth

@@ -1,6 +1,6 @@
 r"""Influence coefficients of the bodies derived from finite elements: the file, and their values at any place.
 
-The file (written by ``cyclo derive``, format in docs/coefficients.md) holds the approach of patches on disc, pin,
+The file (written by ``cyclo derive``, format in docs/theory/coefficients.md) holds the approach of patches on disc, pin,
 roller and race by unit loads on patches, at stations along the boundaries. Of each entry the half-plane's logarithm is
 taken off; what is left is smooth when load and place move together, and is interpolated. The logarithm of the
 actual places is added again.

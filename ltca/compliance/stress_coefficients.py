@@ -2,8 +2,8 @@ r"""Stress along the walls of the disc by the loads on it: reading from the coef
 
 At a wall without load the stress has one component, along the wall. It is linear in the loads of all contacts: the
 coefficients hold it at stations of flank, bore and hole walls, for a newton at each station of the influence coefficients
-(format in docs/coefficients.md). Right under a contact the wall carries the contact's own pressure along itself, too; that part
-is not in the coefficients, so what they give varies smoothly along the wall and with the place of the load.
+(format in docs/theory/coefficients.md). Right under a contact the wall carries the contact's own pressure along itself, too;
+that part is not in the coefficients, so what they give varies smoothly along the wall and with the place of the load.
 """
 
 from __future__ import annotations

@@ -19,5 +19,6 @@ unit_mistakes  Likely mistakes of units behind a drive that cannot carry its loa
 fields         Fields of a drive by dotted path: read, count, unit
 mistakes       Mistakes in a definition as sentences: field, value, bound; a misspelt name with the one that was meant
 tolerances     Distributions of the fields of a drive: the ``[tolerances]`` table that studies read
+reference      What is told of the fields: unit, default, bound, meaning, and which engine takes them
 =============  ============================================================
 """

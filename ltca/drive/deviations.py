@@ -66,8 +66,10 @@ class BoreErrors:
 
     Attributes
     ----------
-    radial, tangential : tuple of float
-        Outward along the radius of the crank circle, and counter-clockwise at a right angle to it, mm.
+    radial : tuple of float
+        Outward along the radius of the crank circle, mm.
+    tangential : tuple of float
+        Counter-clockwise, at a right angle to that radius, mm.
     """
 
     radial: Errors = ()
@@ -76,7 +78,15 @@ class BoreErrors:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class AxisOffset:
-    """Place of an axis in the fixed frame, whose origin is the centre of the pin shaft, mm."""
+    """Place of an axis in the fixed frame, whose origin is the centre of the pin shaft.
+
+    Attributes
+    ----------
+    x : float
+        Along the crank at crank angle zero, mm.
+    y : float
+        90° ahead of it, mm.
+    """
 
     x: SignedLength = 0.0
     y: SignedLength = 0.0
@@ -113,8 +123,10 @@ class ProfileErrors:
     ----------
     orders : tuple of int
         Waves around the disc, k of ``cosine cos kθ + sine sin kθ``.
-    cosine, sine : tuple of float
-        Amplitudes, one for each order; an empty tuple means zero for all, mm.
+    cosine : tuple of float
+        Amplitudes of cos kθ, one for each order; an empty tuple means zero for all, mm.
+    sine : tuple of float
+        Amplitudes of sin kθ, likewise, mm.
     parameter : tuple of float
         Measured places θ, ascending in [0, 2π), rad; a root of the flank lies at 0.
     deviation : tuple of float
@@ -139,8 +151,10 @@ class DiscClearance:
 
     Attributes
     ----------
-    bearing, pin_hole : float or None
-        As in `ltca.drive.parts.Clearance`, mm.
+    bearing : float or None
+        In the place of ``clearance.bearing``, mm.
+    pin_hole : float or None
+        In the place of ``clearance.pin_hole``, mm.
     """
 
     bearing: NonNegativeLength | None = None
@@ -186,8 +200,10 @@ class OneEccentric:
 
     Attributes
     ----------
-    disc, crank : int or None
-        Whose it is. Left out, entry k is that of disc k on a central crank.
+    disc : int or None
+        Number of the disc whose it is. Left out, entry k is that of disc k on a central crank.
+    crank : int or None
+        Number of the crank whose it is, of several.
     eccentricity_error : float or None
         In the place of ``crank.eccentricity_error``, mm.
     phase_error : float

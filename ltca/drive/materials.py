@@ -23,21 +23,21 @@ class Material:
     Attributes
     ----------
     youngs_modulus : float
-        MPa.
+        Young's modulus E, MPa.
     poisson_ratio : float
-        Between 0 and 0.5.
+        Poisson's ratio ν.
     allowable_pressure : float or None
         Largest pressure of a contact that the surface endures, MPa.
     yield_strength : float or None
-        MPa.
+        Yield strength, of hardened parts that of the core, MPa.
     hardness : float or None
-        Of the surface, HV.
+        Hardness of the surface, HV.
     hardness_depth : float or None
         Depth of the case that is so hard, mm; hard throughout when left out.
     density : float or None
-        kg/m³.
+        Mass by volume, kg/m³.
     thermal_expansion : float or None
-        By length, 1/K; counts where the drive has temperatures.
+        Expansion by length, 1/K; counts where the drive has temperatures.
 
     Notes
     -----
@@ -66,7 +66,27 @@ class Material:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Materials:
-    """Material of each part: `wheel_seat` of the slots that wheel pins lie in, `sleeve` of sleeves on either kind of pin."""
+    """Material of each part.
+
+    Attributes
+    ----------
+    disc : Material
+        Of the discs: flank, bores and holes.
+    wheel_pin : Material
+        Of the wheel pins.
+    roller : Material
+        Of the rollers of the crank bearings.
+    inner_race : Material
+        Of the inner races of the crank bearings.
+    shaft_pin : Material
+        Of the pins of the pin shaft.
+    crankshaft : Material
+        Of the shaft that bends between its bearings.
+    wheel_seat : Material
+        Of the slots that wheel pins lie in; with temperatures that of the wheel.
+    sleeve : Material
+        Of sleeves on either kind of pin.
+    """
 
     disc: Material = field(default_factory=Material)
     wheel_pin: Material = field(default_factory=Material)

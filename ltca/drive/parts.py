@@ -64,16 +64,15 @@ class Disc:
     Attributes
     ----------
     number_of_teeth : int
-        z_C.
+        Number of teeth (lobes) z_C of one disc.
     thickness : float
         Thickness of one disc, mm.
     number_of_discs : int
         Discs that share the torque.
     phases : tuple of float
-        Phase ζ of each disc's eccentric against that of the crank angle, rad; 2πk/n for an empty tuple.
+        Phase ζ of each disc's eccentric against that of the crank angle, rad; 2πk/n when left out.
     planes : tuple of float
-        Axial place of each disc's middle, mm; side by side about 0 for an empty tuple. They matter where pins or
-        shafts bend.
+        Axial place of each disc's middle, mm; side by side about 0 when left out. They matter where pins or shafts bend.
     equidistant_offset : float
         Δr_P: the flank is generated with pins of radius r_P + Δr_P, mm (Eq. 1).
     shifting_offset : float
@@ -85,7 +84,7 @@ class Disc:
     runout : Runout
         Centre of the flank against the bore.
     of : tuple of OneDisc
-        What differs per disc, one entry each; empty where nothing does.
+        What differs per disc, one entry each; left out where nothing does.
     """
 
     number_of_teeth: Annotated[int, Field(ge=3, le=1000), COUNT]
@@ -130,7 +129,7 @@ class Clearance:
     bearing : float
         Radial internal clearance of the crank bearing, diametral as usual: half of it widens the bore, mm.
     pin_hole : float
-        Added whole to r_PSH − r_PS, mm.
+        Pin-hole clearance, added whole to r_PSH − r_PS, mm.
     """
 
     bearing: NonNegativeLength = 0.0
@@ -144,11 +143,17 @@ class Drive:
     Attributes
     ----------
     name : str
-        Name of the drive.
-    crank, pin_wheel, disc, crank_bearing : dataclass
-        The parts.
+        Name of the drive, which names folders and figures.
+    crank : Crank
+        Crankshaft, or several alike.
+    pin_wheel : PinWheel
+        Wheel with its pins.
+    disc : Disc
+        Cycloid discs.
+    crank_bearing : CrankBearing
+        Roller bearing between crank and disc.
     pin_shaft : PinShaft or None
-        Its pins, of which drives with several cranks need none.
+        Pin shaft, the carrier of the cranks, with its pins; drives with several cranks need none.
     load : Load
         Torque and direction.
     installation : Installation
@@ -160,11 +165,11 @@ class Drive:
     friction : Friction or None
         Coefficients of friction; frictionless when left out.
     duty : tuple of Duty
-        Torques and speeds over the life of the drive, for lives alone; that of `load` for an empty tuple.
+        Torques and speeds over the life of the drive, for lives alone; those of ``load`` when left out.
     lubricant : Lubricant or None
-        For lives alone; unmodified when left out.
+        What is between rollers and races, for lives alone; unmodified when left out.
     temperature : Temperature or None
-        How warm the parts are; lengths are those at 20 °C, `ltca.drive.members.temperatures.warm_drive` makes them warm.
+        How warm the parts are; lengths of a file are those at 20 °C.
     """
 
     name: Name = "drive"

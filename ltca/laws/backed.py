@@ -33,7 +33,7 @@ NEAR = 1e-7
 """Last step, as a part of the contact's own approach, of contacts in series: loads are right to its square."""
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
 HALF_SPACE_DATUM = 0.7
-"""Depth, in lengths of the contact, down to which a half-space of finite length counts: 0.68 to 0.72 (docs/seats.md)."""
+"""Depth, in lengths of the contact, down to which a half-space of finite length counts: 0.68 to 0.72 (docs/theory/seats.md)."""
 
 
 class SeatLaw(Protocol):

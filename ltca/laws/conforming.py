@@ -16,7 +16,7 @@ n ≥ 2    κ/(n + 1) + 1/(n − 1)                              κ/(n − 1) + 
 
 They fill the gap ΔR (1 − cos θ) − δ cos θ over the arc |θ| < α: `ltca.laws.seats.arc` solves that for a given arc,
 `ltca.laws.seats.series` tabulates it over the load, once for each pair of materials; the first harmonic adds a spring, the
-only part that knows the datum. docs/seats.md has all of it, with figures.
+only part that knows the datum. docs/theory/seats.md has all of it, with figures.
 
 Both circles are taken at :math:`a = \sqrt{r r_s}`, which keeps Hertz' curvature exact; where the play is wide the arc is
 small, and there the logarithms of both radii count. Left out: displacements small against the radius, friction, and what

@@ -53,7 +53,7 @@ def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
     Parameters
     ----------
     dataset : Dataset
-        As ``docs/coefficients.md`` describes it.
+        As ``docs/theory/coefficients.md`` describes it.
     path : Path
         The file; its folder is made.
 

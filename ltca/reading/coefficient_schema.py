@@ -1,7 +1,7 @@
 """What a file of influence coefficients must hold to be used; whoever made it.
 
 A file of another finite-element code needs neither the attributes that say how ours was derived nor what serves only to
-check it (wider patches, resultants); what it does hold must have the shape that ``docs/coefficients.md`` describes.
+check it (wider patches, resultants); what it does hold must have the shape that ``docs/theory/coefficients.md`` describes.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def require_schema(dataset: xr.Dataset, source: str) -> None:
     problems = [*_missing(dataset)] or [*_misshapen(dataset)] or [*_implausible(dataset)]
     if problems:
         raise DamagedFileError(
-            f"{source}: is no file of influence coefficients (docs/coefficients.md): {'; '.join(problems)}"
+            f"{source}: is no file of influence coefficients (docs/theory/coefficients.md): {'; '.join(problems)}"
         )
 
 

@@ -83,7 +83,7 @@ def load_sweep(path: Path, engine: Engine | None = None) -> Study:
     DriveError
         When file, drive, design or a factor is wrong; all mistakes together.
     """
-    text = read_text(path, "no such file; the README says what a study file holds")
+    text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
     table = parse_toml(text, str(path))
     source = table.get("drive")
     if not isinstance(source, str) or not source:

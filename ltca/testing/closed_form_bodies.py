@@ -47,7 +47,7 @@ def closed_form_coefficients(drive: Drive, *, half_width: float, depth: float) -
     Returns
     -------
     xarray.Dataset
-        The variables and attributes that a run needs of ``docs/coefficients.md``.
+        The variables and attributes that a run needs of ``docs/theory/coefficients.md``.
     """
     import xarray as xr
 

@@ -20,6 +20,7 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.materials import JUDGED_BY
 from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.reference.engine_support import refusal
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import reducer_of
@@ -122,6 +123,11 @@ def answers():
     return {}
 
 
+def general(path):
+    """The path of a field as it is told: entry 0 stands for any."""
+    return path.replace(".0.", ".N.")
+
+
 def known(answers, model, base, answer):
     """The answer of a model to a drive that several fields start from, found once."""
     key = (model, repr(base))
@@ -152,7 +158,12 @@ def test_every_field_is_used_or_refused(model, path, models, answers):
     if refused:
         # What a part is made of goes with what the drive has it for.
         assert goes_with(path) in refused, f"{path} is refused without its name: {refused}"
+        if refusal(model, general(path)) is None and refusal(model, goes_with(path)) is None and model != "tables":
+            # What `cyclo fields` tells of no engine may be refused of a drive as such: then by the half-space as well.
+            with pytest.raises(DriveError):
+                tables(with_fields(base, change))
         return
+    assert refusal(model, general(path)) is None, f"{path} is told to be refused by {model} (engine_support)"
     before = known(answers, model, base, answer)
     if path in EXCEPTIONS[model]:
         assert not moves(before, after), f"{path} is listed as an exception of {model} but moves the answer"

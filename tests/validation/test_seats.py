@@ -1,4 +1,4 @@
-"""The figures of docs/seats.md: what its command prints and draws."""
+"""The figures of docs/theory/seats.md: what its command prints and draws."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_where_hertz_ends_is_told():
     """The issue's slot under 1150 N; the page says what the command prints."""
     rows = [row for row in hertz_rows() if " 1150 N" in row]
     assert len(rows) == 1
-    page = (DOCS / "seats.md").read_text(encoding="utf-8")
+    page = (DOCS / "theory" / "seats.md").read_text(encoding="utf-8")
     told = next(line for line in page.splitlines() if line.startswith("| 1150 N | 0.212"))
     for printed, figure in (("(+6.9%)", "+6.9 %"), ("(-9.3%)", "−9.3 %"), ("(-5.0%)", "−5.0 %")):
         assert printed in rows[0]

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from validation.study import Plan, Study
 
 SUMMARY = "compare the codes with closed forms, other codes, the paper and full finite elements; write a report"
+EXAMPLES = (
+    ("cyclo validate paper --case CS-1", "a page of comparisons, with limits and reasons"),
+    ("cyclo validate my.toml --level full --out out/validation", "more angles, halved meshes"),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

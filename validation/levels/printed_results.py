@@ -169,7 +169,8 @@ def _transmission_error(summary: Summary, unloaded: float) -> list[Row]:
     value = {case: values["ptp_transmission_error_arcsec"] for case, values in summary.items()}
     cause = (
         "the print plots the curve at 10 N·m as unloaded; at full torque the mesh stiffness between three and four "
-        "loaded pins swings the wheel by more, and with clearance the disc follows the changing pin forces (docs/paper.md)"
+        "loaded pins swings the wheel by more, and with clearance the disc follows the changing pin forces "
+        "(docs/validation/paper.md)"
     )
     return [
         _printed("transmission error, CS-6 over CS-3", "CS-6", value["CS-6"] / value["CS-3"], 1.4, 2.2, "times",

@@ -32,11 +32,11 @@ class CrankSupport:
     Attributes
     ----------
     diameter : float
-        Of the shaft between its bearings, mm.
+        Diameter of the shaft between its bearings, mm.
     positions : tuple of float
-        Axial places of the two bearings, on the axis of `Disc.planes`, mm.
+        Axial places of the two bearings, on the axis of ``disc.planes``, mm.
     stiffness : tuple of float
-        Radial, of each bearing, N/mm.
+        Radial stiffness of each of the two bearings, N/mm.
     """
 
     diameter: PositiveLength
@@ -51,13 +51,13 @@ class Crank:
     Attributes
     ----------
     eccentricity : float
-        e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
+        Eccentricity e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
     number : int
-        Cranks; one stands in the centre.
+        How many cranks there are; one stands in the centre.
     circle_radius : float or None
         Radius of the circle several cranks stand on, mm.
     angle : float
-        Of crank 0 on that circle, rad.
+        Place of crank 0 on that circle, rad.
     support : CrankSupport or None
         What lets the cranks yield; rigid when left out.
     eccentricity_error : float
@@ -105,12 +105,16 @@ class CrankBearing:
 
     Attributes
     ----------
-    inner_race_radius, outer_race_radius : float
-        r_i and the nominal r_o (without clearance), mm.
+    inner_race_radius : float
+        Radius r_i of the inner race, mm.
+    outer_race_radius : float
+        Nominal radius r_o of the bore of the disc, which is the outer race (without clearance), mm.
     number_of_rollers : int
-        n_BR.
-    roller_radius, roller_length : float
-        mm.
+        Number of rollers n_BR of one bearing.
+    roller_radius : float
+        Radius r_BR of the rollers, mm.
+    roller_length : float
+        Length of the rollers, at most the thickness of the disc, mm.
     roller_profile : LengthProfile
         Crown and relief of the rollers.
     roller_errors : RollerErrors

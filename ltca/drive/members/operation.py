@@ -28,7 +28,7 @@ class Load:
     direction : {"ccw", "cw"}
         Sense in which the crank drives; the load opposes it.
     speed : float or None
-        Of the input, turns a minute; powers and speeds of slip are not told without it.
+        Speed of the input, turns a minute; powers and speeds of slip are not told without it.
     driven_by : {"input", "output"}
         Which side moves the drive: "output" is the same loaded flank, its motion reversed.
     """
@@ -47,9 +47,9 @@ class Duty:
     Attributes
     ----------
     torque : float
-        Output torque, N·mm.
+        Output torque of the entry, N·mm.
     speed : float
-        Of the input, turns a minute.
+        Speed of the input, turns a minute.
     share : float
         Part of the time; those of all entries add up to one.
     """
@@ -66,7 +66,7 @@ class Lubricant:
     Attributes
     ----------
     viscosity : float
-        Kinematic, at operating temperature, mm²/s.
+        Kinematic viscosity at operating temperature, mm²/s.
     contamination : float
         e_C of ISO 281, from 0 (badly contaminated) to 1 (of the utmost cleanliness).
     """
@@ -106,7 +106,7 @@ class Friction:
     roller : float
         Rolling resistance f of the crank bearings, whose moment is f·|F_b|·(r_i + r_BR).
     support_bearing : float
-        f of the bearings of cranks and wheel, whose moment is f times the load of each times `support_bearing_radius`.
+        f of the bearings of cranks and wheel, whose moment is f times the load of each times ``support_bearing_radius``.
     support_bearing_radius : float
         Radius at which these rub, mm.
     no_load_torque : float
@@ -129,11 +129,11 @@ class Temperature:
     Attributes
     ----------
     housing : float
-        Of the wheel, its pins and their sleeves, °C.
+        Temperature of the wheel, its pins and their sleeves, °C.
     disc : float
-        Of the discs, °C.
+        Temperature of the discs, °C.
     shaft : float
-        Of cranks, carrier and shaft pins, °C; rollers are half as warm as disc and shaft together.
+        Temperature of cranks, carrier and shaft pins, °C; rollers are half as warm as disc and shaft together.
     """
 
     housing: Celsius = REFERENCE_TEMPERATURE

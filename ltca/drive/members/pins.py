@@ -23,9 +23,11 @@ class WheelPinSeat:
     kind : {"fixed", "slot", "sleeve"}
         Fixed in the wheel; loose in a round slot; or fixed, with a loose sleeve that rolls on the flank.
     radius : float or None
-        Of the slot, mm.
-    pin_radius, bore_radius : float or None
-        Of the pin within the sleeve and of the sleeve's bore, mm; `PinWheel.pin_radius` is the sleeve's outer radius.
+        Radius r_s of the slot, with ``slot`` alone, mm.
+    pin_radius : float or None
+        Radius of the pin within the sleeve, with ``sleeve`` alone, mm; ``pin_wheel.pin_radius`` is the sleeve's outer radius.
+    bore_radius : float or None
+        Radius of the sleeve's bore, with ``sleeve`` alone, mm.
     """
 
     kind: Literal["fixed", "slot", "sleeve"] = "fixed"
@@ -42,8 +44,10 @@ class ShaftPinSeat:
     ----------
     kind : {"fixed", "sleeve"}
         Whether a loose sleeve runs on each pin.
-    pin_radius, bore_radius : float or None
-        Of the pin within the sleeve and of the sleeve's bore, mm; `PinShaft.pin_radius` is the sleeve's outer radius.
+    pin_radius : float or None
+        Radius of the pin within the sleeve, with ``sleeve`` alone, mm; ``pin_shaft.pin_radius`` is the sleeve's outer radius.
+    bore_radius : float or None
+        Radius of the sleeve's bore, with ``sleeve`` alone, mm.
     """
 
     kind: Literal["fixed", "sleeve"] = "fixed"
@@ -53,16 +57,16 @@ class ShaftPinSeat:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class WheelPinBeam:
-    """A wheel pin as a beam between two walls of the wheel, its middle at the zero of `Disc.planes`.
+    """A wheel pin as a beam between two walls of the wheel, its middle at the zero of ``disc.planes``.
 
     Attributes
     ----------
     span : float
-        Between the walls, mm.
+        Distance of the walls, mm.
     ends : {"supported", "clamped"}
         Whether the ends may turn in the walls.
     diameter : float or None
-        Of the beam, mm; that of the seat's pin when left out.
+        Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
     span: PositiveLength
@@ -72,16 +76,16 @@ class WheelPinBeam:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class ShaftPinBeam:
-    """A shaft pin as a beam clamped in the flange at −span/2 of the axis of `Disc.planes`.
+    """A shaft pin as a beam clamped in the flange at −span/2 of the axis of ``disc.planes``.
 
     Attributes
     ----------
     span : float
-        From the flange to the tip, mm.
+        Distance from the flange to the tip, mm.
     tip : {"free", "tied-clamped", "tied-pinned"}
         Free, or tied to the other tips by a rigid ring that floats: clamped in it, or free to turn.
     diameter : float or None
-        Of the beam, mm; that of the seat's pin when left out.
+        Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
     span: PositiveLength
@@ -91,11 +95,29 @@ class ShaftPinBeam:
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class PinWheel:
-    """Pin wheel: `number_of_pins` z_P, `pin_circle_radius` R_C and `pin_radius` r_P in mm.
+    """Pin wheel, which carries the wheel pins.
 
-    `axis_offset` is the axis the wheel turns about against the centre of the pin shaft; a pin circle eccentric to
-    that axis is a matter of `pin_errors`. `support_stiffness` is the radial stiffness of the wheel's main bearing,
-    N/mm, rigid when left out. `seat` and `beam` say how the pins sit and whether they bend.
+    Attributes
+    ----------
+    number_of_pins : int
+        Number of wheel pins z_P.
+    pin_circle_radius : float
+        Radius R_C of the circle of the wheel pins, mm.
+    pin_radius : float
+        Radius r_P of what the flank touches: of the pin, or of its sleeve outside, mm.
+    pin_profile : LengthProfile
+        Crown and relief of the wheel pins.
+    pin_errors : PlacementErrors
+        Errors of the wheel pins.
+    axis_offset : AxisOffset
+        Axis the wheel turns about, against the centre of the pin shaft; a pin circle eccentric to that axis is a matter of
+        ``pin_wheel.pin_errors``.
+    support_stiffness : float or None
+        Radial stiffness of the wheel's main bearing, N/mm; rigid when left out.
+    seat : WheelPinSeat
+        How the wheel pins sit.
+    beam : WheelPinBeam or None
+        How they bend; rigid when left out.
     """
 
     number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
@@ -129,19 +151,21 @@ class PinShaft:
     Attributes
     ----------
     number_of_pins : int
-        z_PS, also the number of holes in the disc.
+        Number of shaft pins z_PS, also of the holes in the disc.
     pin_circle_radius : float
-        R_PS, of pins and holes alike, mm.
-    pin_radius, hole_radius : float
-        r_PS and the nominal r_PSH (without clearance), mm.
+        Radius R_PS of the circle of shaft pins and holes alike, mm.
+    pin_radius : float
+        Radius r_PS of what the holes touch: of the pin, or of its sleeve outside, mm.
+    hole_radius : float
+        Nominal radius r_PSH of the holes in the disc (without clearance), mm.
     stiffness : float or None
-        k_PS of one pin for the full thickness of one disc, N/mm; left out where the pins are beams.
+        Stiffness k_PS of one pin for the full thickness of one disc, N/mm; left out where the pins are beams.
     pin_errors : PlacementErrors
         Errors of the shaft pins.
     seat : ShaftPinSeat
         Whether sleeves run on them.
     beam : ShaftPinBeam or None
-        How they bend, in the place of `stiffness`.
+        How they bend, in the place of ``pin_shaft.stiffness``.
     """
 
     number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]

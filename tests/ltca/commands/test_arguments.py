@@ -29,18 +29,23 @@ def test_every_command_is_looked_at():
     assert tuple(COMMANDS) == ORDER
 
 
+WITHOUT_FOLDER = {"init", "fields", "quantities"}
+"""Commands that write no folder of results."""
+
+
 def test_metavars_are_the_same_in_all_commands():
     seen = {}
     for name in COMMANDS:
         for action in COMMANDS[name]._actions:
             words = action.option_strings or [action.dest]
             seen.setdefault(words[-1], {}).setdefault(str(action.metavar), []).append(name)
-    assert seen.pop("--out") == {"DIR": [name for name in ORDER if name not in ("init", "derive")], "FILE": ["derive"]}
+    folders = [name for name in ORDER if name not in {*WITHOUT_FOLDER, "derive"}]
+    assert seen.pop("--out") == {"DIR": folders, "FILE": ["derive"]}
     assert {word: found for word, found in seen.items() if len(found) > 1} == {}
 
 
 def test_folders_are_named_after_drive_and_command():
-    for name in set(ORDER) - {"init", "run", "sweep", "derive"}:
+    for name in set(ORDER) - WITHOUT_FOLDER - {"run", "sweep", "derive"}:
         assert f"default out/<drive>_{name}" in " ".join(options(name)["--out"].help.split())
     assert "default out/<drive>" in options("run")["--out"].help
     assert "default out/<study>_sweep" in options("sweep")["--out"].help

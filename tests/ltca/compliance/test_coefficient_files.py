@@ -212,7 +212,7 @@ def test_how_long_a_derivation_takes_is_said_by_the_disc(paper_cases, derived, c
     many = single_discs(practical_drive(2)[0])[0]
     assert (many.disc.number_of_teeth, many.number_of_holes) == (75, 4)
     paper, many_teeth = expected_seconds([paper_cases["CS-1"], many])
-    # Processor time of the paper's disc and of one of 75 teeth and four holes (docs/coefficients.md), to a factor of two.
+    # Processor time of the paper's disc and of one of 75 teeth and four holes (docs/theory/coefficients.md), to a factor of two.
     assert 8.0 < paper < 32.0
     assert 35.0 < many_teeth < 140.0
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import ltca
 from ltca.drive.members.named_materials import named_materials
 
-DOCUMENT = Path(ltca.__file__).parents[1] / "docs" / "materials.md"
+DOCUMENT = Path(ltca.__file__).parents[1] / "docs" / "reference" / "materials.md"
 COLUMNS = {
     "youngs_modulus": ("E, GPa", 1e-3),
     "poisson_ratio": ("ν", 1.0),

@@ -77,11 +77,11 @@ def test_bounds_are_where_they_are_said_to_be():
             validate(value, **bounds)
 
 
-TABLE = Path(__file__).parents[3] / "docs" / "units.md"
+TABLE = Path(__file__).parents[3] / "docs" / "reference" / "units.md"
 
 
 def documented():
-    """Kind, unit of plain numbers, and units with their spellings, as docs/units.md has them."""
+    """Kind, unit of plain numbers, and units with their spellings, as docs/reference/units.md has them."""
     rows = re.findall(r"^\| ([a-z ]+) \| (\S[^|]*) \| (`.*`) \|$", TABLE.read_text(encoding="utf-8"), re.MULTILINE)
     return {
         kind: (plain, [tuple(re.findall(r"`([^`]+)`", unit)) for unit in units.split("; ")])

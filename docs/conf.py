@@ -1,0 +1,102 @@
+"""Sphinx configuration: ``python -m sphinx -W --keep-going -b html docs build/docs`` builds the pages offline."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from importlib.metadata import version as installed
+from pathlib import Path
+
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+os.environ.setdefault("MPLBACKEND", "Agg")
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+import generated_pages  # beside this file
+from sphinx_gallery import gen_gallery
+
+project = "cyclo"
+author = "The cyclo developers"
+copyright = "the cyclo developers"
+release = installed("cyclo-ltca")
+version = release
+
+extensions = ["sphinx.ext.autodoc", "numpydoc", "myst_parser", "sphinx_gallery.gen_gallery"]
+source_suffix = {".rst": "restructuredtext", ".md": "markdown"}
+root_doc = "index"
+exclude_patterns = ["build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.json"]
+suppress_warnings = ["config.cache"]
+nitpicky = True
+# Nothing is fetched: names of other libraries stay plain text.
+nitpick_ignore_regex = []
+default_role = "code"
+
+myst_enable_extensions = ["colon_fence", "deflist"]
+myst_heading_anchors = 3
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+numpydoc_show_class_members = False
+numpydoc_xref_param_type = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"/\w+\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "remove_config_comments": True,
+    "show_memory": False,
+    "show_signature": False,
+    "download_all_examples": False,
+    "min_reported_time": 1e9,
+    "abort_on_example_error": False,
+    "copyfile_regex": r".*\.toml",
+    "matplotlib_animations": False,
+    "write_computation_times": False,
+}
+# Other folders of examples/ hold files for commands, not scripts: their README.md would be taken for a gallery's.
+gen_gallery.get_subsections = lambda *_, **__: []
+# Warnings of the library in an example are faults of the example.
+warnings.filterwarnings("error", category=RuntimeWarning)
+
+html_theme = "pydata_sphinx_theme"
+html_title = "cyclo"
+html_static_path = ["style"]
+html_css_files = ["cyclo.css"]
+html_copy_source = False
+smartquotes = False
+html_show_sphinx = False
+html_last_updated_fmt = None
+html_theme_options = {
+    "logo": {"text": "cyclo"},
+    "navbar_align": "left",
+    "header_links_before_dropdown": 6,
+    "show_toc_level": 2,
+    "navigation_depth": 2,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+html_sidebars = {"index": [], "start/index": []}
+
+
+def add_single_pages(app, docname, source):
+    """Put pages of single features, which stand beside the folders (``docs/*.md``), at the end of the how-to list."""
+    if docname != "how-to/index":
+        return
+    pages = sorted(path for path in HERE.glob("*.md") if path.stem != root_doc)
+    if pages:
+        titles = [path.read_text(encoding="utf-8").lstrip().partition("\n")[0].lstrip("# ") for path in pages]
+        listed = "\n".join(f"- [{title}](../{path.name})" for path, title in zip(pages, titles, strict=True))
+        tree = "\n".join(f"/{path.stem}" for path in pages)
+        source[0] += f"\n**More**\n\n{listed}\n\n```{{toctree}}\n:hidden:\n\n{tree}\n```\n"
+
+
+def setup(app):
+    """Write the pages that the program itself tells, before the sources are read."""
+    app.connect("builder-inited", lambda _: generated_pages.write_pages(HERE / "reference" / "generated"))
+    app.connect("source-read", add_single_pages)
+    app.connect("env-get-outdated", lambda *_: ["how-to/index"])

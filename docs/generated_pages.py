@@ -1,0 +1,282 @@
+"""Reference pages that the program itself tells: the drive file, the commands, the dataset, names of results.
+
+``conf.py`` writes them before Sphinx reads its sources; they are no part of the repository. Nothing is listed here: fields come
+from their definitions, options from the parsers, variables from what writes them.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from pathlib import Path
+
+LEFT_OUT = "left out"
+NOTE = "<!-- Written by docs/generated_pages.py: do not edit. -->\n"
+
+
+def write_pages(folder: Path) -> None:
+    """Write every page that differs from what is there, so that builds are not repeated for nothing."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = {
+        "drive_file.md": drive_file_page(),
+        "commands.md": commands_page(),
+        "dataset.md": dataset_page(),
+        "quantities.md": quantities_page(),
+    }
+    for name, text in pages.items():
+        path = folder / name
+        if not path.exists() or path.read_text(encoding="utf-8") != NOTE + text:
+            path.write_text(NOTE + text, encoding="utf-8")
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A Markdown table; bars within cells are no borders."""
+    titles = list(head)
+    lines = [titles, ["---"] * len(titles), *rows]
+    return "".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |\n" for row in lines) + "\n"
+
+
+def drive_file_page() -> str:
+    """Every field of a drive file."""
+    from ltca.drive.reference.engine_support import ENGINES, refusals
+    from ltca.drive.reference.field_descriptions import by_table, describe_fields, gathered, table_description
+
+    text = """# The drive file
+
+Every field, table by table, as `cyclo fields` prints them; this page is written from the definitions themselves. A drive file
+is TOML. Plain numbers are in the unit of the field, a text carries its own ([Quantities and units](../units.md)).
+A field that is no field, a value out of its bounds and parts that cannot be together are refused with one sentence each.
+
+Fields of all discs may stand in `[[disc.of]]` and `[[crank.of]]` for a single disc or eccentric, `N` being its number
+from 0. Beside the drive itself a file may hold
+
+- `[[case]]`: a `name` and any of the tables below, whose fields take the place of those of the common part,
+- [`[limits]`](../../how-to/verdict.md): what results may reach,
+- [`[tolerances]`](../../how-to/tolerances.md): how fields scatter, for studies alone.
+
+Engines take every field or refuse it by name. They are
+
+"""
+    text += table(("engine", "what it is"), ENGINES.items())
+    text += "A test changes each field in each engine and looks for the answer to move (`tests/contract`).\n\n"
+    for name, fields in by_table(gathered(describe_fields())).items():
+        told = table_description(name) if name else None
+        text += f"## {name}\n\n" if name else "## At the head of the file\n\n"
+        if told is not None:
+            text += f"{told.meaning.replace('``', '`')}{' May be left out.' if told.optional else ''}\n\n"
+        refused = [refusals(field.path) for field in fields]
+        alike = len(fields) > 1 and all(one == refused[0] for one in refused)
+        if alike and refused[0]:
+            text += "".join(f"Refused by {', '.join(by)}: {why}.\n\n" for why, by in refused[0].items())
+        rows = []
+        for field, by in zip(fields, refused, strict=True):
+            unit = field.unit or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
+            meaning = field.meaning.replace("``", "`")
+            if not alike:
+                meaning += "".join(f" Refused by {', '.join(engines)}: {why}." for why, engines in by.items())
+            rows.append(
+                (
+                    f"`{field.name}`",
+                    f"list, {unit}" if field.is_array else unit,
+                    _ticks(field.default),
+                    _signs(_ticks(field.bounds)),
+                    meaning,
+                )
+            )
+        text += table(("field", "unit", "default", "bounds", "meaning"), rows)
+    return text
+
+
+def _ticks(text: str) -> str:
+    """Words as they stand in a file; nothing as a dash."""
+    if text in ("", LEFT_OUT):
+        return "–"
+    return f"`{text}`" if text.startswith('"') else text
+
+
+def _signs(bounds: str) -> str:
+    for words, sign in (
+        ("greater than", ">"),
+        ("at least", "≥"),
+        ("less than", "<"),
+        ("at most", "≤"),
+        (" and ", ", "),
+    ):
+        bounds = bounds.replace(words, sign)
+    return bounds
+
+
+def commands_page() -> str:
+    """Every command with its options and examples."""
+    from importlib.metadata import entry_points
+
+    from ltca.commands.program import GROUP, ORDER, build_parser
+
+    installed = [entry.name for entry in entry_points(group=GROUP)]
+    names = [name for name in ORDER if name in installed] + sorted(set(installed) - set(ORDER))
+    modules = {entry.name: entry.load() for entry in entry_points(group=GROUP)}
+    text = """# Commands
+
+`cyclo COMMAND --help` says what stands here. Numbers of options may carry a unit (`--torque "377.3 N m"`,
+[Quantities and units](../units.md)); `DRIVE` is a drive file, or `paper` for the shipped one.
+Angles may be several, separated by spaces, negative ones too. Every printed table names torque, direction of the crank,
+model, positions and case. Exit statuses, folders and what happens when a run is interrupted:
+[Exit statuses, files and processes](../files_and_processes.md).
+
+"""
+    text += table(
+        ("command", "what it does"),
+        ((f"[`cyclo {name}`](#cyclo-{name})", _cell(modules[name].SUMMARY)) for name in names),
+    )
+    for name in names:
+        parser = build_parser(name)
+        actions = next(a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
+        command = actions.choices[name]
+        summary = modules[name].SUMMARY
+        usage = " ".join(command.format_usage().removeprefix("usage: ").split())
+        text += f"## cyclo {name}\n\n{summary[:1].upper()}{summary[1:]}.\n\n```text\n{_broken(usage)}\n```\n\n"
+        rows = []
+        for action in command._actions:
+            if isinstance(action, argparse._HelpAction):
+                continue
+            value = action.metavar or ("" if action.nargs == 0 else "|".join(map(str, action.choices or ())))
+            shown = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+            told = (action.help or "") % {"default": action.default, "prog": command.prog}
+            rows.append((f"`{shown}{f' {value}' if value and action.option_strings else ''}`", _cell(told)))
+        text += table(("argument", "meaning"), rows)
+        text += "".join(
+            f"{told[:1].upper()}{told[1:]}:\n\n```sh\n{line}\n```\n\n" for line, told in modules[name].EXAMPLES
+        )
+    return text
+
+
+def _broken(usage: str) -> str:
+    from textwrap import fill
+
+    return fill(usage, 100, subsequent_indent="    ", break_on_hyphens=False, break_long_words=False)
+
+
+def _cell(text: str) -> str:
+    """Help as a cell: what looks like markup is none."""
+    return text.replace("<", "&lt;").replace("*", "\\*").replace("_", "\\_")
+
+
+def dataset_page() -> str:
+    """Every variable and coordinate of ``results.nc``, and what ``summary.json`` holds."""
+    from ltca.analysis.friction.variables import VARIABLES as OF_FRICTION
+    from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis.results import DIMENSIONS, VARIABLES, WALL_VARIABLES, build_dataset
+    from ltca.geometry.placement import position_angles
+    from ltca.reading.drive_file import load_drive
+
+    text = """# The dataset
+
+`results.nc` of `cyclo run` is netCDF, `result.dataset` in Python is the same for one case. Dimensions stand in the order
+`case`, `disc`, `crank`, `position`, then `pin`, `roller`, `hole` or `lobe`, always all that a
+variable has, also where they are of size 1.
+Units are in the attribute `units`, what a variable is in `long_name`. Discs, cranks, pins, rollers and holes are numbered from 0,
+counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
+
+A variable is there where the drive has it: of friction with `[friction]`, of seats with loose pins and sleeves, of walls
+with `--compliance fe` and `hybrid`. What one case has and another has not is not a number there.
+
+"""
+    for title, variables in (
+        ("Variables", VARIABLES),
+        ("Of friction", OF_FRICTION),
+        ("Of walls (`fe` and `hybrid`)", WALL_VARIABLES),
+    ):
+        text += f"## {title}\n\n"
+        text += table(
+            ("variable", "dimensions", "unit", "meaning"),
+            (
+                (f"`{name}`", ", ".join(("case", *DIMENSIONS[kind])), _unit(unit), meaning)
+                for name, (kind, unit, meaning) in variables.items()
+            ),
+        )
+    drive = load_drive("paper").cases["CS-1"]
+    analysis = analyse(drive, position_angles(2))
+    dataset = build_dataset("paper", {"CS-1": analysis})
+    text += "## Coordinates\n\n" + table(
+        ("coordinate", "dimensions", "unit", "meaning"),
+        (
+            (
+                f"`{name}`",
+                ", ".join(map(str, values.dims)),
+                _unit(values.attrs.get("units", "1")),
+                values.attrs.get("long_name", "number, from 0" if name != "case" else "name"),
+            )
+            for name, values in dataset.coords.items()
+        ),
+    )
+    text += "## Attributes\n\n" + table(
+        ("attribute", "of the paper's CS-1"),
+        ((f"`{name}`", _attribute(name, value)) for name, value in dataset.attrs.items()),
+    )
+    text += """No clock and no folder is among them: same input, same bytes. `code_hash` is that of the code, `fingerprint`
+that of each case's drive, `status` is `complete`, or `partial` where a position has no answer.
+
+## summary.json
+
+Scalars of each case, their units at the end of their names (`_N`, `_MPa`, `_mm`, `_Nmm`, `_arcmin`, `_arcsec`, `_deg`, `_W`).
+Means and peaks run over the positions, `refined_…` are extremes over the whole turn, refined between them; null is what the
+engine or the positions cannot say. Of the paper's drive:
+
+"""
+    from ltca.analysis.summary import summarise
+
+    keys = summarise(analysis)
+    text += ", ".join(f"`{key}`" for key in keys if not key.startswith("refined_"))
+    return f"{text}.\n\nRefined: {', '.join(f'`{key}`' for key in keys if key.startswith('refined_'))}.\n"
+
+
+def _unit(unit: str) -> str:
+    from ltca.drive.units.table import label
+
+    return "–" if unit == "1" else label(unit).replace("N mm", "N·mm")
+
+
+def _attribute(name: str, value: object) -> str:
+    if name == "drive_file":
+        return "text of the drive file"
+    if name in ("fingerprint", "code_hash", "version", "source"):
+        return "…"
+    return f"`{value}`"
+
+
+def quantities_page() -> str:
+    """Names that studies, aims and limits take."""
+    from ltca.drive.members.judgement import TITLES
+    from ltca.drive.members.limits import LIMITED
+    from ltca.studies.quantities import DEFAULT_QUANTITIES, QUANTITIES
+
+    text = """# Names of results
+
+`cyclo quantities` prints them; with `--drive DRIVE` it says which of them the drive has not, and the limits of its file.
+
+## Of studies
+
+`cyclo tolerance --quantities`, `quantities` of a [study file](../../how-to/studies.md), `cyclo optimise --minimise` and
+`--subject`. Those with a star cost another solution and come when named, or with `all`.
+
+"""
+    text += table(
+        ("name", "unit", "meaning"),
+        (
+            (f"`{name}`{_star(name, DEFAULT_QUANTITIES)}", quantity.symbol or "–", quantity.description)
+            for name, quantity in QUANTITIES.items()
+        ),
+    )
+    text += """## Of limits
+
+`[limits]` of a drive file and the rows of `cyclo check` ([Limits, verdict, advice](../../how-to/verdict.md)): `max_` or `min_`
+before the name.
+
+"""
+    return text + table(
+        ("name", "unit", "meaning"), ((f"`{name}`", _unit(unit), TITLES[name]) for name, unit in LIMITED.items())
+    )
+
+
+def _star(name: str, default: Iterable[str]) -> str:
+    return "" if name in default else " \\*"

@@ -1,0 +1,68 @@
+"""README and documents: links lead somewhere, examples of the gallery hold a number, set-up lines are those of the CI.
+
+Sphinx checks links between pages when it builds them (``.ci/run``); here what GitHub shows is looked at, without Sphinx.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
+WRITTEN = ("reference/generated/", "gallery/")  # when the pages are built (docs/generated_pages.py, sphinx-gallery)
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)|src=\"([^\"]+)\"")
+START, END = "# sphinx_gallery_start_ignore", "# sphinx_gallery_end_ignore"
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+
+
+def broken(page, text):
+    found = [first or second for first, second in LINK.findall(re.sub(r"```.*?```", "", text, flags=re.DOTALL))]
+    local = [link for link in found if "://" not in link and not any(part in link for part in WRITTEN)]
+    return [link for link in local if not (page.parent / link).exists()]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_links_lead_somewhere(page):
+    assert broken(page, page.read_text(encoding="utf-8")) == []
+
+
+def test_a_broken_link_is_seen():
+    assert broken(ROOT / "README.md", "[a](docs/nowhere.md), [b](README.md#there)") == ["docs/nowhere.md"]
+
+
+def test_every_page_has_one_title():
+    for page in PAGES:
+        text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        assert len(re.findall(r"^# ", text, flags=re.MULTILINE)) == 1, page
+
+
+def test_readme_is_a_screen_and_a_half():
+    """About 100 lines, and the two set-up lines, which the CI calls to the letter."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) < 110
+    lines = re.findall(r"```sh\n(.*)\n```", text)[:2]
+    set_up = "sh .ci/system-libraries && python3 -m venv .venv && .venv/bin/pip install --quiet --editable "
+    assert lines == [
+        f"{set_up}. && .venv/bin/cyclo run paper",
+        f"{set_up}'.[test]' && .venv/bin/python -m pytest -n 2",
+    ]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_pin_a_number_that_readers_do_not_see(path):
+    """They are run by the documentation, once; here only that each can fail."""
+    text = path.read_text(encoding="utf-8")
+    assert text.count(START) == text.count(END) == 1
+    hidden = text[text.index(START) : text.index(END)]
+    assert any(isinstance(node, ast.Assert) for node in ast.walk(ast.parse(hidden)))
+    title, line = ast.get_docstring(ast.parse(text)).splitlines()[:2]
+    assert set(line) == {"="}
+    assert len(line) >= len(title)
+
+
+def test_there_are_examples_enough():
+    assert len(EXAMPLES) >= 12
