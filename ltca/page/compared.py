@@ -152,7 +152,9 @@ def _measured(path: Path) -> Compared:
     order = np.argsort(turned, kind="stable")
     arrays = {"measured/angle": turned[order], "measured/te": table[order, 1] * ERRORS[error[0]]}
     span = f"{degrees(turned.min()):.4g}° … {degrees(turned.max()):.4g}°"
-    return Compared(name="measured", told=f"{path.name}: {len(found)} measured values, {span}", cases=(), arrays=arrays)
+    range_of = f"peak to peak {np.ptp(arrays['measured/te']):.3g}″"
+    told = f"{path.name}, {len(found)} measured values, {span}, {range_of}"
+    return Compared(name="measured", told=told, cases=(), arrays=arrays)
 
 
 def matched(cases: Mapping[str, Any], compared: Compared) -> list[int]:

@@ -37,44 +37,62 @@ SAME = 1e-9
 def verdict_of(checks: Checks) -> tuple[str, str]:
     """Return the verdict in one sentence, and its state: ``pass``, ``fail`` or nothing."""
     every = [check for case in checks.values() for check in case]
-    judged = [check for check in every if check.limit is not None]
     failed = [check for check in every if check.fails]
+    kept = [check for check in every if check.verdict == "pass"]
+    unknown = [check for check in every if check.limit is not None and check.verdict == "not known"]
+    others = sum(check.limit is None and check.value.value is not None for check in every)
     if not checks:
         return "No verdict: some positions have no answer.", "fail"
     if failed:
         cases = sum(any(check.fails for check in case) for case in checks.values())
-        of = f" in {cases} of {len(checks)} cases" if len(checks) > 1 else ""
-        return f"{len(failed)} of {len(judged)} checks fail{of}.", "fail"
-    if not judged:
+        of = f", in {cases} of {len(checks)} cases" if len(checks) > 1 else ""
+        return f"{len(failed)} of {len(failed) + len(kept)} checks fail{of}.", "fail"
+    if not kept:
         return "Nothing is judged: neither drive file nor materials have limits.", ""
-    without = len(every) - len(judged)
-    return f"All {len(judged)} checks that have a limit are kept; {without} values have none and are only told.", "pass"
+    told = [f"All {len(kept)} values that can be judged keep their limits."]
+    told += [f"{len(unknown)} limits meet no value that this run knows."] if unknown else []
+    told += [f"{others} values have no limit and only inform."] if others else []
+    return " ".join(told), "pass"
 
 
 def verdict_tables(checks: Checks) -> list[Table]:
-    """Return the checks that have a limit, and those that have none: a line each, cases side by side."""
-    limited = _by_check(checks, lambda check: check.limit is not None or check.fails)
+    """Return what is judged, worst first; limits that meet no value; values without a limit: cases side by side."""
+    judged = _by_check(checks, lambda check: check.fails or check.verdict in ("pass", "fail"))
+    unknown = _by_check(
+        checks, lambda check: check.limit is not None and check.verdict == "not known" and not check.fails
+    )
     others = _by_check(checks, lambda check: check.limit is None and not check.fails and check.value.value is not None)
-    several = len(checks) > 1
-    found = []
-    if limited:
-        heads = list(checks) if several else ["value", "where"]
+    several, found = len(checks) > 1, []
+    if judged:
         rows = []
-        for (title, bound, source), each in limited.items():
+        for (title, bound, source), each in sorted(judged.items(), key=_urgency):
             cells = [_judged(each.get(case)) for case in checks]
             if not several:
                 cells.append(word(minus(place_words(next(iter(each.values()))))))
             rows.append([word(title), word(minus(bound)), *cells, word(source)])
-        columns = ["check", "limit", *heads, "where the limit comes from"]
-        found.append(Table(name="verdict", caption="Checks with a limit", columns=columns, rows=rows))
-    if others:
+        columns = ["check", "limit", *(list(checks) if several else ["value", "where"]), "where the limit comes from"]
+        found.append(Table(name="verdict", caption="", columns=columns, rows=rows))
+    if unknown:
         rows = [
-            [word(title), *(_told(each.get(case)) for case in checks)]
-            for (title, _, _), each in others.items()
-        ]  # fmt: skip
+            [word(title), word(minus(bound)), word(next(iter(each.values())).value.reason), word(source)]
+            for (title, bound, source), each in unknown.items()
+        ]
+        columns = ["check", "limit", "why there is no value", "where the limit comes from"]
+        found.append(
+            Table(name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows)
+        )
+    if others:
+        rows = [[word(title), *(_told(each.get(case)) for case in checks)] for (title, _, _), each in others.items()]
         columns = ["value", *(list(checks) if several else [""])]
-        found.append(Table(name="without_limit", caption="Without a limit", columns=columns, rows=rows))
+        found.append(Table(name="without_limit", caption="values without a limit", columns=columns, rows=rows))
     return found
+
+
+def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, float]:
+    """What fails comes first, then the least safety."""
+    each = line[1].values()
+    safeties = [check.safety for check in each if check.safety is not None]
+    return not any(check.fails for check in each), min(safeties, default=float("inf"))
 
 
 def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[str, Check]]:
@@ -96,8 +114,8 @@ def _judged(check: Check | None) -> Cell:
     state = "fail" if check.fails else "pass" if check.verdict == "pass" else ""
     note = MARKS.get("fail" if check.fails else check.verdict, WORDS[check.verdict])
     if check.safety is not None:
-        note += f", safety {check.safety:.3g}"
-    return number(check.value.value, unit=check.value.unit, note=minus(note), state=state)
+        note += f" · {check.safety:.3g}"
+    return number(check.value.value, note=minus(note), state=state)
 
 
 def _told(check: Check | None) -> Cell:
@@ -110,17 +128,16 @@ def summary_tables(analyses: Mapping[str, LoadedAnalysis], summaries: Summaries)
     """Return the scalars of the cases side by side, by `GROUPS`; those that have a row."""
     yields = any(one.drive.crank.support or one.drive.pin_wheel.support_stiffness for one in analyses.values())
     whole = {name: with_residual_part(case) for name, case in summaries.items()}
-    captions = {
-        "loads": "Loads", "pressures": "Pressures", "transmission": "Transmission error and backlash",
-        "losses": "Friction and losses", "rest": "What else is known of the answer",
-    }  # fmt: skip
+    captions = {"transmission": "Transmission error and backlash", "rest": "What else is known of the answer"}
     rows: dict[str, list[list[Cell]]] = {name: [] for name in GROUPS}
     for title, key, unit, form in rows_of(whole, yields=bool(yields)):
         values = [refined_value(case, key) if key in case else None for case in whole.values()]
+        if all(value is None for value in values):
+            continue
         cells = [number(value, form, unit) for value in values]
         rows[_group(key)].append([_title(title), *cells])
     return {
-        name: Table(name=name, caption=captions[name], columns=["", *whole], rows=each)
+        name: Table(name=name, caption=captions.get(name, ""), columns=["", *whole], rows=each)
         for name, each in rows.items()
         if each
     }
@@ -183,12 +200,15 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
         else:
             differing.append([word(path), word(_unit(path)), *(_input(value, path) for value in values)])
     heads = ["field", "unit", *drives]
-    tables = [Table(name="inputs", caption="", columns=["field", "value", "unit"], rows=common)]
+    tables = [Table(name="inputs", caption="", columns=["field", "value", "unit"], rows=common, words=2)]
     if differing:
         differ = Table(
             name="inputs_by_case", caption="What differs between cases", columns=heads, rows=differing, words=1
         )
-        tables = [differ, Table(name="inputs", caption="What all cases have", columns=tables[0].columns, rows=common)]
+        tables = [
+            differ,
+            Table(name="inputs", caption="What all cases have", columns=tables[0].columns, rows=common, words=2),
+        ]
     return tables
 
 

@@ -74,8 +74,8 @@ def point(value: complex) -> list[float]:
 
 
 def points(values: ComplexArray) -> list[list[float]]:
-    """Return places of an outline, mm, of which a thousandth is seen by nobody."""
-    return [[round(value.real, 3), round(value.imag, 3)] for value in values.tolist()]
+    """Return places of an outline, mm, fine enough for the directions of its normals."""
+    return [[round(value.real, 5), round(value.imag, 5)] for value in values.tolist()]
 
 
 def circles(centres: ComplexArray, radii: FloatArray) -> list[list[float]]:

@@ -8,6 +8,8 @@ from math import isfinite
 
 SIGNS = {"arcmin": "′", "arcsec": "″", "1": "", "N mm": "N·mm", "N*mm": "N·mm", "dimensionless": ""}
 """Units as they are printed where they are written otherwise inside."""
+CLOSE = ("°", "′", "″")
+"""Signs that stand right behind their number."""
 NOTHING = "–"
 
 
@@ -104,7 +106,8 @@ def number(value: float | None, form: str = "{:.5g}", unit: str = "", *, note: s
     """
     if value is None or not isfinite(value):
         return Cell(text=NOTHING, value="", note=note, state=state)
-    text = f"{minus(form.format(value))} {unit_sign(unit)}".strip()
+    sign = unit_sign(unit)
+    text = minus(form.format(value)) + (sign if sign in CLOSE else f" {sign}" if sign else "")
     return Cell(text=text, value=repr(float(value)), note=note, state=state)
 
 

@@ -37,10 +37,18 @@ def page_text(
         loader=jinja2.ChoiceLoader(loaders), autoescape=True, trim_blocks=True, lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )  # fmt: skip
+    environment.filters["signs"] = _with_signs
     folder = resources.files("ltca.page") / "scripts"
     joined = "\n".join((folder / f"{name}.js").read_text(encoding="utf-8") for name in (*SCRIPTS, *scripts))
     style = (resources.files("ltca.page") / "templates" / "page.css").read_text(encoding="utf-8")
     return environment.get_template(template).render({"style": style, "scripts": joined, **context}) + "\n"
+
+
+def _with_signs(text: str) -> Any:
+    """The text with indices below the line."""
+    from markupsafe import Markup, escape
+
+    return Markup(str(escape(text)).replace("φ_C", "φ<sub>C</sub>"))
 
 
 def write_page(path: Path, text: str) -> Path:

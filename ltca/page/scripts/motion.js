@@ -28,14 +28,15 @@ const less = ([a, b], [c, d]) => [a - c, b - d];
 const turned = angle => [Math.cos(angle), Math.sin(angle)];
 const unit = ([a, b]) => { const size = Math.hypot(a, b) || 1; return [a / size, b / size]; };
 
-// Point and outward normal of the flank at a parameter, from its outline, whose points are even in it.
+// Point and outward normal of the flank at a parameter, from its outline, whose points are even in it: cubics between them.
 function flankAt(outline, parameter) {
-  const count = outline.length, place = parameter / (2 * Math.PI) * count, low = Math.floor(place), part = place - low;
-  const at = i => outline[((i % count) + count) % count];
-  const [before, a, b, after] = [at(low - 1), at(low), at(low + 1), at(low + 2)];
-  const point = [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part];
-  const tangent = [0, 1].map(i => (b[i] - before[i]) * (1 - part) + (after[i] - a[i]) * part);
-  return { point: point, normal: unit([tangent[1], -tangent[0]]) };
+  const count = outline.length, place = parameter / (2 * Math.PI) * count, low = Math.floor(place), t = place - low;
+  const at = i => outline[(((low + i) % count) + count) % count];
+  const along = i => [0, 1].map(c => (8 * (at(i + 1)[c] - at(i - 1)[c]) - (at(i + 2)[c] - at(i - 2)[c])) / 12);
+  const weights = [-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6];
+  const between = of => [0, 1].map(c => weights.reduce((sum, weight, i) => sum + weight * of(i - 1)[c], 0));
+  const tangent = between(along);
+  return { point: between(at), normal: unit([tangent[1], -tangent[0]]) };
 }
 
 const KINDS = { pin: "wheel pin", outer: "roller", hole: "shaft pin" };

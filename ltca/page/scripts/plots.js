@@ -34,7 +34,7 @@ class Plot {
   listen() {
     const at = event => {
       const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) * this.width / box.width;
-      return this.low + (this.high - this.low) * Math.max(0, Math.min(1, (x - this.left) / (this.width - this.left - 10)));
+      return this.low + (this.high - this.low) * Math.max(0, Math.min(1, (x - this.left) / (this.width - this.left - 18)));
     };
     let down = null;
     this.svg.addEventListener("pointerdown", event => { down = [event.clientX, at(event)]; });
@@ -60,7 +60,7 @@ class Plot {
 
   // series: {name, values, x, colour, faint, dashed, thin}
   set(title, series) {
-    this.title.textContent = title;
+    this.title.textContent = title + (this.spec.unit ? `, ${this.spec.unit}` : "");
     this.button.setAttribute("aria-label", `Figure ${title} as SVG`);
     this.series = series;
     this.draw();
@@ -68,7 +68,7 @@ class Plot {
 
   draw() {
     const spec = this.spec, width = (this.width = Math.max(260, Math.round(this.figure.clientWidth || 520))), height = spec.height || 190;
-    const left = (this.left = 54), right = 10, top = 10, bottom = 34, svg = this.svg;
+    const left = (this.left = 54), right = 18, top = 10, bottom = 34, svg = this.svg;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.replaceChildren();
     let low = Infinity, high = -Infinity, first = Infinity, last = -Infinity;
@@ -83,6 +83,7 @@ class Plot {
     if (!(spec.zero && low === 0)) low -= room;
     if (!(spec.zero && high === 0)) high += room;
     if (spec.stems) { first -= 0.5; last += 0.5; }
+    if (spec.degrees && first >= 0 && last > 350 && last < 360) last = 360; // a whole turn
     [this.low, this.high] = this.range || [first, last];
     if (this.low === this.high) { this.low -= 1; this.high += 1; }
     const X = (this.X = value => left + (value - this.low) / (this.high - this.low) * (width - left - right));
@@ -99,7 +100,6 @@ class Plot {
       text(X(value), height - bottom + 16, figure(value, along.digits) + (spec.degrees ? "°" : ""), "middle");
     }
     text(width - right, height - 4, spec.xTitle, "end");
-    text(left - 46, height - 4, spec.unit, "start");
     const frame = node("svg", { x: left, y: 0, width: width - left - right, height: height, viewBox: `${left} 0 ${width - left - right} ${height}` }, svg);
     for (const line of this.series) {
       const group = node("g", { class: line.colour }, frame);
@@ -108,7 +108,7 @@ class Plot {
         line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]) + shift, x2: X(spec.x[i]) + shift, y1: Y(0), y2: Y(value) }, group); });
       } else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
-    this.svg.setAttribute("aria-label", `${this.title.textContent}, ${spec.unit || "no unit"}, from ${figure(low + room)} to ${figure(high - room)}`);
+    this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(low + room)} to ${figure(high - room)}`);
     this.line = spec.pick ? node("line", { class: "cursor", y1: top, y2: height - bottom }, frame) : null;
     this.marks = spec.pick ? this.series.map(line => (line.faint || line.x ? null : node("circle", { class: `mark ${line.colour}`, r: 3.2 }, frame))) : [];
     this.tell(this.index);
@@ -154,7 +154,7 @@ class Plot {
       const [mark, words, value] = this.keys.children[i].children;
       mark.className = `key ${line.colour}${line.dashed ? " dash" : ""}`;
       words.textContent = line.name + " ";
-      value.textContent = spec.pick && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)} ${spec.unit}` : "";
+      value.textContent = spec.pick && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)}${spec.unit === "arc seconds" ? "″" : " " + spec.unit}` : "";
     });
   }
 }

@@ -46,7 +46,7 @@ function setUp() {
 }
 
 function curve(id, where, title, unit, options, series) {
-  if (!plots[id]) plots[id] = new Plot(el(where), { id: id, unit: unit, x: degrees, xTitle: "crank angle φ_C", degrees: true, pick: go, ...options });
+  if (!plots[id]) plots[id] = new Plot(el(where), { id: id, unit: unit, x: degrees, xTitle: "crank angle", degrees: true, pick: go, ...options });
   plots[id].set(title, series);
 }
 
@@ -82,7 +82,7 @@ function drawCurves() {
   const errors = [{ values: row(`${kase}/${torque}/te`), colour: "c1", name: beside ? "this run" : "" }];
   if (beside && beside.cases.length) errors.push({ values: besideCurve(row(`b/${view.second}/${torque}/te`)), colour: "c-second", dashed: true, name: beside.name });
   if (has("b/measured/te")) errors.push(measured(errors[0].values));
-  curve("te", "curves", `Transmission error at ${torqueName(view, torque)}`, "″", { digits: 2 }, errors);
+  curve("te", "curves", `Transmission error at ${torqueName(view, torque)}`, "arc seconds", { digits: 2 }, errors);
   const bearing = [], cranks = shapeOf(`${kase}/radial`)[1];
   for (const [name, words] of [["tangential", "tangential"], ["radial", "radial"]]) for (let crank = 0; crank < cranks; crank++)
     bearing.push({ values: row(`${kase}/${name}`, disc, crank), colour: `c${crank % 3 + 1}`, dashed: name === "radial", name: words + (cranks > 1 ? `, crank ${crank}` : "") });
@@ -96,9 +96,9 @@ function drawCurves() {
   }
   if (has(`${kase}/orders`)) {
     const lines = row(`${kase}/orders`), orders = Float32Array.from(lines, (_, i) => i + 1);
-    if (!plots.orders) plots.orders = new Plot(el("orders-plot"), { id: "orders", unit: "″", x: orders, xTitle: "order, per turn of the crank", stems: true, zero: true, height: 200 });
+    if (!plots.orders) plots.orders = new Plot(el("orders-plot"), { id: "orders", unit: "arc seconds", x: orders, xTitle: "order, per turn of the crank", stems: true, zero: true, height: 200 });
     plots.orders.spec.x = orders;
-    plots.orders.set(`Whole orders of the transmission error${content.names.length > 1 ? `, case ${content.names[kase]}` : ""}`, [{ values: lines, colour: "c1", name: "" }]);
+    plots.orders.set(`Whole orders of the transmission error${content.names.length > 1 ? `, case ${content.names[kase]}` : ""}, amplitudes`, [{ values: lines, colour: "c1", name: "" }]);
   }
 }
 
