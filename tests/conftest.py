@@ -181,6 +181,7 @@ def chromium():
         assert found, run.stderr[-2000:]
         console = [line for line in run.stderr.splitlines() if "CONSOLE" in line]
         asked = set(re.findall(r'"url":"(https?://[^"]+)"', log.read_text(encoding="utf-8", errors="replace")))
+        # chromium itself may look for Google's hosts at every start; a page's own request would name anything else
         return json.loads(html.unescape(found.group(1))), console, {one for one in asked if "google" not in one}
 
     return visit
