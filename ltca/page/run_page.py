@@ -23,11 +23,10 @@ from ltca.page.run_tables import (
     orders_table,
     summary_tables,
     turn_orders,
-    verdict_of,
-    verdict_tables,
 )
 from ltca.page.scene import moving_scene
 from ltca.page.tables import Table, number, texts, word
+from ltca.page.verdict_tables import verdict_of, verdict_tables
 from ltca.page.writing import page_text, script_data
 
 PAGE = "report.html"

@@ -104,8 +104,10 @@ class Plot {
     for (const line of this.series) {
       const group = node("g", { class: line.colour }, frame);
       if (spec.stems) {
-        const step = Math.max(1.5, Math.min(6, (X(1) - X(0)) * 0.22)), shift = (line.shift || 0) * step;
-        line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]) + shift, x2: X(spec.x[i]) + shift, y1: Y(0), y2: Y(value) }, group); });
+        const step = Math.max(1.5, Math.min(6, (X(1) - X(0)) * 0.22));
+        line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]), x2: X(spec.x[i]), y1: Y(0), y2: Y(value) }, group); });
+      } else if (spec.points) {
+        line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 2.6, cx: X(spec.x[i]), cy: Y(value) }, group); });
       } else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
     this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(low + room)} to ${figure(high - room)}`);

@@ -15,8 +15,8 @@ from ltca.page.compared import read_compared
 from ltca.page.packing import unpack
 from ltca.page.run_arrays import run_arrays, shown_positions
 from ltca.page.run_page import run_page
-from ltca.page.run_tables import verdict_of
 from ltca.page.tables import minus
+from ltca.page.verdict_tables import verdict_of
 
 
 def script(text, name):
