@@ -51,6 +51,8 @@ class Table:
         As many as columns each.
     words : int
         How many columns after the first are words, which stand on the left; numbers stand on the right.
+    last_words : int
+        How many of the last columns are.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Table:
     columns: Sequence[str]
     rows: Sequence[Sequence[Cell]]
     words: int = field(default=0)
+    last_words: int = field(default=0)
 
 
 def minus(text: str) -> str:

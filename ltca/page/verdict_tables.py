@@ -53,7 +53,7 @@ def verdict_tables(checks: Checks) -> list[Table]:
                 cells.append(word(minus(place_words(next(iter(each.values()))))))
             rows.append([word(title), word(minus(bound)), *cells, word(source)])
         columns = ["check", "limit", *(list(checks) if several else ["value", "where"]), "where the limit comes from"]
-        found.append(Table(name="verdict", caption="", columns=columns, rows=rows))
+        found.append(Table(name="verdict", caption="", columns=columns, rows=rows, last_words=1 if several else 2))
     if unknown:
         rows = [
             [word(title), word(minus(bound)), word(next(iter(each.values())).value.reason), word(source)]

@@ -47,6 +47,7 @@ def _symbol(unit: str) -> str:
 
 
 def place_words(check: Check) -> str:
+    """Return where the value of a check is reached, or why it is not told."""
     value = check.value
     if value.value is None or (check.limit is None and value.reason):
         return value.reason

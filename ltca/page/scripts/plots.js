@@ -107,7 +107,7 @@ class Plot {
         const step = Math.max(1.5, Math.min(6, (X(1) - X(0)) * 0.22));
         line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]), x2: X(spec.x[i]), y1: Y(0), y2: Y(value) }, group); });
       } else if (spec.points) {
-        line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 2.6, cx: X(spec.x[i]), cy: Y(value) }, group); });
+        line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 1.9, cx: X(spec.x[i]), cy: Y(value) }, group); });
       } else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
     }
     this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(low + room)} to ${figure(high - room)}`);
@@ -156,7 +156,7 @@ class Plot {
       const [mark, words, value] = this.keys.children[i].children;
       mark.className = `key ${line.colour}${line.dashed ? " dash" : ""}`;
       words.textContent = line.name + " ";
-      value.textContent = spec.pick && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)}${spec.unit === "arc seconds" ? "″" : " " + spec.unit}` : "";
+      value.textContent = spec.pick && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)}${spec.unit === "arc seconds" ? "″" : spec.unit ? " " + spec.unit : ""}` : "";
     });
   }
 }

@@ -23,11 +23,15 @@ TOLD_ORDERS = 15
 def torque_section(curve: TorqueCurve, of: str) -> Section:
     """Return wind-up over torque, and what is read from it; `of` names case and colon, or is empty."""
     lines = {
-        minus(f"φ_C = {degrees(angle):.4g}°").replace("φ_C", "crank at"): each * ARCMIN
+        minus(f"crank at {degrees(angle):.4g}°"): each * ARCMIN
         for angle, each in zip(curve.crank_angle, curve.output_angle, strict=True)
     }
     plot = Curves(
-        title="Wind-up of the output", unit="′", axis="torque at the output, N·m", x=curve.torque / 1e3, lines=lines
+        title="Wind-up of the output",
+        unit="arc minutes",
+        axis="torque at the output, N·m",
+        x=curve.torque / 1e3,
+        lines=lines,
     )
     rows = [
         ("backlash at the output, discs floating", _range(curve.backlash * ARCMIN) + "′"),

@@ -54,7 +54,11 @@ def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, A
             "Pareto front": np.where(front, y, np.nan)[good],
         }
         titles = [QUANTITIES[aim].heading for aim in aims]
-        curves = [Curves(title=titles[1], unit="", axis=titles[0], x=x[good], lines=lines, kind="points")]
+        curves = [
+            Curves(
+                title=f"{titles[1]} over {titles[0]}", unit="", axis=titles[0], x=x[good], lines=lines, kind="points"
+            )
+        ]
     broken = outcome["broken_limits"]
     sentence = (
         f"Beyond {', '.join(broken)} when solved finely." if broken else "All limits are kept when solved finely."
