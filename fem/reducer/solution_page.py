@@ -8,6 +8,7 @@ from math import degrees
 from fem.drive.full_solution import FullSolution
 from fem.reducer.solution import ReducerSolution
 from ltca.drive.members.judgement import Check
+from ltca.drive.units.quantities import ARCSEC
 from ltca.page.study_page import Section, StudyPage
 from ltca.page.tables import Cell, Table, minus, number, texts, word
 from ltca.page.verdict_tables import verdict_of, verdict_tables
@@ -45,7 +46,7 @@ def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str,
         sections.append(Section(heading=f"Contacts{of}", notes=notes, tables=[contacts]))
     rows = [
         ("crank angle", f"{degrees(solution.crank_angle):.6g}° = {solution.crank_angle:.6g} rad"),
-        ("wheel angle", f"{solution.wheel_angle:.6g} rad"),
+        ("wheel angle", f"{solution.wheel_angle * ARCSEC:.6g}″ = {solution.wheel_angle:.6g} rad"),
         ("moment on the wheel", f"{solution.wheel_moment / 1e3:.6g} N·m"),
         ("largest unbalanced force", f"{solution.equilibrium_residual:.1e} N"),
         ("unknowns", f"{solution.unknowns}"),
