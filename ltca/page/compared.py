@@ -78,7 +78,7 @@ def read_compared(path: Path) -> Compared:
     if results.suffix == ".csv":
         return _measured(results)
     if results.suffix != ".nc" or not results.is_file():
-        raise DriveError([f"--compare {path}: holds no results.nc; give the folder of a run or a .csv"])
+        raise DriveError([f"--compare = {path}: holds no results.nc; give the folder of a run or a .csv"])
     return _of_run(results)
 
 
@@ -99,7 +99,7 @@ def _of_run(results: Path) -> Compared:
             for name in ("radial", "tangential"):
                 arrays[f"{number}/{name}"] = one[f"bearing_{name}"].transpose("disc", "crank", "position").values
     except (OSError, KeyError, ValueError) as error:
-        raise DriveError([f"{results}: is no result of cyclo run: {shortened(str(error))}"]) from error
+        raise DriveError([f"--compare = {results}: is no result of cyclo run: {shortened(str(error))}"]) from error
     told = dataset.attrs
     model = printable(str(told.get("compliance", "")))
     words = f"{printable(str(told.get('drive', '')))}, {model}, cyclo {printable(str(told.get('version', '')))}"
@@ -132,7 +132,7 @@ def _measured(path: Path) -> Compared:
     if len(angle) != 1 or len(error) != 1:
         raise DriveError(
             [
-                f"--compare {path}: must have one column of {' | '.join(ANGLES)} and one of {' | '.join(ERRORS)}, "
+                f"--compare = {path}: must have one column of {' | '.join(ANGLES)} and one of {' | '.join(ERRORS)}, "
                 f"divided by commas; it has {shortened(', '.join(names))}"
             ]
         )
@@ -143,10 +143,10 @@ def _measured(path: Path) -> Compared:
         except (ValueError, IndexError):
             values = [float("nan")]
         if not all(isfinite(value) for value in values):
-            raise DriveError([f"--compare {path}: row {number}: must hold two finite numbers, not {shortened(row)}"])
+            raise DriveError([f"--compare = {path}: row {number}: must hold two finite numbers, not {shortened(row)}"])
         found.append(values)
     if not found:
-        raise DriveError([f"--compare {path}: holds no measured value"])
+        raise DriveError([f"--compare = {path}: holds no measured value"])
     table = np.array(found)[:: 1 + len(found) // MOST_POSITIONS]
     turned = np.mod(table[:, 0] * ANGLES[angle[0]], 2.0 * np.pi)
     order = np.argsort(turned, kind="stable")
