@@ -77,6 +77,9 @@ def run_page(run: Run) -> str:
     first = next(iter(run.analyses.values()))
     shown = shown_positions(run.analyses)
     sentence, state = verdict_of(run.checks)
+    unjudged = [name for name in run.analyses if name not in run.checks]
+    if unjudged and run.checks:
+        sentence, state = f"No answer at some positions, not judged: {', '.join(unjudged)}. {sentence}", "fail"
     summary = summary_tables(run.analyses, run.summaries)
     places, numbers = pack(_arrays(run))
     content = {

@@ -60,7 +60,13 @@ def test_no_page_leaves_the_page_out(tmp_path, capsys):
 @pytest.mark.slow
 def test_figures_of_the_paper_as_svg_and_png(tmp_path):
     assert main([*RUN, "--out", str(tmp_path)]) == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"results.nc", "summary.json", "report.html", "figures", MANIFEST}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "results.nc",
+        "summary.json",
+        "report.html",
+        "figures",
+        MANIFEST,
+    }
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     stems = {name.rsplit(".", 1)[0] for name in names}
     assert names == {f"{stem}.{suffix}" for stem in stems for suffix in ("svg", "png")}

@@ -103,6 +103,12 @@ def test_the_verdict_comes_first_and_counts_honestly(page, paper_run):
     assert "no answer" in sentence
 
 
+def test_cases_without_an_answer_are_told(paper_run):
+    run = paper_run[0]
+    text = run_page(replace(run, checks={"CS-1": run.checks["CS-1"]}))
+    assert "✗ No answer at some positions, not judged: CS-6. All " in text
+
+
 def test_failures_come_first(paper_run):
     run = paper_run[0]
     (name, each), *_ = run.checks.items()
