@@ -33,7 +33,11 @@ def cold_run(extra: list[str]) -> float:
 def main() -> None:
     """Print the tables."""
     print("cold start, six cases x 360 positions, full and light torque")
-    for name, extra in (("results and summary", ["--no-figures"]), ("with ten figures (SVG, PNG)", [])):
+    for name, extra in (
+        ("results and summary", ["--no-figures", "--no-page"]),
+        ("with the page", ["--no-figures"]),
+        ("with page and ten figures", []),
+    ):
         print(f"  {name:<34}{min(cold_run(extra) for _ in range(3)):8.2f} s")
 
     print("\nwhere it goes, warm process")

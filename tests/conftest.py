@@ -1,9 +1,14 @@
-"""Drives the tests share: the paper's, variations of it, and random ones of other sizes and tooth numbers."""
+"""What tests share: drives, the paper's, variations of it, random ones of other sizes and tooth numbers; a browser."""
 
 from __future__ import annotations
 
 import copy
+import html
+import json
 import os
+import re
+import shutil
+import subprocess
 import tomllib
 from collections.abc import Callable
 from typing import Any
@@ -130,3 +135,53 @@ def random_drives() -> list[Drive]:
         except DriveError:  # a random drive may be unsound: the checks say so, the next one is drawn
             continue
     return drives
+
+
+CHROMIUM = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+)
+CHROMIUM_FLAGS = (
+    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-default-apps",
+    "--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=5000", "--enable-logging=stderr", "--dump-dom",
+)  # fmt: skip
+WATCH = """<script>
+window.seen = {errors: []};
+window.addEventListener("error", e => seen.errors.push(String(e.message)));
+window.addEventListener("unhandledrejection", e => seen.errors.push(String(e.reason)));
+for (const name of ["error", "warn"]) console[name] = (...words) => seen.errors.push(name + ": " + words.join(" "));
+window.leave = () => {
+  const out = document.createElement("pre");
+  out.id = "seen";
+  out.textContent = JSON.stringify(seen);
+  document.body.innerHTML = "";
+  document.body.appendChild(out);
+};
+</script>"""
+"""What a page under test does first: it writes down errors; `leave` hands over what its script has put into `seen`."""
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """Open a page in chromium with a script added; return what it saw, console lines and addresses asked for."""
+    if CHROMIUM is None:
+        pytest.skip("no chromium (apt install chromium)")
+
+    def visit(text, script, folder, size="1280,900"):
+        copy, log = folder / "copy.html", folder / "net.json"
+        copy.write_text(
+            text.replace("<head>", "<head>" + WATCH, 1).replace("</body>", script + "</body>"), encoding="utf-8"
+        )
+        command = [
+            CHROMIUM, *CHROMIUM_FLAGS, f"--user-data-dir={folder / 'profile'}", f"--window-size={size}",
+            f"--log-net-log={log}", copy.as_uri(),
+        ]  # fmt: skip
+        run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+        found = re.search(r'<pre id="seen">(.*?)</pre>', run.stdout, re.S)
+        assert found, run.stderr[-2000:]
+        console = [line for line in run.stderr.splitlines() if "CONSOLE" in line]
+        asked = set(re.findall(r'"url":"(https?://[^"]+)"', log.read_text(encoding="utf-8", errors="replace")))
+        # chromium itself may look for Google's hosts at every start; a page's own request would name anything else
+        return json.loads(html.unescape(found.group(1))), console, {one for one in asked if "google" not in one}
+
+    return visit

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
-from ltca.reading.arguments import add_out_argument, default_folder, torque_argument
+from ltca.reading.arguments import add_out_argument, add_page_argument, default_folder, torque_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fem.drive.full_solution import FullSolution
     from fem.reducer.solution import ReducerSolution
+    from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
 
@@ -46,6 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_out_argument(parser, "fem")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
+    add_page_argument(parser)
     parser.add_argument(
         "--export", choices=("calculix",), help="write a complete input deck of the same problem for another code"
     )
@@ -75,12 +77,19 @@ def execute(arguments: argparse.Namespace) -> int:
     out = arguments.out or default_folder(name, "fem")
     discs = drive.disc.number_of_discs
     writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
+    writes += [] if arguments.no_page else ["report.html"]
     own = [] if arguments.no_pictures else ["von_mises.png", "contacts.png", "deformed.png"]
     own += ["calculix.inp"] if arguments.export or referee else []
     own += ["calculix.dat"] if referee else []
     writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
     with claimed_folder(out, "fem", writes=writes):
-        _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
+        solution, checks = _solve_and_write(name, case, drive, file.limits[case], arguments, out, referee)
+        if not arguments.no_page:
+            from fem.reducer.solution_page import solution_page
+            from ltca.page.study_page import write_study_page
+
+            words = f"case {case}, {drive.load_words(arguments.torque)}, full finite elements, plane {arguments.plane}"
+            write_study_page(solution_page(solution, checks, case, words, file.text), out)
     return 0
 
 
@@ -92,7 +101,7 @@ def _solve_and_write(
     arguments: argparse.Namespace,
     out: Path,
     referee: Callable[[FullSolution, Path], None] | None,
-) -> None:
+) -> tuple[ReducerSolution, list[Check]]:
     from fem.drive.fields import recover_fields
     from fem.reducer.solution import solve_reducer
     from fem.reducer.solution_files import write_solution
@@ -143,6 +152,7 @@ def _solve_and_write(
         if referee:
             referee(disc, deck)
     print(f"written to {out}")
+    return solution, checks
 
 
 def _print_contacts(solution: FullSolution) -> None:

@@ -7,5 +7,6 @@ series          Solutions at one crank angle after the other, what they share ma
 verdict         What a solution reaches, judged by the same limits as the LTCA
 solution_files  Files of such a solution: ``summary.json``, ``fem.nc``, one ``.vtu`` for each body and ``fem.vtm`` over
                 them all
+solution_page   Its page
 ==============  ===============================================================
 """

@@ -10,6 +10,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_out_argument,
+    add_page_argument,
     count_argument,
     default_folder,
     torque_argument,
@@ -55,6 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-advice", action="store_true", help="verdicts alone, without what drives each value")
     add_compliance_arguments(parser)
     add_out_argument(parser, "check")
+    add_page_argument(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -76,7 +78,10 @@ def execute(arguments: argparse.Namespace) -> int:
     require_room_for(cases.values(), arguments.positions, out, f"--positions {arguments.positions}")
     engine, contents, failed = compliance_of(arguments), {}, 0
     notes: dict[str, list[str]] = {}
-    with claimed_folder(out, "check", writes=["check.json"]):
+    judged: dict[str, list[Check]] = {}
+    driving: dict[str, dict[str, list[Driver]]] = {}
+    writes = ["check.json", *([] if arguments.no_page else ["report.html"])]
+    with claimed_folder(out, "check", writes=writes):
         find_coefficients_of(cases, arguments)
         with progress("cases", len(cases)) as advance:
             for name, drive in cases.items():
@@ -89,12 +94,21 @@ def execute(arguments: argparse.Namespace) -> int:
                 print(f"{file.name} {name}, {drive.load_words(arguments.torque)}")
                 print(verdict_table(checks))
                 print("".join(f"  note: {note}\n" for note in told), end="")
-                notes[name] = told
+                notes[name], judged[name], driving[name] = told, checks, drivers
                 print(_advice(checks, drivers), end="")
                 advance(name)
         verdict = "fail" if failed else "pass"
         write_json(out / "check.json", {"drive": file.name, "verdict": verdict, "cases": contents, "notes": notes})
-    print(f"results: {out / 'check.json'}")
+        if not arguments.no_page:
+            from ltca.analysis.engines import describe_engine
+            from ltca.page.studies.check import check_page
+            from ltca.page.study_page import write_study_page
+
+            loads = dict.fromkeys(drive.load_words(arguments.torque) for drive in cases.values())
+            words = f"verdict at {', '.join(loads)}, {describe_engine(engine)}, {arguments.positions} positions of the crank"
+            made = {**engine.options, "positions": str(arguments.positions)}
+            write_study_page(check_page(file.name, file.text, words, judged, driving, notes, made), out)
+    print("results: " + ", ".join(str(out / name) for name in writes))
     return FAILED if failed else 0
 
 

@@ -11,6 +11,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_out_argument,
+    add_page_argument,
     count_argument,
     default_folder,
     quantity_argument,
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from ltca.drive.members.limits import Limit
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
+    from ltca.page.study_page import Section
     from ltca.reading.drive_file import DriveFile
 
 SUMMARY = "torque curve and lost motion, orders of the transmission error, bearing life, pressure safety"
@@ -85,7 +87,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_compliance_arguments(parser)
     add_out_argument(parser, "curves")
-    parser.add_argument("--no-figures", action="store_true", help="write curves.json only")
+    parser.add_argument("--no-figures", action="store_true", help="write no pictures")
+    add_page_argument(parser)
 
 
 class Limits(NamedTuple):
@@ -171,7 +174,8 @@ def execute(arguments: argparse.Namespace) -> int:
             _require_turns(drive, turns)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
     figures = figure_files(*(name + ending for name in FIGURES for ending in endings))
-    with claimed_folder(out, "curves", writes=["curves.json", *([] if arguments.no_figures else figures)]):
+    writes = ["curves.json", *([] if arguments.no_page else ["report.html"])]
+    with claimed_folder(out, "curves", writes=[*writes, *([] if arguments.no_figures else figures)]):
         find_coefficients_of(cases, arguments)
         return _solve_and_write(file, cases, limits, engine, arguments, out)
 
@@ -212,6 +216,7 @@ def _solve_and_write(
     from ltca.output.progress import progress
 
     contents, figures = {}, []
+    sections: list[Section] = []
     with progress("cases", len(cases)) as advance:
         for name, drive in cases.items():
             title = f"{file.name} {name}"
@@ -221,6 +226,8 @@ def _solve_and_write(
             found = _solve(drive, arguments.turns or drive.pin_wheel.number_of_pins, own, engine)
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, own)
+            if not arguments.no_page:
+                sections += _sections(found, drive, own, f"{name}: " if len(cases) > 1 else "")
             if not arguments.no_figures:
                 ending = f"_{name}" if len(cases) > 1 else ""
                 figures += _draw(found, title, drive.disc.number_of_discs, out / "figures", ending)
@@ -229,8 +236,45 @@ def _solve_and_write(
         print(f"figures: {out / 'figures'} ({len(figures)} as SVG and PNG)")
     (first, *others) = contents.values()
     write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
-    print(f"results: {out / 'curves.json'}")
+    files = [out / "curves.json"]
+    if sections:
+        from ltca.analysis.engines import describe_engine
+        from ltca.page.study_page import StudyPage, write_study_page
+
+        loads = dict.fromkeys(drive.load_words() for drive in cases.values())
+        told = f"curves at {', '.join(loads)}, {describe_engine(engine)}"
+        page = StudyPage(name=file.name, told=told, sections=sections, made=engine.options, text=file.text)
+        files.append(write_study_page(page, out))
+    print("results: " + ", ".join(map(str, files)))
     return 0
+
+
+def _sections(found: CaseCurves, drive: Drive, limits: Limits, of: str) -> list[Section]:
+    """What the page shows of a case; `of` names it where there are several."""
+    from ltca.analysis.life.life_text import life_lines
+    from ltca.page.studies.curves import life_section, orders_section, pressure_section, torque_section
+
+    turn = _worst_turn(found)
+    over = f"over {found.turns} turns, {found.crank_angle.size} positions"
+    return [
+        torque_section(found.curve, of),
+        orders_section(found.spectrum, over, of),
+        life_section(life_lines(found.lives, drive, _life_speed(drive, limits)), of),
+        pressure_section(found.crank_angle[turn], found.pressure[turn], found.safety, of),
+    ]
+
+
+def _worst_turn(found: CaseCurves) -> slice:
+    """Positions of the turn that holds the largest pressure of all: what is drawn is what is printed."""
+    each = found.crank_angle.size // found.turns
+    first = found.safety.position - found.safety.position % each
+    return slice(first, first + each)
+
+
+def _life_speed(drive: Drive, limits: Limits) -> str | None:
+    """Which speed the hours of the life are at."""
+    speed = _crank_speed(drive, limits)
+    return None if drive.duty or speed is None else _speed_words(drive, speed)
 
 
 def _allowed(drive: Drive, limits: Mapping[str, Limit]) -> float | None:
@@ -314,9 +358,7 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
         entry = spectrum.orders[number]
         print(f"  {entry.value:>9.4f}  {entry.name:<32}{spectrum.amplitude[number] * ARCSEC:>9.4f}″")
     print(f"  unexplained, rms{'':<29}{spectrum.residual * ARCSEC:>9.4f}″")
-    crank_speed = _crank_speed(drive, limits)
-    speed = None if drive.duty or crank_speed is None else _speed_words(drive, crank_speed)
-    print("\n".join(life_lines(found.lives, drive, speed)))
+    print("\n".join(life_lines(found.lives, drive, _life_speed(drive, limits))))
     told = (
         "without a limit" if limits.pressure is None else f"safety {safety.safety:.3f} against {limits.pressure:g} MPa"
     )
@@ -344,11 +386,8 @@ def _draw(found: CaseCurves, title: str, discs: int, folder: Path, ending: str) 
 
     from ltca.figures import curve_figures as figures
 
-    # The turn that holds the largest pressure of all: what is drawn is what is printed.
-    each = found.crank_angle.size // found.turns
-    first = found.safety.position - found.safety.position % each
-    turn = slice(first, first + each)
-    shown = replace(found.safety, position=found.safety.position - first)
+    turn = _worst_turn(found)
+    shown = replace(found.safety, position=found.safety.position - turn.start)
     return [
         figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),
         figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}"),

@@ -12,6 +12,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_out_argument,
+    add_page_argument,
     count_argument,
     default_folder,
 )
@@ -62,6 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_seed_argument(parser)
     add_compliance_arguments(parser)
     add_out_argument(parser, "optimise")
+    add_page_argument(parser)
     parser.add_argument("--no-figures", action="store_true", help="write the drive and the candidates only")
 
 
@@ -79,7 +81,9 @@ def execute(arguments: argparse.Namespace) -> int:
     engine = compliance_of(arguments)
     problem = _problem(file.cases[case], arguments)
     figures = [] if arguments.no_figures else figure_files("pareto" if len(problem.aims) == 2 else "search")
-    with claimed_folder(out, "optimise", writes=["optimum.toml", "optimum.json", "candidates.parquet", *figures]):
+    page = [] if arguments.no_page else ["report.html"]
+    writes = ["optimum.toml", "optimum.json", "candidates.parquet", *page, *figures]
+    with claimed_folder(out, "optimise", writes=writes):
         return _search_and_write(problem, name, case, engine, arguments, out)
 
 
@@ -107,7 +111,14 @@ def _search_and_write(
     with whole_file(out / "optimum.toml") as part:
         part.write_text(drive_text(best), encoding="utf-8")
     _write_candidates(optimum, out / "candidates.parquet")
-    write_json(out / "optimum.json", _outcome(optimum, fine, engine, arguments.positions))
+    outcome = _outcome(optimum, fine, engine, arguments.positions)
+    write_json(out / "optimum.json", outcome)
+    if not arguments.no_page:
+        from ltca.page.studies.optimum import optimum_page
+        from ltca.page.study_page import write_study_page
+
+        told = f"least {' and '.join(problem.aims)} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
+        write_study_page(optimum_page(name, told, optimum, outcome, drive_text(best)), out)
     print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
     _print(optimum, fine, arguments.positions)
     print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))

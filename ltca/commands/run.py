@@ -13,8 +13,10 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_out_argument,
+    add_page_argument,
     count_argument,
     default_folder,
+    path_argument,
     quantity_argument,
     torque_argument,
 )
@@ -26,9 +28,11 @@ if TYPE_CHECKING:
 
     from ltca.analysis.engines import Engine
     from ltca.analysis.loaded_analysis import LoadedAnalysis
+    from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
     from ltca.geometry.pairs import FloatArray
+    from ltca.page.compared import Compared
     from ltca.reading.drive_file import DriveFile
 
 SUMMARY = "loaded tooth contact analysis: loads, pressures, bearing forces, transmission error"
@@ -85,17 +89,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="pressure fields of all loaded contacts at these crank angles (default 0) into pressure.nc, with figures",
     )
     add_out_argument(parser, "run")
-    parser.add_argument("--no-figures", action="store_true", help="write results.nc and summary.json only")
+    parser.add_argument("--no-figures", action="store_true", help="write no pictures")
+    add_page_argument(parser)
+    parser.add_argument(
+        "--compare",
+        metavar="DIR",
+        type=path_argument("--compare"),
+        help="a second run (its folder or results.nc) or a measured transmission error (.csv) beside this one on the page",
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the analysis and write results, summary and figures."""
     from ltca.commands.compliance_arguments import check_compliance
+    from ltca.errors import DriveError
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 
     # Before the analysis is imported: what is wrong is told at once.
     check_compliance(arguments)
+    if arguments.compare is not None and arguments.no_page:
+        raise DriveError(["--compare: has no effect with --no-page"])
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     out = arguments.out or default_folder(file.name, "run")
@@ -107,11 +121,13 @@ def execute(arguments: argparse.Namespace) -> int:
     angles, pressure_angles = _crank_angles(arguments), _pressure_angles(arguments)
     torque, engine = arguments.torque, _engine(arguments)
     check_common_shape(cases)
+    compared = _compared(arguments.compare)
     require_room_for(cases.values(), angles.size, out, f"--positions {angles.size}")
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
         find_coefficients_of(cases, arguments)
         chosen = _Chosen(file=file, cases=cases, engine=engine, torque=torque)
-        return _solve_and_write(chosen, angles, pressure_angles, out, figures=not arguments.no_figures)
+        wanted = _Wanted(figures=not arguments.no_figures, page=not arguments.no_page, compared=compared)
+        return _solve_and_write(chosen, angles, pressure_angles, out, wanted)
 
 
 def _parts(cases: Mapping[str, Drive]) -> tuple[int, int, int]:
@@ -124,7 +140,7 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
     """Names of all files that the run may write."""
     from glob import escape
 
-    yield from ("results.nc", "summary.json")
+    yield from ("results.nc", "summary.json", *(() if arguments.no_page else ("report.html",)))
     if arguments.pressure is not None:
         yield "pressure.nc"
     if not arguments.no_figures:
@@ -147,8 +163,25 @@ class _Chosen(NamedTuple):
     torque: float | None
 
 
+class _Wanted(NamedTuple):
+    """What is written beside the numbers."""
+
+    figures: bool
+    page: bool
+    compared: Compared | None
+
+
+def _compared(path: Path | None) -> Compared | None:
+    """What is to stand beside the run, read before anything is computed."""
+    if path is None:
+        return None
+    from ltca.page.compared import read_compared
+
+    return read_compared(path)
+
+
 def _solve_and_write(
-    chosen: _Chosen, angles: FloatArray, pressure_angles: FloatArray | None, out: Path, *, figures: bool
+    chosen: _Chosen, angles: FloatArray, pressure_angles: FloatArray | None, out: Path, wanted: _Wanted
 ) -> int:
     from ltca.analysis.engines import describe_engine
     from ltca.analysis.results import build_dataset
@@ -181,11 +214,25 @@ def _solve_and_write(
         files.append("pressure.nc")
     print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
     yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
-    print(_verdicts(analyses, summaries, file.limits))
+    checks = _checks(analyses, summaries, file.limits)
+    sampling = _sampling(analyses, summaries, angles)
+    proportions = _proportions(analyses)
+    print(_verdicts(checks, proportions, len(analyses) > 1))
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
     if any(one.pressures.rigid_shaft_pins and one.drive.pin_shaft is not None for one in analyses.values()):
         print(RIGID_SHAFT_PINS)
-    print(_sampling(analyses, summaries, angles))
+    print("\n".join(sampling))
+    if wanted.page:
+        from ltca.page.run_page import PAGE, Run, run_page
+        from ltca.page.writing import write_page
+
+        run = Run(
+            name=file.name, text=file.text, analyses=analyses, summaries=summaries, checks=checks,
+            sampling=[*sampling, *dict.fromkeys(f"warning: {one}" for each in proportions.values() for one in each)],
+            compared=wanted.compared,
+        )  # fmt: skip
+        write_page(out / PAGE, run_page(run))
+        files.append(PAGE)
     print("results: " + ", ".join(str(out / name) for name in files))
     for name, failure in failures.items():
         left = 2 * angles.size
@@ -193,25 +240,41 @@ def _solve_and_write(
             left = sum(int((~known).sum()) for known in (failure.partial.balanced, failure.partial.balanced_light))
         told = f"case {name}: partial: {left} of {2 * angles.size} states have no answer"
         print(f"cyclo: error: {told}: {failure}", file=sys.stderr)
-    if figures:
+    if wanted.figures:
         _draw(dataset, fields, cases, out / "figures")
     return ConvergenceError.exit_status if failures else 0
 
 
-def _verdicts(
+def _checks(
     analyses: dict[str, LoadedAnalysis], summaries: dict[str, dict[str, float | None]], limits: dict[str, Limits]
-) -> str:
-    """The checks that have a limit, case by case; nothing of cases without an answer everywhere."""
-    from ltca.analysis.verdict.proportions import odd_proportions
+) -> dict[str, list[Check]]:
+    """The checks of each case that has an answer everywhere."""
     from ltca.analysis.verdict.values import judge_analysis
+
+    return {
+        name: judge_analysis(analysis, summaries[name], limits[name], lives=False)
+        for name, analysis in analyses.items()
+        if analysis.is_complete
+    }
+
+
+def _proportions(analyses: dict[str, LoadedAnalysis]) -> dict[str, list[str]]:
+    """What is odd about the sizes of each case that has an answer everywhere."""
+    from ltca.analysis.verdict.proportions import odd_proportions
+
+    return {
+        name: [*odd_proportions(analysis.as_written)] for name, analysis in analyses.items() if analysis.is_complete
+    }
+
+
+def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]], several: bool) -> str:
+    """The checks that have a limit, case by case."""
     from ltca.drive.members.verdict_words import verdict_table
 
     told = []
-    for name, analysis in analyses.items():
-        if analysis.is_complete:
-            checks = judge_analysis(analysis, summaries[name], limits[name], lives=False)
-            told += [f"verdict on {name}" if len(analyses) > 1 else "verdict", verdict_table(checks, limited=True)]
-            told += [f"  note: {note}" for note in odd_proportions(analysis.as_written)]
+    for name, each in checks.items():
+        told += [f"verdict on {name}" if several else "verdict", verdict_table(each, limited=True)]
+        told += [f"  note: {note}" for note in proportions[name]]
     return "\n".join(
         [*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"]
     )
@@ -286,35 +349,6 @@ def _pressure_angles(arguments: argparse.Namespace) -> FloatArray | None:
     return None if arguments.pressure is None else np.array(arguments.pressure or [0.0])
 
 
-ROWS = (
-    ("mean bearing load", "mean_bearing_load_N", "N", "{:.1f}"),
-    ("  radial", "mean_radial_bearing_load_N", "N", "{:.1f}"),
-    ("  tangential", "mean_tangential_bearing_load_N", "N", "{:.1f}"),
-    ("  tangential, peak to peak", "ptp_tangential_bearing_load_N", "N", "{:.1f}"),
-    ("largest bearing load", "max_bearing_load_N", "N", "{:.1f}"),
-    ("largest pin load", "max_pin_load_N", "N", "{:.1f}"),
-    ("largest pin pressure, mid-width", "max_pin_pressure_mid_MPa", "MPa", "{:.1f}"),
-    ("  anywhere (end cell a hundredth)", "max_pin_pressure_max_MPa", "MPa", "{:.1f}"),
-    ("largest roller load", "max_roller_load_N", "N", "{:.1f}"),
-    ("largest roller pressure, mid-width", "max_roller_pressure_mid_MPa", "MPa", "{:.1f}"),
-    ("  anywhere (end cell a hundredth)", "max_roller_pressure_max_MPa", "MPa", "{:.1f}"),
-    ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
-    ("largest pin-shaft pressure, mid-width", "max_pin_shaft_pressure_mid_MPa", "MPa", "{:.1f}"),
-    ("  anywhere (end cell a hundredth)", "max_pin_shaft_pressure_max_MPa", "MPa", "{:.1f}"),
-    ("pin-shaft loaded range", "pin_shaft_loaded_range_deg", "°", "{:.1f}"),
-    ("loaded wheel pins, mean", "mean_loaded_pins", "", "{:.2f}"),
-    ("loaded rollers, mean", "mean_loaded_rollers", "", "{:.2f}"),
-    ("loaded pin-shaft pins, mean", "mean_loaded_pin_shaft_pins", "", "{:.2f}"),
-    ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
-    ("  at the light torque", "ptp_transmission_error_light_arcsec", "″", "{:.2f}"),
-    ("backlash at the disc", "backlash_disc_arcmin", "′", "{:z.2f}"),
-    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
-)
-RESIDUAL_PART = "residual_part"
-RESIDUAL_ROWS = (
-    ("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),
-    ("  as a part of the largest bearing load", RESIDUAL_PART, "", "{:.1e}"),
-)
 HEAD = 44
 """Width of the names of the rows."""
 
@@ -323,97 +357,23 @@ RIGID_SHAFT_PINS = (
     "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
     "--no-hole-near-field"
 )
-OUTPUT_ROWS = (("  at the output", "backlash_output_arcmin", "′", "{:z.2f}"),)
-INTERFERENCE_ROWS = (("  pins and flank overlap at rest by", "interference_mm", "mm", "{:.4f}"),)
-SEAT_ROWS = (
-    ("largest pressure in wheel-pin seats", "max_pin_seat_pressure_MPa", "MPa", "{:.1f}"),
-    ("largest pressure in shaft-pin sleeves", "max_hole_seat_pressure_MPa", "MPa", "{:.1f}"),
-    ("largest deflection of a wheel pin", "max_pin_deflection_mm", "mm", "{:.4f}"),
-    ("largest deflection of a shaft pin", "max_shaft_pin_deflection_mm", "mm", "{:.4f}"),
-)
-FRICTION_ROWS = (
-    ("efficiency, mean", "mean_efficiency", "", "{:.4f}"),
-    ("  with the motion reversed", "mean_efficiency_back", "", "{:.4f}"),
-    ("  moves back (1) or locks itself (0)", "moves_back", "", "{:.0f}"),
-    ("torque of the cranks, mean", "mean_crank_torque_Nmm", "N·mm", "{:.1f}"),
-    ("power lost", "power_loss_W", "W", "{:.3g}"),
-    ("  flank on wheel pins", "power_loss_pin_W", "W", "{:.3g}"),
-    ("  seats of pins and sleeves", "power_loss_seat_W", "W", "{:.3g}"),
-    ("  holes on shaft pins", "power_loss_hole_W", "W", "{:.3g}"),
-    ("  rolling of the crank bearings", "power_loss_roller_W", "W", "{:.3g}"),
-    ("  bearings of cranks and wheel", "power_loss_support_bearing_W", "W", "{:.3g}"),
-    ("  seals and oil", "power_loss_no_load_W", "W", "{:.3g}"),
-    ("largest p·v at the flank", "max_pin_pv_MPa_m_s", "MPa m/s", "{:.4g}"),
-    ("largest p·v at the holes", "max_pin_shaft_pv_MPa_m_s", "MPa m/s", "{:.4g}"),
-)
-WALL_ROWS = (
-    ("largest stress along lobe roots", "max_root_stress_MPa", "MPa", "{:.1f}"),
-    ("  along hole walls", "max_hole_stress_MPa", "MPa", "{:.1f}"),
-    ("  along the bore", "max_bore_stress_MPa", "MPa", "{:.1f}"),
-)
 
 
 def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str], yields: bool) -> str:
     from ltca.analysis.summary import refined_value
+    from ltca.analysis.summary_rows import rows_of, with_residual_part
 
-    summaries = {name: {**case, RESIDUAL_PART: _residual_part(case)} for name, case in summaries.items()}
+    summaries = {name: with_residual_part(case) for name, case in summaries.items()}
     width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
     lines = [
         f"{'case':<{HEAD}}" + "".join(f"{name:>{width}}" for name in summaries),
         f"{'torque, direction of the crank':<{HEAD}}" + "".join(f"{load:>{width}}" for load in loads.values()),
     ]
-    walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
-    shares = (*_share_rows(summaries), *_compliance_rows(summaries, yields))
-    output = (
-        OUTPUT_ROWS
-        if any(row["backlash_output_arcmin"] != row["backlash_wheel_arcmin"] for row in summaries.values())
-        else ()
-    )
-    pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
-    seats = [
-        row for row in (*SEAT_ROWS, *FRICTION_ROWS) if any(case.get(row[1]) is not None for case in summaries.values())
-    ]
-    for title, key, unit, form in (*ROWS, *output, *seats, *shares, *RESIDUAL_ROWS, *pressed, *walls):
+    for title, key, unit, form in rows_of(summaries, yields=yields):
         head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) if key in case else None for case in summaries.values()]
         lines.append(f"{head:<{HEAD}}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
     return "\n".join(lines)
-
-
-def _residual_part(case: Mapping[str, float | None]) -> float | None:
-    """What the residual is against: very stiff supports leave round-off of tenths of a newton."""
-    residual, load = case["max_equilibrium_residual_N"], case["max_bearing_load_N"]
-    return residual / load if residual is not None and load else None
-
-
-def _share_rows(summaries: dict[str, dict[str, float | None]]) -> Iterator[tuple[str, str, str, str]]:
-    """Parts of the torque, of several discs."""
-    discs = sum(key.startswith("mean_torque_share_disc_") for key in next(iter(summaries.values())))
-    for disc in range(discs if discs > 1 else 0):
-        yield f"part of the torque on disc {disc}, mean", f"mean_torque_share_disc_{disc}", "", "{:.4f}"
-        yield "  largest at the positions", f"max_torque_share_disc_{disc}", "", "{:.4f}"
-
-
-def _compliance_rows(
-    summaries: dict[str, dict[str, float | None]], yields: bool
-) -> Iterator[tuple[str, str, str, str]]:
-    """What yields how much, where more does than contacts of a central crank; torques of several cranks."""
-    from ltca.equilibrium.compliance_shares import PARTS
-
-    first = next(iter(summaries.values()))
-    cranks = sum(key.startswith("mean_torque_crank_") for key in first)
-    for crank in range(cranks if cranks > 1 else 0):
-        yield f"torque of crank {crank}, mean", f"mean_torque_crank_{crank}_Nmm", "N mm", "{:.0f}"
-        yield "  largest bearing load at the positions", f"max_bearing_load_crank_{crank}_N", "N", "{:.1f}"
-    for crank in range(cranks):
-        key = f"max_crank_deflection_crank_{crank}_mm"
-        if any(key in case for case in summaries.values()):
-            of = f" of crank {crank}" if cranks > 1 else " of the crank"
-            yield f"largest deflection{of}", key, "mm", "{:.4f}"
-    told = [part for part in PARTS if any(case[f"compliance_share_{part}"] for case in summaries.values())]
-    for number, part in enumerate(told if yields or cranks > 1 else ()):
-        title = "part of the compliance: " if number == 0 else "  "
-        yield title + part.replace("_", " "), f"compliance_share_{part}", "", "{:.4f}"
 
 
 def _many(angles: FloatArray) -> str:
@@ -422,7 +382,7 @@ def _many(angles: FloatArray) -> str:
 
 def _sampling(
     analyses: dict[str, LoadedAnalysis], summaries: dict[str, dict[str, float | None]], angles: FloatArray
-) -> str:
+) -> list[str]:
     """What the values stand for: which positions, whether they see the mesh, and what to know of drive and answer."""
     from ltca.analysis.extremes import is_full_turn, sampling_warning
 
@@ -438,4 +398,4 @@ def _sampling(
     for name, case in summaries.items():
         if whole and analyses[name].is_complete and case["refined_max_pin_load_N"] is None:
             warnings.add(f"extremes of case {name} are those of its positions: one between them has no answer")
-    return "\n".join([*lines, *(f"warning: {text}" for text in sorted(warnings))])
+    return [*lines, *(f"warning: {text}" for text in sorted(warnings))]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
-from ltca.reading.arguments import add_out_argument, count_argument
+from ltca.reading.arguments import add_out_argument, add_page_argument, count_argument
 
 if TYPE_CHECKING:
     from ltca.studies.execution.storage import StudyFolder
@@ -60,7 +60,8 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     add_out_argument(parser, command)
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
     parser.add_argument("--force", action="store_true", help="replace another study in --out")
-    parser.add_argument("--no-figures", action="store_true", help="write results and summary only")
+    parser.add_argument("--no-figures", action="store_true", help="write no pictures")
+    add_page_argument(parser)
     parser.add_argument(
         "--sample",
         metavar="I",
@@ -116,6 +117,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
     figures = [] if arguments.no_figures else figure_files("responses", "distributions", "sensitivity")
     writes = [*(path.name for path in folder.files), "summary.json", sample_file("[0-9]" * 8), *figures]
+    writes += [] if arguments.no_page else ["report.html"]
     # Of its own files that are not as it wrote them a study tells what to do, or it was told to replace them.
     renewing = tuple(path.name for path in folder.files) if arguments.resume or arguments.force else ()
     with claimed_folder(folder.path, "study", writes=writes, beside=(BATCHES,), renewing=renewing) as held:
@@ -149,6 +151,11 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
             study, folder, workers, resume=arguments.resume, replace=arguments.force, advance=advance, told=tell
         )
     _print(study, folder, found, _compliance_words(study, arguments.coefficients))
+    if not arguments.no_page:
+        from ltca.page.studies.samples import samples_page
+        from ltca.page.study_page import write_study_page
+
+        print(f"page: {write_study_page(samples_page(study, found), folder.path)}")
     if found.quantities and not arguments.no_figures:
         from ltca.figures.study_figures import write_study_figures
 

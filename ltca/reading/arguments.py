@@ -100,6 +100,11 @@ def add_out_argument(parser: argparse.ArgumentParser, command: str, what: str = 
     parser.add_argument("--out", metavar="DIR", type=path_argument("--out"), help=f"{what}; default {shown}")
 
 
+def add_page_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the argument that leaves the page out."""
+    parser.add_argument("--no-page", action="store_true", help="write no report.html")
+
+
 def default_folder(name: str, command: str) -> Path:
     """Return where a command writes when it is not told: ``out/<name>`` for ``run``, ``out/<name>_<command>`` else.
 

@@ -96,10 +96,10 @@ def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path, monke
     changed.write_text("drawn over by the user")
     assert main([*words, "--angles", "0.2", "--no-figures"]) == 0
     assert names(out) == [
-        MANIFEST, "figures/fig24_pin_load.svg", "figures/mine.png", "notes.txt", "results.nc", "summary.json",
+        MANIFEST, "figures/fig24_pin_load.svg", "figures/mine.png", "notes.txt", "report.html", "results.nc", "summary.json",
     ]  # fmt: skip
     content = json.loads((out / MANIFEST).read_text())
-    assert sorted(content["files"]) == ["results.nc", "summary.json"]
+    assert sorted(content["files"]) == ["report.html", "results.nc", "summary.json"]
     assert content["complete"]
 
 

@@ -35,7 +35,7 @@ def headline(study: Study) -> dict[str, Any]:
         ``worst_difference_from_full_fe``: by compliance model the largest load difference (of the largest load of its
         kind), pressure difference (relative) and wheel-angle difference (arc seconds), each with its place;
         ``change_half_space_to_full_fe``: by case, relative change of the largest pin, roller and pin-shaft load
-        that it has.
+        that it has; ``rows`` in all, ``checked`` by a limit, ``informing`` without one, and ``failed``.
     """
     positions = [item for case in study.compared.values() for item in case]
     return {
@@ -45,6 +45,8 @@ def headline(study: Study) -> dict[str, Any]:
             for case, items in study.compared.items()
         },
         "rows": len(study.rows),
+        "checked": sum(row.limit is not None for row in study.rows),
+        "informing": sum(row.limit is None for row in study.rows),
         "failed": len(failed_rows(study.rows)),
     }
 

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import base64
 import io
-import json
+from math import degrees
 from pathlib import Path
 from typing import Any
 
 from ltca.drive.single_discs import single_discs
-from ltca.output.files import whole_file
+from ltca.page.scene import drive_scene
+from ltca.page.tables import minus
+from ltca.page.writing import page_text, script_data, write_page
 from validation.compare.finite_element_positions import disc_case
 from validation.compare.model_positions import MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
-from validation.report.scene import drive_scene, position_scene
+from validation.report.scene import position_scene
 from validation.report.verdict import FULL, verdict_lines
 from validation.rows import LEVELS, Row
 from validation.study import Study
@@ -61,16 +63,8 @@ def write_report(study: Study, path: Path) -> Path:
     CycloError
         When it cannot be written.
     """
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("validation.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )  # fmt: skip
-    text = environment.get_template("report.html").render(**_context(study))
-    with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
-    return path
+    text = page_text("report.html", _context(study), scripts=("drawing",), package="validation.report")
+    return write_page(path, text)
 
 
 def _context(study: Study) -> dict[str, Any]:
@@ -90,7 +84,7 @@ def _context(study: Study) -> dict[str, Any]:
         "title": f"Validation of {plan.name}",
         "drive": plan.name,
         "cases": list(plan.drives),
-        "angles": [f"{angle:.4g}" for angle in plan.crank_angles],
+        "angles": [_angle(angle) for angle in plan.crank_angles],
         "depth": plan.level,
         "size": plan.settings.size,
         "torque": f"{first.load.torque / 1000.0:g}",
@@ -102,13 +96,12 @@ def _context(study: Study) -> dict[str, Any]:
         ],
         "verdicts": verdict_lines(study),
         "verdict_models": [FULL, *MODELS],
-        "sentences": judge_half_space(study.flexibility),
+        "sentences": [minus(line) for line in judge_half_space(study.flexibility)],
         "turns": [_turn_table(case, turn_content(item)) for case, item in study.flexibility.items()],
         "levels": [_level(number, [row for row in study.rows if row.level == number]) for number in LEVELS],
         "pictures": _pictures(study),
         "shared": SHARED,
-        # "</" would end the script element early, "<!--<script" keep it from ending.
-        "data": json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c"),
+        "data": script_data(data),
     }
 
 
@@ -117,7 +110,7 @@ def _worst_line(model: str, worst: dict[str, Any]) -> dict[str, str]:
 
     def place(item: dict[str, Any]) -> str:
         contact = f"{item['contact']}, " if "contact" in item else ""
-        return f"{contact}{item['case']}, {item['angle_rad']:.4g} rad"
+        return f"{contact}{item['case']}, {_angle(item['angle_rad'])}"
 
     return {
         "model": model,
@@ -125,7 +118,7 @@ def _worst_line(model: str, worst: dict[str, Any]) -> dict[str, str]:
         "load_place": place(load),
         "pressure": _signed_percent(pressure["difference"]),
         "pressure_place": place(pressure),
-        "wheel": f"{wheel['difference_arcsec']:+.3g}″",
+        "wheel": minus(f"{wheel['difference_arcsec']:+.3g}″"),
         "wheel_place": place(wheel),
     }
 
@@ -133,7 +126,11 @@ def _worst_line(model: str, worst: dict[str, Any]) -> dict[str, str]:
 def _signed_percent(value: float | None) -> str:
     if value is None:
         return "–"
-    return f"{100.0 * value:+.3g} %".replace("-", "−")
+    return minus(f"{100.0 * value:+.3g} %")
+
+
+def _angle(radians: float) -> str:
+    return minus(f"{degrees(radians):.4g}° = {radians:.4g} rad")
 
 
 def _turn_table(case: str, content: dict[str, dict[str, float | None]]) -> dict[str, Any]:
@@ -147,7 +144,7 @@ def _turn_table(case: str, content: dict[str, dict[str, float | None]]) -> dict[
             (
                 title,
                 unit.replace('"', "″"),
-                [f"{value:.4g}" if value is not None else "–" for value in values],
+                [minus(f"{value:.4g}") if value is not None else "–" for value in values],
                 _signed_percent(fe / half - 1.0 if half and fe is not None else None),
             )
         )
@@ -184,7 +181,7 @@ def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
 
 
 def _line(row: Row, count: int) -> dict[str, str]:
-    place = [row.case, f"{row.crank_angle:.4g} rad" if row.crank_angle is not None else "", row.contact]
+    place = [row.case, _angle(row.crank_angle) if row.crank_angle is not None else "", row.contact]
     return {
         "quantity": row.quantity,
         "place": ", ".join(part for part in place if part),
@@ -196,25 +193,25 @@ def _line(row: Row, count: int) -> dict[str, str]:
         "difference": _difference(row.difference, row.difference_unit),
         "limit": _difference(row.limit, row.difference_unit, sign="±") if row.limit is not None else "informs",
         "state": "failed" if not row.passed else "informs" if row.limit is None else "passed",
-        "reason": row.reason,
+        "reason": minus(row.reason),
     }
 
 
 def _figure(value: float, unit: str) -> str:
-    return f"{value:.5g} {unit.replace(chr(34), '″')}".strip().replace("-", "−")
+    return minus(f"{value:.5g} {unit.replace(chr(34), '″')}".strip())
 
 
 def _difference(value: float, unit: str, sign: str = "") -> str:
     ratio = unit == "" and abs(value) >= 1e-6
     text = f"{100.0 * value:.3g} %" if ratio else f"{value:.3g} {unit.replace(chr(34), '″')}".strip()
-    return (f"±{text}" if sign and value else text).replace("-", "−")
+    return minus(f"±{text}" if sign and value else text)
 
 
 def _pictures(study: Study) -> list[dict[str, str]]:
     return [
         {
             "case": item.full.case,
-            "angle": f"{item.full.crank_angle:.4g}",
+            "angle": _angle(item.full.crank_angle),
             "name": picture_name(path),
             "title": PICTURE_TITLES[picture_name(path)],
             "source": _embedded(path),

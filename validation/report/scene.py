@@ -7,8 +7,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.drive.parts import Drive
 from ltca.geometry.pairs import ContactGeometry
+from ltca.page.scene import circles, point
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
 from validation.rows import rounded
@@ -16,26 +16,8 @@ from validation.rows import rounded
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-POINTS_PER_LOBE = 36
-DIGITS = 4
-
 Line: TypeAlias = tuple[str, int, float | None]
 """Title, digits behind the point and value of one line of a table."""
-
-
-def drive_scene(drive: Drive) -> dict[str, Any]:
-    """Return what does not move: the disc's outline in its own frame and radii, mm."""
-    geometry = ContactGeometry.of_drive(drive)
-    place = geometry.placement
-    count = POINTS_PER_LOBE * drive.disc.number_of_teeth
-    outline = geometry.profile.flank(2.0 * np.pi * np.arange(count) / count)
-    return {
-        "outline": _points(outline),
-        "bores": _circles(place.bore_centres, np.full(place.cranks, drive.bore_radius)),
-        "race": rounded(drive.crank_bearing.inner_race_radius),
-        "holes": _circles(place.hole_centres, place.hole_radii),
-        "reach": rounded(1.1 * float(np.max(np.abs(place.wheel_pin_centres) + place.wheel_pin_radii))),
-    }  # fmt: skip
 
 
 def position_scene(compared: ComparedPosition) -> dict[str, Any]:
@@ -58,8 +40,8 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
         {
             "name": compared.full.answer.contact_name(kind, number),
             "kind": kind,
-            "at": _point(centres[number] + radii[number] * towards[number]),
-            "to": _point(towards[number]),
+            "at": point(centres[number] + radii[number] * towards[number]),
+            "to": point(towards[number]),
             "models": {model: _numbers(answer, kind, number) for model, answer in answers.items()},
         }
         for kind, (centres, radii, towards) in parts.items()
@@ -70,11 +52,11 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
     return {
         "case": compared.full.case,
         "angle": rounded(compared.full.crank_angle),
-        "disc": [*_point(_disc_centre(compared)), rounded(full.disc_rotation)],
-        "cranks": [[*_point(axis), *_point(race)] for axis, race in zip(place.crank_axes, races, strict=True)],
-        "pins": _circles(*parts["pin"][:2]),
-        "rollers": _circles(*parts["roller_outer"][:2]),
-        "shafts": _circles(*parts["hole"][:2]),
+        "disc": [*point(_disc_centre(compared)), rounded(full.disc_rotation)],
+        "cranks": [[*point(axis), *point(race)] for axis, race in zip(place.crank_axes, races, strict=True)],
+        "pins": circles(*parts["pin"][:2]),
+        "rollers": circles(*parts["roller_outer"][:2]),
+        "shafts": circles(*parts["hole"][:2]),
         "contacts": contacts,
         "totals": _totals(answers),
         "unknowns": compared.full.unknowns,
@@ -162,15 +144,3 @@ def _total_lines(answer: PositionAnswer) -> list[Line]:
 
 def _short(value: float) -> float | None:
     return None if not np.isfinite(value) else float(f"{value:.5g}")
-
-
-def _point(value: complex) -> list[float]:
-    return [round(float(value.real), DIGITS), round(float(value.imag), DIGITS)]
-
-
-def _points(values: ComplexArray) -> list[list[float]]:
-    return [[round(float(value.real), 3), round(float(value.imag), 3)] for value in values]
-
-
-def _circles(centres: ComplexArray, radii: FloatArray) -> list[list[float | None]]:
-    return [[*_point(centre), rounded(float(radius))] for centre, radius in zip(centres, radii, strict=True)]

@@ -29,7 +29,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
         bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
         told = "–" if value.value is None else f"{value.value:.5g}{unit}"
-        rows.append((check.title, told, bound, safety, WORDS[check.verdict], _where(check)))
+        rows.append((check.title, told, bound, safety, WORDS[check.verdict], place_words(check)))
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     lines = [
         f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]:>{widths[3]}}  "
@@ -46,7 +46,8 @@ def _symbol(unit: str) -> str:
     return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
 
 
-def _where(check: Check) -> str:
+def place_words(check: Check) -> str:
+    """Return where the value of a check is reached, or why it is not told."""
     value = check.value
     if value.value is None or (check.limit is None and value.reason):
         return value.reason

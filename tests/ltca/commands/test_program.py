@@ -44,13 +44,29 @@ def test_run_writes_results_and_summary(tmp_path):
     assert summary["drive"] == "paper"
     assert list(summary["cases"]) == ["CS-3", "CS-1"]
     assert summary["cases"]["CS-1"]["mean_tangential_bearing_load_N"] == pytest.approx(6737.5, rel=5e-3)
+    assert {path.name for path in tmp_path.iterdir()} == {"results.nc", "summary.json", "report.html", MANIFEST}
+    assert "report.html" in json.loads((tmp_path / MANIFEST).read_text())["files"]
+
+
+def test_no_page_leaves_the_page_out(tmp_path, capsys):
+    words = ["run", "paper", "--case", "CS-1", "--angles", "0.1", "--no-figures", "--no-page", "--out", str(tmp_path)]
+    assert main(words) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"results.nc", "summary.json", MANIFEST}
+    capsys.readouterr()
+    assert main([*words, "--compare", str(tmp_path)]) == 2
+    assert "--compare: has no effect with --no-page" in capsys.readouterr().err
 
 
 @pytest.mark.slow
 def test_figures_of_the_paper_as_svg_and_png(tmp_path):
     assert main([*RUN, "--out", str(tmp_path)]) == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"results.nc", "summary.json", "figures", MANIFEST}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "results.nc",
+        "summary.json",
+        "report.html",
+        "figures",
+        MANIFEST,
+    }
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     stems = {name.rsplit(".", 1)[0] for name in names}
     assert names == {f"{stem}.{suffix}" for stem in stems for suffix in ("svg", "png")}

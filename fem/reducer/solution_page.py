@@ -1,0 +1,85 @@
+"""``report.html`` of a full solution: verdict, contacts of every disc, the drive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import degrees
+
+from fem.drive.full_solution import FullSolution
+from fem.reducer.solution import ReducerSolution
+from ltca.drive.members.judgement import Check
+from ltca.drive.units.quantities import ARCSEC
+from ltca.page.study_page import Section, StudyPage
+from ltca.page.tables import Cell, Table, minus, number, texts, word
+from ltca.page.verdict_tables import verdict_of, verdict_tables
+
+
+def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str, told: str, text: str) -> StudyPage:
+    """Return the page of a full solution.
+
+    Parameters
+    ----------
+    solution : ReducerSolution
+        The solution.
+    checks : sequence of Check
+        Its verdict.
+    case, told, text : str
+        Of the drive, what was solved, and the drive file.
+    """
+    sentence, state = verdict_of({case: checks})
+    sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
+    several = len(solution.discs) > 1
+    for place, disc in enumerate(solution.discs):
+        of = f" of disc {place}" if several else ""
+        columns = ["contact", "load, N", "largest pressure, MPa", "half-width, µm"]
+        contacts = Table(name=f"contacts{place}", caption="", columns=columns, rows=[*_contacts(disc)])
+        cranks = disc.bearing_components.tolist()
+        notes = [
+            minus(
+                f"Bearing force on the disc{f' at crank {crank}' if len(cranks) > 1 else ''}: radial {radial:.1f} N, "
+                f"tangential {tangential:.1f} N."
+            )
+            for crank, (radial, tangential) in enumerate(cranks)
+        ]
+        if several:
+            notes.append(f"It carries {100.0 * float(solution.torque_share[place]):.2f} % of the torque.")
+        sections.append(Section(heading=f"Contacts{of}", notes=notes, tables=[contacts]))
+    rows = [
+        ("crank angle", f"{degrees(solution.crank_angle):.6g}° = {solution.crank_angle:.6g} rad"),
+        ("wheel angle", f"{solution.wheel_angle * ARCSEC:.6g}″ = {solution.wheel_angle:.6g} rad"),
+        ("moment on the wheel", f"{solution.wheel_moment / 1e3:.6g} N·m"),
+        ("largest unbalanced force", f"{solution.equilibrium_residual:.1e} N"),
+        ("unknowns", f"{solution.unknowns}"),
+    ]
+    drive = Table(name="drive", caption="", columns=["", "value"], rows=texts(rows), words=1)
+    sections.append(Section(heading="The drive", tables=[drive]))
+    return StudyPage(name=solution.drive.name, told=told, sentence=sentence, state=state, sections=sections, text=text)
+
+
+def _contacts(solution: FullSolution) -> Iterator[list[Cell]]:
+    """Loaded contacts, a row each."""
+    found = solution.contacts
+    for name, load, peak, width in (
+        ("wheel pin", found.pin_load, found.pin_pressure_max, found.pin_half_width),
+        (
+            "roller in the bore,",
+            found.roller_load_outer,
+            found.roller_pressure_max_outer,
+            found.roller_half_width_outer,
+        ),
+        (
+            "roller on the race,",
+            found.roller_load_inner,
+            found.roller_pressure_max_inner,
+            found.roller_half_width_inner,
+        ),
+        ("shaft pin", found.pin_shaft_load, found.hole_pressure_max, found.hole_half_width),
+    ):
+        for index, force in enumerate(load.tolist()):
+            if force > 0.0:
+                yield [
+                    word(f"{name} {index}"),
+                    number(force, "{:.1f}"),
+                    number(float(peak[index]), "{:.1f}"),
+                    number(1e3 * float(width[index]), "{:.1f}"),
+                ]

@@ -1,0 +1,162 @@
+"""A second run, or a measured transmission error, beside the first."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import degrees, isfinite, pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.units.quantities import ARCMIN, ARCSEC
+from ltca.errors import DriveError, printable, shortened
+from ltca.reading.toml_text import read_text
+
+FloatArray = NDArray[np.float64]
+
+ANGLES = {"crank_angle_deg": pi / 180.0, "crank_angle_rad": 1.0}
+ERRORS = {
+    "transmission_error_arcsec": 1.0, "transmission_error_arcmin": ARCSEC / ARCMIN, "transmission_error_rad": ARCSEC,
+}  # fmt: skip
+"""Columns of a measured transmission error, and what they are times, in rad and arc seconds."""
+KINDS = {
+    "pin": ("pin_load", "pin_pressure_mid", "pin_half_width"),
+    "outer": ("roller_load", "roller_pressure_mid_outer", "roller_half_width_outer"),
+    "inner": ("roller_load_inner", "roller_pressure_mid_inner", "roller_half_width_inner"),
+    "hole": ("pin_shaft_load", "pin_shaft_pressure_mid", "pin_shaft_half_width"),
+}
+"""Variables of ``results.nc`` by kind of contact: load, pressure, half-width."""
+MOST_POSITIONS = 3600
+"""Of a measured curve on a page; every second of more, or every third."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compared:
+    """What stands beside a run.
+
+    Attributes
+    ----------
+    name : str
+        Of it, for legends.
+    told : str
+        What it is, in words.
+    cases : tuple of str
+        Its cases; none of a measured curve.
+    arrays : dict of str to array
+        As `ltca.page.run_arrays.run_arrays` has them, of the torque of the run.
+    summaries : dict of str to dict
+        Scalars by case; none of a measured curve, or where ``summary.json`` is not beside the results.
+    """
+
+    name: str
+    told: str
+    cases: tuple[str, ...]
+    arrays: dict[str, FloatArray]
+    summaries: dict[str, dict[str, float | None]] = field(default_factory=dict)
+
+
+def read_compared(path: Path) -> Compared:
+    """Read what a run is to be compared with.
+
+    Parameters
+    ----------
+    path : Path
+        A folder that ``cyclo run`` wrote, its ``results.nc``, or a file of comma separated values with a measured transmission
+        error: columns ``crank_angle_deg`` (or ``_rad``) and ``transmission_error_arcsec`` (or ``_arcmin``, ``_rad``).
+
+    Raises
+    ------
+    DriveError
+        When there is none, or it holds something else.
+    """
+    results = path / "results.nc" if path.is_dir() else path
+    if results.suffix == ".csv":
+        return _measured(results)
+    if results.suffix != ".nc" or not results.is_file():
+        raise DriveError([f"--compare = {path}: holds no results.nc; give the folder of a run or a .csv"])
+    return _of_run(results)
+
+
+def _of_run(results: Path) -> Compared:
+    import xarray as xr
+
+    try:
+        dataset = xr.load_dataset(results, engine="h5netcdf", decode_times=False, decode_timedelta=False)
+        cases = tuple(str(name) for name in dataset["case"].values)
+        arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}
+        for number in range(len(cases)):
+            one = dataset.isel(case=number)
+            for kind, names in KINDS.items():
+                for quantity, name in zip(("load", "pressure", "width"), names, strict=True):
+                    arrays[f"{number}/full/{kind}/{quantity}"] = _by_contact(one[name])
+            arrays[f"{number}/full/te"] = one["transmission_error"].values * ARCSEC
+            arrays[f"{number}/light/te"] = one["transmission_error_light"].values * ARCSEC
+            for name in ("radial", "tangential"):
+                arrays[f"{number}/{name}"] = one[f"bearing_{name}"].transpose("disc", "crank", "position").values
+    except (OSError, KeyError, ValueError) as error:
+        raise DriveError([f"--compare = {results}: is no result of cyclo run: {shortened(str(error))}"]) from error
+    told = dataset.attrs
+    model = printable(str(told.get("compliance", "")))
+    words = f"{printable(str(told.get('drive', '')))}, {model}, cyclo {printable(str(told.get('version', '')))}"
+    return Compared(
+        name=model or "second run", told=words, cases=cases, arrays=arrays, summaries=_summaries(results.parent)
+    )
+
+
+def _by_contact(values: Any) -> FloatArray:
+    """Of shape (discs, contacts, positions); those of several cranks behind each other."""
+    (last,) = (name for name in ("pin", "roller", "hole") if name in values.dims)
+    order = [name for name in ("disc", "crank", last, "position") if name in values.dims]
+    found = np.asarray(values.transpose(*order).values)
+    return found.reshape(found.shape[0], -1, found.shape[-1])
+
+
+def _summaries(folder: Path) -> dict[str, dict[str, float | None]]:
+    try:
+        content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["cases"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+    return content if isinstance(content, dict) else {}
+
+
+def _measured(path: Path) -> Compared:
+    lines = [line for line in read_text(path).lstrip("\ufeff").splitlines() if line.strip() and line[0] != "#"]
+    head = next(csv.reader(lines[:1]), [])
+    names = [name.strip() for name in head]
+    angle, error = ([name for name in names if name in known] for known in (ANGLES, ERRORS))
+    if len(angle) != 1 or len(error) != 1:
+        raise DriveError(
+            [
+                f"--compare = {path}: must have one column of {' | '.join(ANGLES)} and one of {' | '.join(ERRORS)}, "
+                f"divided by commas; it has {shortened(', '.join(names))}"
+            ]
+        )
+    places, found = (names.index(angle[0]), names.index(error[0])), []
+    for number, row in enumerate(csv.reader(lines[1:]), start=2):
+        try:
+            values = [float(row[place]) for place in places]
+        except (ValueError, IndexError):
+            values = [float("nan")]
+        if not all(isfinite(value) for value in values):
+            raise DriveError([f"--compare = {path}: row {number}: must hold two finite numbers, not {shortened(row)}"])
+        found.append(values)
+    if not found:
+        raise DriveError([f"--compare = {path}: holds no measured value"])
+    table = np.array(found)[:: 1 + len(found) // MOST_POSITIONS]
+    turned = np.mod(table[:, 0] * ANGLES[angle[0]], 2.0 * np.pi)
+    order = np.argsort(turned, kind="stable")
+    arrays = {"measured/angle": turned[order], "measured/te": table[order, 1] * ERRORS[error[0]]}
+    span = f"{degrees(turned.min()):.4g}° … {degrees(turned.max()):.4g}°"
+    range_of = f"peak to peak {np.ptp(arrays['measured/te']):.3g}″"
+    told = f"{path.name}, {len(found)} measured values, {span}, {range_of}"
+    return Compared(name="measured", told=told, cases=(), arrays=arrays)
+
+
+def matched(cases: Mapping[str, Any], compared: Compared) -> list[int]:
+    """Return the case of the second run for each of the first: that of the same name, otherwise the first."""
+    return [compared.cases.index(name) if name in compared.cases else 0 for name in cases]

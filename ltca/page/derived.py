@@ -1,0 +1,197 @@
+"""What follows from the inputs of a drive: geometry, installation, walls, as names and texts."""
+
+from __future__ import annotations
+
+from math import degrees, pi, sin
+
+import numpy as np
+
+from ltca.analysis.verdict.geometry import roller_gap, walls
+from ltca.drive.members.named_materials import named_parts
+from ltca.drive.members.temperatures import temperature_words
+from ltca.drive.parts import Drive, PinShaft, PinWheel
+from ltca.drive.single_discs import equal_parts, single_discs
+from ltca.drive.units.quantities import ARCMIN
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
+from ltca.geometry.first_contact import backlash
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.placement import position_angles
+
+Rows = list[tuple[str, str]]
+
+
+def derived_rows(written: Drive, drive: Drive, *, plays: bool = True) -> Rows:
+    """Return what follows from the inputs, a name and a text each.
+
+    Parameters
+    ----------
+    written, drive : Drive
+        As it was given, and at its temperatures.
+    plays : bool
+        Whether gaps and backlash over a turn are wanted, which take most of the time.
+    """
+    return [*_warmth(written), *_materials(written), *_properties(drive, plays)]
+
+
+def _properties(drive: Drive, plays: bool) -> Rows:
+    singles = single_discs(drive)
+    geometries = [ContactGeometry.of_drive(single) for single in singles]
+    first, single = geometries[0], singles[0]
+    profile, place = first.profile, first.placement
+    parameter = np.linspace(0.0, 2.0 * np.pi / drive.reduction_ratio, 2001)
+    curvature = profile.curvature(parameter)
+    locus = profile.locus_curvature(parameter)
+    e = float(place.mean_eccentricity[0])
+    bearing = drive.crank_bearing
+    roller_play = single.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius
+    tangential = abs(drive.wheel_moment()) / (len(singles) * drive.reduction_ratio * e)
+    of = "" if len(singles) == 1 else " of disc 0"
+    return [
+        *_installation(drive),
+        ("e z_P/R_C", f"{e * drive.reduction_ratio / drive.pin_wheel.pin_circle_radius:.4f} (must be below 1)"),
+        ("disc radius at root, tip", f"{profile.root_radius:.4f}, {profile.tip_radius:.4f} mm"),
+        ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
+        ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
+        ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
+        *(_plays(geometries) if plays else []),
+        (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
+        (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
+        ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
+        *_walls(single, of),
+        ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
+    ]  # fmt: skip
+
+
+def _plays(geometries: list[ContactGeometry]) -> Rows:
+    gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
+    disc = backlash(geometries[0], position_angles(360), DISC_ROTATION) * ARCMIN
+    wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
+    at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
+    return [
+        ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
+        (f"backlash at {at}, wheel held", f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)"),
+        (f"backlash at the wheel, {held} held", f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)"),
+    ]
+
+
+def _warmth(drive: Drive) -> Rows:
+    """How warm the parts are; what is printed below are lengths at these temperatures."""
+    held = drive.temperature
+    return [] if held is None else [("temperatures, of which all lengths are", temperature_words(held))]
+
+
+def _materials(drive: Drive) -> Rows:
+    """Materials that have a name, part by part."""
+    parts: dict[str, list[str]] = {}
+    for part, name in named_parts(drive.materials).items():
+        parts.setdefault(name, []).append(part)
+    return [(f"material {name}", ", ".join(those)) for name, those in parts.items()]
+
+
+def _walls(single: Drive, of: str) -> Rows:
+    """What is left between holes, bores and roots of a disc."""
+    rows, found = [], dict(walls(single))
+
+    def both(first: str, second: str) -> str:
+        return f"{found[first]:.4f}, {found[second]:.4f} mm"
+
+    if single.pin_shaft is not None:
+        rows += [
+            (f"hole radius{of} with clearance", f"{single.hole_radius:.4f} mm"),
+            ("wall between hole and root circle, bore", both("between hole and root circle", "between hole and bore")),
+        ]
+    if single.crank.number > 1:
+        between = both("between bore and root circle", "between neighbouring bores")
+        rows.append(("wall between bore and root circle, next bore", between))
+    return rows
+
+
+def _installation(drive: Drive) -> Rows:
+    """Who is held and turned, and how the discs stand."""
+    held = (
+        "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
+    )
+    stage, crank = drive.installation.first_stage_ratio, drive.crank
+    turned = "crank" if stage is None else "input"
+    rows = [
+        ("installation", held),
+        (f"reduction ratio ({turned} turns by output turns)", f"{drive.transmission_ratio:g}"),
+    ]
+    if crank.number > 1:
+        driven = "turned in the carrier" if stage is None else f"driven by a spur stage, z₂/z₁ = {stage:g}"
+        rows.append(("cranks", f"{crank.number} on a circle of {crank.circle_radius:g} mm, {driven}"))
+    rows += _supports(drive) + _pins(drive)
+    discs = drive.disc.number_of_discs
+    if discs == 1:
+        return rows
+    pattern = "hole pitches" if crank.number == 1 else f"{360.0 / drive.pattern:g}°"
+    alike = f"can be equal parts, turned against each other by {pattern}"
+    if not equal_parts(drive):
+        turns = ", ".join(f"{degrees(single.part_turn[0]):.4f}°" for single in single_discs(drive))
+        against = "holes" if crank.number == 1 else "bores"
+        alike = f"cannot be equal parts: flanks are cut at {turns} against their {against}"
+    return [
+        *rows,
+        ("discs, phases of their eccentrics", ", ".join(f"{degrees(phase):.6g}°" for phase in drive.disc.disc_phases)),
+        ("axial places of the discs", ", ".join(f"{plane:.6g}" for plane in drive.disc.disc_planes) + " mm"),
+        ("the discs", alike),
+    ]
+
+
+def _supports(drive: Drive) -> Rows:
+    """What yields on its bearings, and what is taken for rigid."""
+    rows, support, wheel = [], drive.crank.support, drive.pin_wheel.support_stiffness
+    if support is not None:
+        first, second = (
+            f"{value:g} N/mm at {at:g} mm" for at, value in zip(support.positions, support.stiffness, strict=True)
+        )
+        rows.append(
+            ("crankshafts, as beams", f"⌀ {support.diameter:g} mm on {first}, {second}; torsion and tilt left out")
+        )
+    if wheel is not None:
+        rows.append(("main bearing of the wheel", f"{wheel:g} N/mm, radial; tilt and the ring's own bending left out"))
+    return rows
+
+
+THIN = 0.1
+"""Wall between slots, or of a sleeve, by the radius of its bore: what is thinner yields more than the contacts in it say."""
+
+
+def _pins(drive: Drive) -> Rows:
+    """How pins of wheel and shaft sit and bend, where they are not fixed and rigid."""
+    wheel, shaft = drive.pin_wheel, drive.pin_shaft
+    rows = _seat(wheel, "wheel pins", "the flank")
+    if wheel.seat.kind == "slot":
+        radius = wheel.seat.radius or 0.0
+        wall = 2.0 * (wheel.pin_circle_radius * sin(pi / wheel.number_of_pins) - radius)
+        rows.append(("wall between neighbouring slots", _wall(wall, radius)))
+    if wheel.beam is not None:
+        walls = f"{wheel.beam.span:g} mm between the walls, ends {wheel.beam.ends}"
+        rows.append(("wheel pins, as beams", f"⌀ {wheel.beam_diameter:g} mm, {walls}"))
+    if shaft is None:
+        return rows
+    rows += _seat(shaft, "shaft pins", "the holes")
+    if shaft.beam is not None:
+        tips = {"free": "free", "tied-clamped": "clamped in a ring", "tied-pinned": "pinned in a ring"}[shaft.beam.tip]
+        reach = f"{shaft.beam.span:g} mm from the flange at {-0.5 * shaft.beam.span:g} mm, tips {tips}"
+        rows.append(("shaft pins, as beams", f"⌀ {shaft.beam_diameter:g} mm, {reach}"))
+    return rows
+
+
+def _seat(part: PinWheel | PinShaft, pins: str, seen_from: str) -> Rows:
+    seat = part.seat
+    if seat.kind == "fixed":
+        return []
+    rows = [(f"{pins}, seen from {seen_from}", f"as fixed ones of radius {part.pin_radius - part.seat_play:.4f} mm")]
+    if seat.kind == "sleeve":
+        bore = seat.bore_radius or 0.0
+        told = (
+            f"radius {seat.pin_radius:.4f} mm, under sleeves of bore radius {bore:.4f} mm, play {part.seat_play:.4f} mm"
+        )
+        return [(pins, told), (f"wall of the sleeves on {pins}", _wall(part.pin_radius - bore, bore)), *rows]
+    radius = part.pin_radius + part.seat_play
+    return [(pins, f"loose in slots of radius {radius:.4f} mm, play {part.seat_play:.4f} mm"), *rows]
+
+
+def _wall(wall: float, bore: float) -> str:
+    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN * bore else "")

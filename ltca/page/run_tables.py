@@ -1,0 +1,162 @@
+"""Tables of a run: verdict, loads, pressures, transmission error and its orders, losses, inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from ltca.analysis.extremes import is_full_turn
+from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.analysis.summary import refined_value
+from ltca.analysis.summary_rows import FRICTION_ROWS, rows_of, with_residual_part
+from ltca.analysis.transmission_error_orders import known_orders
+from ltca.drive.fields import field_kind
+from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCSEC, label
+from ltca.page.derived import derived_rows
+from ltca.page.tables import NOTHING, Cell, Table, minus, number, texts, word
+
+Summaries = Mapping[str, Mapping[str, float | None]]
+
+GROUPS = ("loads", "pressures", "transmission", "losses", "rest")
+TOLD_ORDERS = 8
+"""Orders of the transmission error in the table."""
+SAME = 1e-9
+"""Of whole orders."""
+
+
+def summary_tables(analyses: Mapping[str, LoadedAnalysis], summaries: Summaries) -> dict[str, Table]:
+    """Return the scalars of the cases side by side, by `GROUPS`; those that have a row."""
+    yields = any(one.drive.crank.support or one.drive.pin_wheel.support_stiffness for one in analyses.values())
+    whole = {name: with_residual_part(case) for name, case in summaries.items()}
+    captions = {"transmission": "Transmission error and backlash", "rest": "What else is known of the answer"}
+    rows: dict[str, list[list[Cell]]] = {name: [] for name in GROUPS}
+    for title, key, unit, form in rows_of(whole, yields=bool(yields)):
+        values = [refined_value(case, key) if key in case else None for case in whole.values()]
+        if all(value is None for value in values):
+            continue
+        cells = [number(value, form, unit) for value in values]
+        rows[_group(key)].append([_title(title), *cells])
+    return {
+        name: Table(name=name, caption=captions.get(name, ""), columns=["", *whole], rows=each)
+        for name, each in rows.items()
+        if each
+    }
+
+
+def _title(title: str) -> Cell:
+    inner = title.startswith("  ")
+    return Cell(text=("\u2003" if inner else "") + title.strip(), value=title.strip())
+
+
+def _group(key: str) -> str:
+    if key in {row[1] for row in FRICTION_ROWS}:
+        return "losses"
+    if "transmission_error" in key or key.startswith(("backlash", "interference")):
+        return "transmission"
+    if "MPa" in key:
+        return "pressures"
+    return "rest" if "residual" in key or key.startswith("compliance_share") else "loads"
+
+
+def turn_orders(analysis: LoadedAnalysis) -> np.ndarray[Any, np.dtype[np.float64]] | None:
+    """Return the amplitudes of whole orders over one turn, from 1, arc seconds; None where positions are no turn."""
+    angle = analysis.full.crank_angle
+    if not (is_full_turn(angle) and analysis.is_complete):
+        return None
+    lines = np.fft.rfft(analysis.transmission_error) * (2.0 / angle.size) * ARCSEC
+    return np.asarray(np.abs(lines[1 : (angle.size + 1) // 2]))
+
+
+def orders_table(analyses: Mapping[str, LoadedAnalysis]) -> Table | None:
+    """Return the largest whole orders of the transmission error, cases side by side; None where there are none."""
+    found = {name: lines for name, one in analyses.items() if (lines := turn_orders(one)) is not None and lines.size}
+    if not found:
+        return None
+    largest = np.max(list(found.values()), axis=0)
+    chosen = np.sort(np.argsort(-largest, kind="stable")[:TOLD_ORDERS])
+    drive = next(iter(analyses.values())).drive
+    names = {round(one.value): one.name for one in known_orders(drive) if abs(one.value - round(one.value)) < SAME}
+    rows = [
+        [
+            word(str(place + 1)),
+            word(minus(names.get(int(place) + 1, NOTHING))),
+            *(number(float(lines[place]), "{:.3f}", "arcsec") for lines in found.values()),
+        ]
+        for place in chosen
+    ]
+    columns = ["order", "where it comes from", *found]
+    return Table(name="orders", caption="Largest whole orders, amplitudes", columns=columns, rows=rows, words=1)
+
+
+def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
+    """Return every field that is given, with its unit: those in which cases differ, and what all have."""
+    flat = {name: dict(_leaves(drive, "")) for name, drive in drives.items()}
+    paths = list(dict.fromkeys(path for each in flat.values() for path in each))
+    differing, common = [], []
+    for path in paths:
+        values = [each.get(path) for each in flat.values()]
+        if all(value == values[0] for value in values):
+            common.append([word(path), _input(values[0], path), word(_unit(path))])
+        else:
+            differing.append([word(path), word(_unit(path)), *(_input(value, path) for value in values)])
+    heads = ["field", "unit", *drives]
+    tables = [Table(name="inputs", caption="", columns=["field", "value", "unit"], rows=common, words=2)]
+    if differing:
+        differ = Table(
+            name="inputs_by_case", caption="What differs between cases", columns=heads, rows=differing, words=1
+        )
+        tables = [
+            differ,
+            Table(name="inputs", caption="What all cases have", columns=tables[0].columns, rows=common, words=2),
+        ]
+    return tables
+
+
+def _leaves(part: Any, path: str) -> Iterator[tuple[str, Any]]:
+    for item in fields(part):
+        value, name = getattr(part, item.name), f"{path}.{item.name}" if path else item.name
+        if is_dataclass(value):
+            yield from _leaves(value, name)
+        elif isinstance(value, tuple) and any(is_dataclass(entry) for entry in value):
+            for place, entry in enumerate(value):
+                yield from _leaves(entry, f"{name}.{place}")
+        elif value is not None and value != ():
+            yield name, value
+
+
+def _unit(path: str) -> str:
+    kind = field_kind(path)
+    return "" if kind is None or kind.unit in ("", "dimensionless") else label(kind.unit)
+
+
+def _input(value: Any, path: str) -> Cell:
+    if value is None:
+        return word(NOTHING)
+    if isinstance(value, tuple):
+        return Cell(
+            text=minus(", ".join(_words(each) for each in value)), value=" ".join(_words(each) for each in value)
+        )
+    note = ""
+    if _unit(path) == "rad" and isinstance(value, float) and value:
+        note = minus(f"{degrees(value):.6g}°")
+    return Cell(text=minus(_words(value)), value=_words(value), note=note)
+
+
+def _words(value: Any) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def derived_tables(analyses: Mapping[str, LoadedAnalysis]) -> list[Table]:
+    """Return what follows from the inputs: cases side by side where they differ, otherwise once."""
+    each = {name: dict(derived_rows(one.as_written, one.drive, plays=False)) for name, one in analyses.items()}
+    titles = list(dict.fromkeys(title for rows in each.values() for title in rows))
+    cases = list(each.values())
+    if all(case == cases[0] for case in cases):
+        return [Table(name="derived", caption="", columns=["", "value"], rows=texts(cases[0].items()), words=1)]
+    rows = [[word(title), *(word(minus(case.get(title, NOTHING))) for case in cases)] for title in titles]
+    return [Table(name="derived", caption="", columns=["", *each], rows=rows, words=len(cases))]

@@ -1,0 +1,162 @@
+// Curves over an axis as SVG: sharp in print, in the colours of the page, taken along as they are.
+function ticks(low, high, count) {
+  const raw = (high - low) / Math.max(1, count) || 1, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 2.5, 5, 10].map(part => part * power).find(each => each >= raw * 0.999);
+  const found = [];
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
+  return { found: found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9) + (step / power === 2.5 ? 1 : 0)) };
+}
+function degreeTicks(low, high, room) {
+  const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440].find(each => (high - low) / each <= room / 48) || 3600;
+  const found = [];
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-6; i++) found.push(i * step);
+  return { found: found, digits: step < 1 ? 1 : 0 };
+}
+
+class Plot {
+  // spec: {id, title, unit, x, xTitle, degrees, zero, stems, pick(index), digits}
+  constructor(parent, spec) {
+    this.spec = spec;
+    this.series = [];
+    this.range = null;
+    this.index = 0;
+    this.figure = html("figure", { class: "plot", "data-plot": spec.id }, parent);
+    const caption = html("figcaption", {}, this.figure);
+    this.title = html("span", {}, caption);
+    const button = html("button", { type: "button", class: "tool" }, caption, "SVG");
+    button.addEventListener("click", () => saveSvg(this.svg, this.title.textContent));
+    this.button = button;
+    this.svg = node("svg", { role: "img", tabindex: spec.pick ? 0 : -1 }, this.figure);
+    this.keys = html("div", { class: "keys" }, this.figure);
+    if (spec.pick) this.listen();
+  }
+
+  listen() {
+    const at = event => {
+      const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) * this.width / box.width;
+      return this.low + (this.high - this.low) * Math.max(0, Math.min(1, (x - this.left) / (this.width - this.left - 18)));
+    };
+    let down = null;
+    this.svg.addEventListener("pointerdown", event => { down = [event.clientX, at(event)]; });
+    this.svg.addEventListener("pointerup", event => {
+      if (!down) return;
+      if (event.pointerType === "mouse" && Math.abs(event.clientX - down[0]) > 12) { // a drag looks closer
+        this.range = [down[1], at(event)].sort((a, b) => a - b);
+        this.draw();
+      } else this.spec.pick(this.nearest(at(event)));
+      down = null;
+    });
+    this.svg.addEventListener("dblclick", () => { this.range = null; this.draw(); });
+    this.svg.addEventListener("pointermove", event => { if (event.pointerType === "mouse") this.tell(this.nearest(at(event))); });
+    this.svg.addEventListener("pointerleave", () => { down = null; this.tell(this.index); });
+  }
+
+  nearest(value) {
+    const x = this.spec.x;
+    let best = 0;
+    for (let i = 1; i < x.length; i++) if (Math.abs(x[i] - value) < Math.abs(x[best] - value)) best = i;
+    return best;
+  }
+
+  // series: {name, values, x, colour, faint, dashed, thin}
+  set(title, series) {
+    this.title.textContent = title + (this.spec.unit ? `, ${this.spec.unit}` : "");
+    this.button.setAttribute("aria-label", `Figure ${title} as SVG`);
+    this.series = series;
+    this.draw();
+  }
+
+  draw() {
+    const spec = this.spec, width = (this.width = Math.max(260, Math.round(this.figure.clientWidth || 520))), height = spec.height || 190;
+    const left = (this.left = 54), right = 18, top = 10, bottom = 34, svg = this.svg;
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    svg.replaceChildren();
+    let low = Infinity, high = -Infinity, first = Infinity, last = -Infinity;
+    for (const line of this.series) {
+      for (const value of line.values) if (known(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+      for (const x of line.x || spec.x) { first = Math.min(first, x); last = Math.max(last, x); }
+    }
+    if (low > high) { low = 0; high = 1; }
+    if (spec.zero || low === high) { low = Math.min(0, low); high = Math.max(0, high); }
+    if (low === high) high = low + 1;
+    const room = 0.05 * (high - low);
+    if (!(spec.zero && low === 0)) low -= room;
+    if (!(spec.zero && high === 0)) high += room;
+    if (spec.stems) { first -= 0.5; last += 0.5; }
+    if (spec.degrees && first >= 0 && last > 350 && last < 360) last = 360; // a whole turn
+    [this.low, this.high] = this.range || [first, last];
+    if (this.low === this.high) { this.low -= 1; this.high += 1; }
+    const X = (this.X = value => left + (value - this.low) / (this.high - this.low) * (width - left - right));
+    const Y = (this.Y = value => height - bottom - (value - low) / (high - low) * (height - top - bottom));
+    const text = (x, y, words, anchor) => node("text", { class: "axis-text", x: x, y: y, "text-anchor": anchor }, svg, words);
+    const up = ticks(low, high, 4);
+    for (const value of up.found) {
+      node("line", { class: "grid", x1: left, x2: width - right, y1: Y(value), y2: Y(value) }, svg);
+      text(left - 6, Y(value) + 4, figure(value, up.digits), "end");
+    }
+    const along = spec.degrees ? degreeTicks(this.low, this.high, width - left) : ticks(this.low, this.high, (width - left) / 56);
+    for (const value of along.found) {
+      node("line", { class: "grid", x1: X(value), x2: X(value), y1: height - bottom, y2: height - bottom + 4 }, svg);
+      text(X(value), height - bottom + 16, figure(value, along.digits) + (spec.degrees ? "°" : ""), "middle");
+    }
+    text(width - right, height - 4, spec.xTitle, "end");
+    const frame = node("svg", { x: left, y: 0, width: width - left - right, height: height, viewBox: `${left} 0 ${width - left - right} ${height}` }, svg);
+    for (const line of this.series) {
+      const group = node("g", { class: line.colour }, frame);
+      if (spec.stems) {
+        const step = Math.max(1.5, Math.min(6, (X(1) - X(0)) * 0.22));
+        line.values.forEach((value, i) => { if (known(value)) node("line", { class: "stem", "stroke-width": step, x1: X(spec.x[i]), x2: X(spec.x[i]), y1: Y(0), y2: Y(value) }, group); });
+      } else if (spec.points) {
+        line.values.forEach((value, i) => { if (known(value)) node("circle", { class: "mark", r: 1.9, cx: X(spec.x[i]), cy: Y(value) }, group); });
+      } else node("path", { class: `curve${line.faint || line.thin ? " thin" : ""}${line.dashed ? " dashed" : ""}`, d: this.path(line) }, group);
+    }
+    this.svg.setAttribute("aria-label", `${this.title.textContent}, from ${figure(low + room)} to ${figure(high - room)}`);
+    this.line = spec.pick ? node("line", { class: "cursor", y1: top, y2: height - bottom }, frame) : null;
+    this.marks = spec.pick ? this.series.map(line => (line.faint || line.x ? null : node("circle", { class: `mark ${line.colour}`, r: 3.2 }, frame))) : [];
+    this.tell(this.index);
+  }
+
+  path(line) {
+    const x = line.x || this.spec.x;
+    let text = "", pen = false;
+    for (let i = 0; i < x.length; i++) {
+      if (!known(line.values[i])) { pen = false; continue; }
+      text += `${pen ? "L" : "M"}${this.X(x[i]).toFixed(1)},${this.Y(line.values[i]).toFixed(1)}`;
+      pen = true;
+    }
+    return text;
+  }
+
+  cursor(index) {
+    this.index = index;
+    this.tell(index);
+  }
+
+  tell(index) {
+    const spec = this.spec;
+    if (this.line) {
+      const at = this.X(spec.x[index]);
+      place(this.line, { x1: at, x2: at });
+      this.marks.forEach((mark, i) => {
+        if (!mark) return;
+        const value = this.series[i].values[index];
+        mark.style.display = known(value) ? "" : "none";
+        if (known(value)) place(mark, { cx: at, cy: this.Y(value) });
+      });
+    }
+    const named = this.series.filter(line => line.name);
+    if (this.keys.children.length !== named.length) this.keys.replaceChildren(...named.map(() => {
+      const key = html("span", {});
+      html("span", {}, key);
+      html("span", {}, key);
+      html("b", {}, key);
+      return key;
+    }));
+    named.forEach((line, i) => {
+      const [mark, words, value] = this.keys.children[i].children;
+      mark.className = `key ${line.colour}${line.dashed ? " dash" : ""}`;
+      words.textContent = line.name + " ";
+      value.textContent = spec.pick && !line.faint && !line.x ? `${figure(line.values[index], spec.digits)}${spec.unit === "arc seconds" ? "″" : spec.unit ? " " + spec.unit : ""}` : "";
+    });
+  }
+}

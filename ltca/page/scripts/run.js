@@ -1,0 +1,166 @@
+// Controls, curves and what they move.
+const view = { kase: 0, disc: 0, torque: "full", index: 0, chosen: null, second: 0 };
+const plots = {};
+let drawing = null, playing = 0, degrees = null;
+
+function draw() {
+  const now = placesAt(view), scale = scaleOf(view), beside = content.compared && content.compared.cases.length && view.torque === "full";
+  for (const contact of now.contacts) {
+    const second = beside ? besideAt(view, contact) : null;
+    contact.pressure = scale.pressure > 0 && known(contact.pressureValue) ? contact.pressureValue / scale.pressure : null;
+    contact.arrows = [{ load: contact.load, kind: contact.kind, width: second ? 7.5 : 5, model: "first" }];
+    if (second) contact.arrows.push({ load: second.load || 0, kind: "second", width: 2.6, model: "second" });
+    contact.label = `${contact.name}: ${figure(contact.load, 0)} N, ${figure(contact.pressureValue, 0)} MPa${second ? `; ${content.compared.name} ${figure(second.load, 0)} N` : ""}`;
+  }
+  drawing.show(content.cases[view.kase].scenes[view.disc], now, scale.load);
+  const degree = degrees[view.index];
+  el("angle").value = view.index;
+  el("angle-text").textContent = `${figure(degree, 2)}° = ${figure(row("angle")[view.index], 4)} rad${now.known ? "" : ", no answer here"}`;
+  el("angle").setAttribute("aria-valuetext", el("angle-text").textContent);
+  for (const name in plots) if (plots[name].spec.pick) plots[name].cursor(view.index);
+  if (el("contact-details").open && !playing) fillContacts(view, now);
+  return now;
+}
+
+function choose(contact) {
+  view.chosen = { kind: contact.kind, number: contact.number };
+  drawCurves();
+  draw();
+}
+
+function setUp() {
+  const kase = content.cases[view.kase];
+  if (el("cases")) press("cases", content.names, view.kase, i => { view.kase = i; if (content.compared) view.second = content.compared.match[i] || 0; setUp(); });
+  const discs = Array.from({ length: content.discs }, (_, i) => `disc ${i}`);
+  el("disc-field").hidden = discs.length < 2;
+  press("discs", discs, view.disc, i => { view.disc = i; setUp(); });
+  press("torques", ["full", "light"].map(each => torqueName(view, each)), view.torque === "full" ? 0 : 1, i => { view.torque = i ? "light" : "full"; setUp(); });
+  const seconds = content.compared ? content.compared.cases : [];
+  el("second-field").hidden = seconds.length < 2;
+  press("seconds", seconds, view.second, i => { view.second = i; setUp(); });
+  el("picture").setAttribute("data-direction", kase.direction);
+  hideTip();
+  fillLegend(view);
+  drawCurves();
+  draw();
+}
+
+function curve(id, where, title, unit, options, series) {
+  if (!plots[id]) plots[id] = new Plot(el(where), { id: id, unit: unit, x: degrees, xTitle: "crank angle", degrees: true, pick: go, ...options });
+  plots[id].set(title, series);
+}
+
+function contactCurves(quantity, title, unit) {
+  const { kind, number } = view.chosen, name = `${view.kase}/${view.torque}/${kind}/${quantity}`, series = [];
+  const count = shapeOf(name)[1];
+  for (let i = 0; i < count; i++) if (i !== number) series.push({ values: row(name, view.disc, i), colour: "c-faint", faint: true, name: i === (number ? 0 : 1) ? `the other ${KINDS[kind]}s` : "" });
+  series.push({ values: row(name, view.disc, number), colour: `k-${kind}`, name: contactName(kind, number) });
+  const second = `b/${view.second}/full/${kind}/${quantity}`;
+  if (view.torque === "full" && has(second)) {
+    const [discs, others] = shapeOf(second);
+    if (view.disc < discs && number < others) series.push({ values: besideCurve(row(second, view.disc, number)), colour: "c-second", dashed: true, name: content.compared.name });
+  }
+  const of = content.discs > 1 ? `, disc ${view.disc}` : "";
+  curve(quantity, "beside", `${title} at ${contactName(kind, number)}${of}`, unit, { zero: true, digits: quantity === "load" ? 0 : 0 }, series);
+}
+
+// A curve of the second run at the positions of the first.
+function besideCurve(values) {
+  const angles = row("b/angle"), own = row("angle");
+  if (angles.length === own.length && angles.every((angle, i) => Math.abs(angle - own[i]) < 1e-6)) return values;
+  return Float32Array.from(own, angle => values[nearestAngle(angles, angle)]);
+}
+
+function drawCurves() {
+  if (!view.chosen) {
+    const loads = placesAt(view).contacts.filter(contact => contact.kind === "pin").sort((a, b) => b.load - a.load);
+    view.chosen = { kind: "pin", number: loads.length ? loads[0].number : 0 };
+  }
+  const { kase, disc, torque } = view, beside = content.compared;
+  contactCurves("load", "Load", "N");
+  contactCurves("pressure", "Pressure", "MPa");
+  const errors = [{ values: row(`${kase}/${torque}/te`), colour: "c1", name: beside ? "this run" : "" }];
+  if (beside && beside.cases.length) errors.push({ values: besideCurve(row(`b/${view.second}/${torque}/te`)), colour: "c-second", dashed: true, name: beside.name });
+  if (has("b/measured/te")) errors.push(measured(errors[0].values));
+  curve("te", "curves", `Transmission error at ${torqueName(view, torque)}`, "arc seconds", { digits: 2 }, errors);
+  const bearing = [], cranks = shapeOf(`${kase}/radial`)[1];
+  for (const [name, words] of [["tangential", "tangential"], ["radial", "radial"]]) for (let crank = 0; crank < cranks; crank++)
+    bearing.push({ values: row(`${kase}/${name}`, disc, crank), colour: `c${crank % 3 + 1}`, dashed: name === "radial", name: words + (cranks > 1 ? `, crank ${crank}` : "") });
+  curve("bearing", "curves", `Bearing force on the disc${content.discs > 1 ? ` ${disc}` : ""}, torque of the run`, "N", { zero: true, digits: 0 }, bearing);
+  if (has(`${kase}/share`)) curve("share", "curves", "Part of the torque by disc", "", { digits: 4 }, Array.from({ length: content.discs }, (_, i) => ({ values: row(`${kase}/share`, i), colour: `c${i % 6 + 1}`, name: `disc ${i}` })));
+  if (has(`${kase}/crank`)) curve("crank", "curves", "Torque of each crank", "N·m", { digits: 2 }, Array.from({ length: content.cranks }, (_, i) => ({ values: row(`${kase}/crank`, i), colour: `c${i % 6 + 1}`, name: `crank ${i}` })));
+  if (has(`${kase}/efficiency`)) {
+    curve("efficiency", "curves", "Efficiency", "", { digits: 4 }, [{ values: row(`${kase}/efficiency`), colour: "c3", name: "" }]);
+    const kinds = Object.keys(content.losses).filter(kind => has(`${kase}/loss/${kind}`));
+    curve("loss", "curves", "Energy lost by radian of the crank", "N·mm", { zero: true, digits: 1 }, kinds.map((kind, i) => ({ values: row(`${kase}/loss/${kind}`), colour: `c${i % 6 + 1}`, name: content.losses[kind] })));
+  }
+  if (has(`${kase}/orders`)) {
+    const lines = row(`${kase}/orders`), orders = Float32Array.from(lines, (_, i) => i + 1);
+    if (!plots.orders) plots.orders = new Plot(el("orders-plot"), { id: "orders", unit: "arc seconds", x: orders, xTitle: "order, per turn of the crank", stems: true, zero: true, height: 200 });
+    plots.orders.spec.x = orders;
+    plots.orders.set(`Whole orders of the transmission error${content.names.length > 1 ? `, case ${content.names[kase]}` : ""}, amplitudes`, [{ values: lines, colour: "c1", name: "" }]);
+  }
+}
+
+function measured(own) {
+  const mean = values => values.reduce((sum, value) => sum + value, 0) / values.length;
+  const values = row("b/measured/te"), shift = mean(own.filter(known)) - mean(values);
+  return { values: values.map(value => value + shift), x: Float32Array.from(row("b/measured/angle"), angle => angle * 180 / Math.PI), colour: "c2", thin: true, name: "measured, at the mean of this run" };
+}
+
+function go(index) {
+  const count = degrees.length;
+  view.index = ((index % count) + count) % count;
+  draw();
+}
+
+function play(on) {
+  if (Boolean(playing) === on || degrees.length < 2) return;
+  cancelAnimationFrame(playing);
+  playing = 0;
+  el("play").setAttribute("aria-pressed", String(on));
+  el("play").textContent = on ? "❚❚ Pause" : "▶ Play";
+  if (!on) { draw(); return; }
+  const start = performance.now(), first = view.index, each = 9000 / degrees.length, sign = content.cases[view.kase].sign;
+  const frame = time => {
+    const index = first + sign * Math.floor(Math.max(0, time - start) / each);
+    if (((index % degrees.length) + degrees.length) % degrees.length !== view.index) go(index);
+    playing = requestAnimationFrame(frame);
+  };
+  playing = requestAnimationFrame(frame);
+}
+
+function listen() {
+  el("angle").addEventListener("input", event => { play(false); go(Number(event.target.value)); });
+  el("play").addEventListener("click", () => play(!playing));
+  el("contact-details").addEventListener("toggle", () => draw());
+  for (const button of document.querySelectorAll("[data-svg]")) button.addEventListener("click", () => saveSvg(el(button.dataset.svg), `drive_${content.names[view.kase]}_${figure(degrees[view.index], 1)}deg`));
+  document.addEventListener("keydown", event => {
+    if (event.target.closest("input, select, textarea, button, summary, a, .wide") || event.altKey || event.ctrlKey || event.metaKey) return;
+    const step = { ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
+    const inStage = event.target.closest("#drive");
+    if (step && (inStage || event.key.startsWith("Arrow"))) { play(false); go(view.index + step); event.preventDefault(); }
+    if (event.key === " " && inStage) { play(!playing); event.preventDefault(); }
+  });
+  let width = innerWidth;
+  const again = () => { for (const name in plots) plots[name].draw(); };
+  addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; again(); } });
+}
+
+(async () => {
+  try {
+    await openNumbers();
+  } catch (error) {
+    el("opening").textContent = `This browser cannot open the numbers of the moving drive (${error.message}); the tables below stand.`;
+    return;
+  }
+  degrees = Float32Array.from(row("angle"), angle => angle * 180 / Math.PI);
+  el("angle").max = degrees.length - 1;
+  el("angle").disabled = el("play").disabled = degrees.length < 2;
+  if (content.compared) view.second = content.compared.match[0] || 0;
+  drawing = new Drawing(el("picture"), { tell: (contact, event) => showTip(tipOf(view, contact), event), hide: hideTip, choose: choose });
+  setUp();
+  listen();
+  el("opening").hidden = true;
+  document.documentElement.dataset.ready = "yes";
+})();

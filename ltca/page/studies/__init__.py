@@ -1,0 +1,9 @@
+"""Pages of commands that study a drive.
+
+=======  ============================================================
+check    A verdict with what drives each value and what would mend it
+curves   Torque curve, orders of the transmission error, life, flank pressure
+samples  A tolerance study or a sweep: what each quantity reaches over the samples, and what matters
+optimum  The drive as it is and the one that was found
+=======  ============================================================
+"""

@@ -1,0 +1,55 @@
+"""Page of ``cyclo check``: a verdict with what drives each value and what would mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ltca.analysis.verdict.advice import Driver
+from ltca.page.study_page import Section, StudyPage
+from ltca.page.tables import Table, minus, number, word
+from ltca.page.verdict_tables import Checks, verdict_of, verdict_tables
+
+Drivers = Mapping[str, Mapping[str, Sequence[Driver]]]
+"""By case and quantity."""
+
+
+def check_page(
+    name: str, text: str, told: str, checks: Checks, drivers: Drivers, notes: Mapping[str, Sequence[str]], made: Any
+) -> StudyPage:
+    """Return the page of a check.
+
+    Parameters
+    ----------
+    name, text : str
+        Of the drive, and its file.
+    told : str
+        What was judged.
+    checks : mapping of str to sequence of Check
+        By case.
+    drivers : mapping
+        What drives each value, by case and quantity.
+    notes : mapping of str to sequence of str
+        What to know beside the checks, by case.
+    made : mapping of str to str
+        Options of the engine, positions.
+    """
+    sentence, state = verdict_of(checks)
+    tables = verdict_tables(checks)
+    told_notes = [f"{case}: {note}" if len(notes) > 1 else note for case, each in notes.items() for note in each]
+    sections = [Section(heading="Verdict", tables=tables, notes=list(dict.fromkeys(told_notes)))]
+    rows = [
+        [
+            word(case), word(check.title), word(driver.input), number(driver.elasticity, "{:+.2f}"),
+            word(minus(driver.change)),
+        ]
+        for case, each in checks.items()
+        for check in sorted(each, key=lambda check: not check.fails)
+        for driver in drivers[case].get(check.value.quantity, ())
+    ]  # fmt: skip
+    if rows:
+        columns = ["case", "check", "input", "d ln value/d ln input", "change that would about mend it"]
+        table = Table(name="drivers", caption="", columns=columns, rows=rows, words=2)
+        note = "A change by a factor stands only where the value fails its limit and one input alone would mend it."
+        sections.append(Section(heading="What drives each value", notes=[note], tables=[table]))
+    return StudyPage(name=name, told=told, sentence=sentence, state=state, sections=sections, made=made, text=text)

@@ -1,0 +1,117 @@
+"""``report.html`` of commands other than ``run``: tables and curves in sections, the drive file behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.output.provenance import code_hash, code_version
+from ltca.page.packing import pack
+from ltca.page.tables import Table, texts
+from ltca.page.writing import page_text, script_data, write_page
+
+FloatArray = NDArray[np.float64]
+
+PAGE = "report.html"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curves:
+    """Curves, stems or points over one axis.
+
+    Attributes
+    ----------
+    title, unit, axis : str
+        What it shows, in which unit, over what.
+    x : array, shape (points,)
+        Along the axis.
+    lines : mapping of str to array, shape (points,)
+        By name; of a single one the name may be empty.
+    kind : str
+        ``line``, ``stems`` or ``points``.
+    degrees : bool
+        Whether the axis is an angle in degrees.
+    """
+
+    title: str
+    unit: str
+    axis: str
+    x: FloatArray
+    lines: Mapping[str, FloatArray]
+    kind: str = "line"
+    degrees: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Section:
+    """Part of a page: a heading, then sentences, curves and tables in this order."""
+
+    heading: str
+    notes: Sequence[str] = ()
+    curves: Sequence[Curves] = ()
+    tables: Sequence[Table] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyPage:
+    """What a page shows.
+
+    Attributes
+    ----------
+    name, told : str
+        Of the drive or study, and what was done with it.
+    sentence, state : str
+        The outcome in one sentence, and whether it is a ``pass``, a ``fail`` or neither.
+    sections : sequence of Section
+        In their order.
+    made : mapping of str to str
+        What the numbers were computed by, beside version and hash of the code.
+    text : str
+        The drive file.
+    """
+
+    name: str
+    told: str
+    sections: Sequence[Section]
+    sentence: str = ""
+    state: str = ""
+    made: Mapping[str, Any] = field(default_factory=dict)
+    text: str = ""
+
+
+def write_study_page(page: StudyPage, folder: Path) -> Path:
+    """Write the page of a command into its folder; return where it is."""
+    return write_page(folder / PAGE, study_page(page))
+
+
+def study_page(page: StudyPage) -> str:
+    """Return the page of a command; the same content gives the same page."""
+    arrays: dict[str, FloatArray] = {}
+    plots: list[dict[str, Any]] = []
+    for section in page.sections:
+        for curves in section.curves:
+            first = f"{len(plots)}"
+            arrays[f"{first}/x"] = np.asarray(curves.x, dtype=float)
+            for place, values in enumerate(curves.lines.values()):
+                arrays[f"{first}/{place}"] = np.asarray(values, dtype=float)
+            told = {"title": curves.title, "unit": curves.unit, "axis": curves.axis, "names": list(curves.lines)}
+            plots.append(told | {"kind": curves.kind, "degrees": curves.degrees})
+    places, numbers = pack(arrays)
+    made = [("version of cyclo", code_version()), ("hash of its code", code_hash("ltca"))]
+    made += [(name.replace("_", " "), str(value)) for name, value in page.made.items()]
+    return page_text(
+        "study.html",
+        {
+            "title": f"{page.name}: {page.told}",
+            "page": page,
+            "made": Table(name="computed_by", caption="", columns=["", "value"], rows=texts(made), words=1),
+            "data": script_data({"places": places, "plots": plots}),
+            "numbers": numbers,
+        },
+        scripts=("plots", "motion", "study"),
+    )

@@ -1,0 +1,119 @@
+"""Tables of a page: what each cell says, and the number behind it for who copies or downloads the table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+
+SIGNS = {"arcmin": "′", "arcsec": "″", "1": "", "N mm": "N·mm", "N*mm": "N·mm", "dimensionless": ""}
+"""Units as they are printed where they are written otherwise inside."""
+CLOSE = ("°", "′", "″")
+"""Signs that stand right behind their number."""
+NOTHING = "–"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cell:
+    """One cell.
+
+    Attributes
+    ----------
+    text : str
+        What it says.
+    value : str
+        What it is in a file of comma separated values: the number in full where the text is rounded.
+    note : str
+        What stands below, smaller.
+    state : str
+        ``pass`` or ``fail`` of a verdict; empty otherwise.
+    """
+
+    text: str
+    value: str
+    note: str = ""
+    state: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """A table.
+
+    Attributes
+    ----------
+    name : str
+        Of the file it is downloaded as, without ending.
+    caption : str
+        What it shows.
+    columns : sequence of str
+        Heads; the first column names the rows.
+    rows : sequence of sequence of Cell
+        As many as columns each.
+    words : int
+        How many columns after the first are words, which stand on the left; numbers stand on the right.
+    last_words : int
+        How many of the last columns are.
+    """
+
+    name: str
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+    words: int = field(default=0)
+    last_words: int = field(default=0)
+
+
+def minus(text: str) -> str:
+    """Return a text with the sign of subtraction in place of hyphens before digits.
+
+    Examples
+    --------
+    >>> minus("-1.5e-07 N, mid-width")
+    '−1.5e−07 N, mid-width'
+    """
+    parts = list(text)
+    for place, sign in enumerate(parts[:-1]):
+        before = parts[place - 1] if place else " "
+        if sign == "-" and parts[place + 1].isdigit() and (not before.isalnum() or before == "e"):
+            parts[place] = "−"
+    return "".join(parts)
+
+
+def unit_sign(unit: str) -> str:
+    """Return a unit as it is printed.
+
+    Examples
+    --------
+    >>> unit_sign("arcsec"), unit_sign("MPa")
+    ('″', 'MPa')
+    """
+    return SIGNS.get(unit, unit)
+
+
+def word(text: str, *, note: str = "", state: str = "") -> Cell:
+    """Return a cell of words."""
+    return Cell(text=text, value=text, note=note, state=state)
+
+
+def number(value: float | None, form: str = "{:.5g}", unit: str = "", *, note: str = "", state: str = "") -> Cell:
+    """Return a cell of a number.
+
+    Parameters
+    ----------
+    value : float or None
+        The number; a dash stands for none.
+    form : str
+        How it is printed.
+    unit, note, state : str
+        What stands behind it, below it, and its verdict.
+    """
+    if value is None or not isfinite(value):
+        return Cell(text=NOTHING, value="", note=note, state=state)
+    sign = unit_sign(unit)
+    text = minus(form.format(value)) + (sign if sign in CLOSE else f" {sign}" if sign else "")
+    return Cell(text=text, value=repr(float(value)), note=note, state=state)
+
+
+def texts(rows: Iterable[tuple[str, str]]) -> list[list[Cell]]:
+    """Return rows of a name and a text."""
+    return [[word(title), word(minus(text))] for title, text in rows]

@@ -1,0 +1,106 @@
+"""The verdict of a design as a page tells it: one sentence, then tables, worst first, cases side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ltca.drive.members.judgement import Check
+from ltca.drive.members.verdict_words import WORDS, place_words
+from ltca.page.tables import NOTHING, Cell, Table, minus, number, unit_sign, word
+
+Checks = Mapping[str, Sequence[Check]]
+"""By case."""
+
+MARKS = {"pass": "✓ pass", "fail": "✗ FAIL"}
+"""Verdicts with a sign, so that none hangs on its colour alone."""
+
+
+def verdict_of(checks: Checks) -> tuple[str, str]:
+    """Return the verdict in one sentence, and its state: ``pass``, ``fail`` or nothing."""
+    every = [check for case in checks.values() for check in case]
+    failed = [check for check in every if check.fails]
+    kept = [check for check in every if check.verdict == "pass"]
+    unknown = [check for check in every if check.limit is not None and check.verdict == "not known"]
+    others = sum(check.limit is None and check.value.value is not None for check in every)
+    if not checks:
+        return "No verdict: some positions have no answer.", "fail"
+    if failed:
+        cases = sum(any(check.fails for check in case) for case in checks.values())
+        of = f", in {cases} of {len(checks)} cases" if len(checks) > 1 else ""
+        return f"{len(failed)} of {len(failed) + len(kept)} checks fail{of}.", "fail"
+    if not kept:
+        return "Nothing is judged: neither drive file nor materials have limits.", ""
+    told = [f"All {len(kept)} values that can be judged keep their limits."]
+    told += [f"{len(unknown)} limits meet no value that this run knows."] if unknown else []
+    told += [f"{others} values have no limit and only inform."] if others else []
+    return " ".join(told), "pass"
+
+
+def verdict_tables(checks: Checks) -> list[Table]:
+    """Return what is judged, worst first; limits that meet no value; values without a limit: cases side by side."""
+    judged = _by_check(checks, lambda check: check.fails or check.verdict in ("pass", "fail"))
+    unknown = _by_check(
+        checks, lambda check: check.limit is not None and check.verdict == "not known" and not check.fails
+    )
+    others = _by_check(checks, lambda check: check.limit is None and not check.fails and check.value.value is not None)
+    several, found = len(checks) > 1, []
+    if judged:
+        rows = []
+        for (title, bound, source), each in sorted(judged.items(), key=_urgency):
+            cells = [_judged(each.get(case)) for case in checks]
+            if not several:
+                cells.append(word(minus(place_words(next(iter(each.values()))))))
+            rows.append([word(title), word(minus(bound)), *cells, word(source)])
+        columns = ["check", "limit", *(list(checks) if several else ["value", "where"]), "where the limit comes from"]
+        found.append(Table(name="verdict", caption="", columns=columns, rows=rows, last_words=1 if several else 2))
+    if unknown:
+        rows = [
+            [word(title), word(minus(bound)), word(next(iter(each.values())).value.reason), word(source)]
+            for (title, bound, source), each in unknown.items()
+        ]
+        columns = ["check", "limit", "why there is no value", "where the limit comes from"]
+        found.append(
+            Table(name="not_known", caption="limits that meet no value of this run", columns=columns, rows=rows)
+        )
+    if others:
+        rows = [[word(title), *(_told(each.get(case)) for case in checks)] for (title, _, _), each in others.items()]
+        columns = ["value", *(list(checks) if several else [""])]
+        found.append(Table(name="without_limit", caption="values without a limit", columns=columns, rows=rows))
+    return found
+
+
+def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, float]:
+    """What fails comes first, then the least safety."""
+    each = line[1].values()
+    safeties = [check.safety for check in each if check.safety is not None]
+    return not any(check.fails for check in each), min(safeties, default=float("inf"))
+
+
+def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[str, Check]]:
+    """Checks by title, limit and source, then by case."""
+    found: dict[tuple[str, str, str], dict[str, Check]] = {}
+    for case, each in checks.items():
+        for check in filter(wanted, each):
+            limit, unit = check.limit, unit_sign(check.value.unit)
+            bound = (
+                NOTHING if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g} {unit}".strip()
+            )
+            found.setdefault((check.title, bound, "" if limit is None else limit.source), {})[case] = check
+    return found
+
+
+def _judged(check: Check | None) -> Cell:
+    if check is None:
+        return word(NOTHING)
+    state = "fail" if check.fails else "pass" if check.verdict == "pass" else ""
+    note = MARKS.get("fail" if check.fails else check.verdict, WORDS[check.verdict])
+    if check.safety is not None:
+        note += f" · {check.safety:.3g}"
+    return number(check.value.value, note=minus(note), state=state)
+
+
+def _told(check: Check | None) -> Cell:
+    if check is None:
+        return word(NOTHING)
+    return number(check.value.value, unit=check.value.unit, note=minus(place_words(check)))

@@ -1,0 +1,61 @@
+"""Pages of other commands: whole in themselves, names as texts, the same from the same content."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from ltca.analysis.torque_curve import torque_curve
+from ltca.analysis.verdict.advice import Driver
+from ltca.page.packing import unpack
+from ltca.page.studies.check import check_page
+from ltca.page.studies.curves import torque_section
+from ltca.page.study_page import StudyPage, study_page
+from ltca.page.tables import number, word
+
+
+@pytest.fixture(scope="module")
+def page(paper_run):
+    curve = torque_curve(paper_run[0].analyses["CS-1"].drive, np.array([0.0, 0.1]), points=6)
+    return curve, study_page(
+        StudyPage(name="a </script><b>", told="curves", sections=[torque_section(curve, "CS-1: ")])
+    )
+
+
+def test_curves_are_those_computed(page):
+    curve, text = page
+    content = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.S).group(1))
+    numbers = unpack(content["places"], re.search(r'<script id="numbers"[^>]*>(.*?)</script>', text, re.S).group(1))
+    assert np.allclose(numbers["0/x"], curve.torque / 1e3, rtol=1e-6)
+    for place in range(2):
+        assert np.allclose(numbers[f"0/{place}"], np.degrees(curve.output_angle[place]) * 60.0, rtol=1e-6)
+    assert content["plots"][0]["names"] == ["crank at 0°", "crank at 5.73°"]
+
+
+def test_names_are_texts(page):
+    text = page[1]
+    assert "<h1>a &lt;/script&gt;&lt;b&gt;</h1>" in text
+    assert text.count("<script") == text.count("</script>")
+    assert "backlash at the output" in text
+
+
+def test_a_check_tells_what_drives_what(paper_run):
+    checks = {"<i>": paper_run[0].checks["CS-1"]}
+    driver = Driver(input="disc.thickness", elasticity=-0.5, change="10 mm instead of 8 mm", factor=1.25)
+    drivers = {"<i>": {"pin_pressure_mid": [driver]}}
+    page = check_page("paper", "name = 1", "verdict", checks, drivers, {"<i>": ["stiff pins"]}, {"positions": "8"})
+    text = study_page(page)
+    assert study_page(page) == text
+    assert "<i>" not in text
+    assert "stiff pins" in text
+    assert re.search(r"flank pressure</td><td[^>]*>disc.thickness</td><td[^>]*>−0.50</td>", text)
+
+
+def test_cells_keep_their_numbers():
+    cell = number(-1234.5678, "{:.1f}", "arcsec", note="there")
+    assert (cell.text, cell.value, cell.note) == ("−1234.6″", "-1234.5678", "there")
+    assert number(float("nan")).text == "–"
+    assert word("a-1").text == "a-1"
