@@ -26,6 +26,7 @@ UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": se
 # Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
 FEM_MAY_IMPORT = (
     "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
+    "ltca.figures.house_style",
 )  # fmt: skip
 LIGHT_COMMANDS = {
     "contextlib",

@@ -116,9 +116,11 @@ def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
     heading = "Moment that holds each crank"
     if yields:
         shown = data.isel(case=np.unique(torque["of_case"].values))
-        moved = 1e3 * np.hypot(shown["crank_deflection_radial"], shown["crank_deflection_tangential"])
-        moved = moved.transpose("case", "crank", "disc", "position").values
-        moved = moved.reshape(-1, *moved.shape[2:])
+        parts = (
+            shown[name].transpose("case", "crank", "disc", "position").values
+            for name in ("crank_deflection_radial", "crank_deflection_tangential")
+        )
+        moved = 1e3 * np.hypot(*parts).reshape(-1, shown.sizes["disc"], shown.sizes["position"])
         for row in range(rows):
             axes = grid[row, 1]
             for disc, curve in enumerate(moved[row]):

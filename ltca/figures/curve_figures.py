@@ -106,7 +106,7 @@ def _mark_stiffness(axes: Any, curve: TorqueCurve) -> None:
     given = curve.output_angle.mean(axis=0) * ARCMIN
     ends = np.array([STIFF, 1.0]) * rated
     first, last = np.interp(ends, curve.torque / 1e3, given)
-    axes.plot([first, last], ends, color=COLOURS[2], linewidth=3.2, alpha=0.55, solid_capstyle="butt", zorder=1.8)
+    axes.plot([first, last], ends, color=COLOURS[2], linewidth=4.0, alpha=0.6, solid_capstyle="butt", zorder=2.6)
     for at in ends:
         axes.plot([axes.get_xlim()[0], first if at == ends[0] else last], [at, at], color=MARK, linewidth=0.5)
     low, high = (float(pick(curve.stiffness)) / ARCMIN / 1e3 for pick in (np.min, np.max))
@@ -177,6 +177,9 @@ def draw_pressure(
             axes.axhline(safety.limit, color=COLOURS[2], linewidth=1.0, linestyle=DASHED)
         axes.plot(degrees[safety.position], safety.largest, "o", color=COLOURS[0], markersize=4.0)
         axes.set_xlim(degrees[0], degrees[-1])
+        if 300.0 < degrees[-1] - degrees[0] < 360.0:
+            axes.set_xlim(degrees[0], degrees[0] + 360.0)
+            axes.set_xticks(degrees[0] + np.arange(0.0, 361.0, 60.0))
         axes.set_ylim(0.0, 1.12 * (max(safety.limit, safety.largest) if bounded else safety.largest))
         formula(axes.set_xlabel(CRANK))
         axes.set_ylabel("flank pressure at mid-width [MPa]")

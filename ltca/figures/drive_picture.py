@@ -16,7 +16,7 @@ from matplotlib.patches import Arc, Circle, Polygon
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.figures.free_labels import FreeLabels
-from ltca.figures.house_style import CRANK_ANGLE, INK, STYLE, save_figure, shortened_name
+from ltca.figures.house_style import CRANK_ANGLE, STYLE, save_figure, shortened_name
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 
 STEEL, PIN, ROLLER, RACE, SHAFT = "#e9edf2", "#cfd6de", "#d9dde3", "#bfc8d2", "#c9cfd8"
@@ -86,7 +86,9 @@ def drive_figure(drive: Drive, analysis: LoadedAnalysis, position: int, case: st
         # A name may hold a dollar sign: the formula stands in a text of its own.
         held = ", wheel held" if drive.wheel_is_held else ""
         figure.suptitle(f"{name}: forces on the disc{'s' if len(discs) > 1 else ''}")
-        told = f"{CRANK_ANGLE} = {np.degrees(angle):.4g}° ({angle:.4g} rad), torque {analysis.torque / 1000.0:g} N·m{held}"
+        told = (
+            f"{CRANK_ANGLE} = {np.degrees(angle):.4g}° ({angle:.4g} rad), torque {analysis.torque / 1000.0:g} N·m{held}"
+        )
         figure.text(0.5, 1.0 - 0.42 / figure.get_figheight(), told, ha="center", va="center", parse_math=True)
         layout: Any = figure.get_layout_engine()
         layout.set(rect=(0.0, 0.0, 1.0, 1.0 - 0.30 / figure.get_figheight()))
@@ -266,9 +268,8 @@ def _draw_loads(figure: Figure, axes: Any, shown: _Position, largest: float) -> 
             if force > 1e-3 * largest:
                 arrows.append((contact, contact + direction * longest * force / largest, float(force)))
     ends = np.array(normals)
-    axes.add_collection(
-        LineCollection(np.stack([ends.real, ends.imag], axis=-1), colors=NORMAL, linewidths=0.8, zorder=6)
-    )
+    segments: Any = np.stack([ends.real, ends.imag], axis=-1)
+    axes.add_collection(LineCollection(segments, colors=NORMAL, linewidths=0.8, zorder=6))
     _draw_numbers(axes, shown, labels)
     for contact, tip, _ in arrows:
         axes.annotate(

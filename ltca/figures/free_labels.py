@@ -46,7 +46,8 @@ class FreeLabels:
     def keep_line(self, start: complex, end: complex) -> None:
         """Let words rather not stand on a line, given in the scales of the axes."""
         points = np.array([[start.real, start.imag], [end.real, end.imag]])
-        self._lines.append(np.linspace(*self._axes.transData.transform(points), 12))
+        first, last = np.asarray(self._axes.transData.transform(points), dtype=float)
+        self._lines.append(np.linspace(first, last, 12))
 
     def place(self, words: str, point: complex, direction: complex, **style: Any) -> Any:
         """Write words near a point, in a direction from it if there is room, and return the text.

@@ -68,7 +68,8 @@ def _search(optimum: Optimum, title: str) -> Figure:
     for column, (axes, variable) in enumerate(zip(all_axes, optimum.problem.variables, strict=True)):
         scale, unit = field_scale(variable.path, np.array([variable.low, variable.high]))
         x = scale * optimum.variables[:, column]
-        axes.plot(x[~fine], aim[~fine], ".", color=OTHERS, markersize=3.0, label="beyond a limit")
+        if not fine.all():
+            axes.plot(x[~fine], aim[~fine], ".", color=OTHERS, markersize=3.0, label="beyond a limit")
         axes.plot(x[fine], aim[fine], ".", color=COLOURS[6], markersize=3.5, label="within the limits")
         axes.plot(x[optimum.best], aim[optimum.best], "D", color=COLOURS[2], label="best")
         axes.axhline(optimum.start[0], color=COLOURS[0], linewidth=0.8, linestyle=DASHED, label="as it is")

@@ -27,6 +27,7 @@ SIDES = ("outer", "inner")
 PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")
 """Drawn once for all cases."""
 
+
 def even_cells(edges: FloatArray, pressure: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:
     """Return cell centres and mean pressures on even cells along the last axis (integrals are kept).
 
@@ -96,10 +97,10 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     figure.set_figheight(max(4.0, 0.9 + 1.3 * rows))
     grid = figure.add_gridspec(rows, 1 + across, width_ratios=(1.1, *(2.4 / across,) * across))
     left = figure.add_subplot(grid[:, 0])
-    panels = []
+    panels: list[Any] = []
     for number in range(len(names)):
-        place = grid[number // across, 1 + number % across]
-        panels.append(figure.add_subplot(place, sharex=panels[0], sharey=panels[0]) if panels else figure.add_subplot(place))
+        cell, first = grid[number // across, 1 + number % across], panels[0] if panels else None
+        panels.append(figure.add_subplot(cell, sharex=first, sharey=first))
     left.plot(np.abs(outline), arc[: half + 1], color="#555555")
     left.set_xlabel("distance from the disc centre [mm]")
     left.set_ylabel("arc length from the root [mm]")
@@ -282,7 +283,7 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     ticks = mpl.ticker.MaxNLocator(5).tick_values(0.0, top)
     limits = mpl.colors.Normalize(0.0, top)
     corners = pressure[:-1, :-1], pressure[1:, :-1], pressure[:-1, 1:], pressure[1:, 1:]
-    colours = mpl.colormaps[COLOUR_MAP](limits(sum(corners) / 4.0))
+    colours = mpl.colormaps[COLOUR_MAP](limits(np.mean(corners, axis=0)))
     axes.plot_surface(
         across, along, pressure, facecolors=colours, rstride=1, cstride=1, linewidth=0.0, antialiased=False, shade=False
     )
@@ -301,9 +302,7 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     )
     bar.set_ticks([tick for tick in ticks if tick <= top])
     bar.outline.set_visible(False)
-    figure.suptitle(
-        f"{numbered(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa"
-    )
+    figure.suptitle(f"{numbered(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
     return figure
 
 

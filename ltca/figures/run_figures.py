@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -298,7 +299,8 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
         figure = Figure(figsize=(7.2, 3.9))
         FIGURES[name](figure, shown)
         if drawn < dataset.sizes["case"]:
-            figure.get_layout_engine().set(rect=(0.0, 0.025, 1.0, 0.975))  # type: ignore[union-attr]
+            layout: Any = figure.get_layout_engine()
+            layout.set(rect=(0.0, 0.025, 1.0, 0.975))
             figure.text(0.005, 0.005, f"{drawn} of {dataset.sizes['case']} cases", fontsize=7.0)
     return figure
 

@@ -229,7 +229,8 @@ def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
 
 def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int]) -> Figure:
     names = [name for name in study.quantities if name in ranking["quantities"]]
-    figure, axes = _panels(len(names), 2.3, 4.9, 2)
+    bars = min(SHOWN, max(len(ranking["quantities"][name]["shares"]) for name in names))
+    figure, axes = _panels(len(names), 0.95 + 0.17 * bars, 4.9, 2 if len(names) < 7 else 3)
     by_regression = "regression" in ranking["method"]
     for axis, name in zip(axes, names, strict=False):
         entry = ranking["quantities"][name]
@@ -245,14 +246,18 @@ def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int
         axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
         axis.set_xlabel("share of the variance [%]", fontsize=7.5)
         axis.tick_params(axis="x", labelsize=7.5)
-        words = f"{QUANTITIES[name].description}\nfirst order together {100.0 * entry['explained']:.0f} %"
-        axis.set_title("\n".join(fill(line, 2 * LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left")
+        words = f"{QUANTITIES[name].description}\nfirst order together {max(0.0, 100.0 * entry['explained']):.0f} %"
+        axis.set_title(
+            "\n".join(fill(line, 2 * LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
+        )
     told = f"{shortened_name(study.name, 40)}: {ranking['method']}"
     letters = int(12.5 * figure.get_figwidth())
+    told += f"\n{study.design.samples} samples; "
     if by_regression:
-        told += f"\n{study.design.samples} samples; grey: chance alone gives as much, 19 times of 20 less: such ranks say nothing"
+        told += "grey: chance alone gives as much, 19 times of 20 less: such ranks say nothing"
     else:
-        told += f"\n{study.design.samples} samples: an index is known to some {_relative_noise(ranking['method']):.0f} % of itself; closer ranks say nothing"
+        noise = _relative_noise(ranking["method"])
+        told += f"an index is known to some {noise:.0f} % of itself: closer ranks say nothing"
     figure.suptitle("\n".join(fill(line, letters) for line in told.split("\n")))
     return figure
 

@@ -13,7 +13,7 @@ from fem.pictures.flat_view import plain_text
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.figures.drive_picture import draw_drive
-from ltca.figures.labelled_curves import STYLE
+from ltca.figures.house_style import STYLE
 from ltca.figures.run_figures import draw_figure
 
 NAMES = ("a$x_{b$", "<!--<script>", 'it\'s "q" & <b>')
