@@ -138,7 +138,7 @@ class Plots:
         return self._drawn("fig23_transmission_error")
 
     def pin_load(self) -> Figure:
-        """Draw the load of a wheel pin over its mesh, the first whose mesh is whole."""
+        """Draw the load of a wheel pin over its mesh: of the first one whose mesh is whole."""
         return self._drawn("fig24_pin_load")
 
     def loaded_pins(self) -> Figure:

@@ -28,6 +28,7 @@ PIXELS_PER_INCH = 200.0
 BESIDE, ABOVE = 1.25, 0.85
 """Inches for the scales beside a panel, and for its title and the scale below."""
 LETTERS_PER_INCH = 12.5
+LEAST_INCHES = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,7 +134,7 @@ def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
     clipped = [_clip(panel) for panel in panels]
     with mpl.rc_context({**STYLE, "axes.grid": False}), whole_file(path) as part:
         figure = compose(clipped, side, _paint_with_matplotlib if problem else _paint_with_pyvista)
-        figure.savefig(part, dpi=PIXELS_PER_INCH)
+        figure.savefig(part, dpi=side / _inches(side))
     return problem
 
 
@@ -170,7 +171,7 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
-    width = side / PIXELS_PER_INCH
+    width = _inches(side)
     figure = Figure(figsize=((width + BESIDE) * len(panels), width + ABOVE), layout="constrained")
     FigureCanvasAgg(figure)
     for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
@@ -198,6 +199,11 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
             else:
                 bar.set_ticks([tick for tick in MaxNLocator(6).tick_values(*panel.limits) if tick <= panel.limits[1]])
     return figure
+
+
+def _inches(side: int) -> float:
+    """Side of a panel on paper: on one of few pixels words shrink with it."""
+    return max(side / PIXELS_PER_INCH, LEAST_INCHES)
 
 
 def _round_values(low: float, high: float) -> list[float]:

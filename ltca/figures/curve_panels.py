@@ -23,6 +23,8 @@ FEW = 40
 """Positions below which each is marked."""
 BESIDE = 4
 """Panels from which on they stand in two columns."""
+ALONE = "nominal"
+"""Name of the case of a drive without cases: it tells nothing."""
 LETTERS = {1: 84, 2: 42}
 """Letters above a panel of the width of the figure, and of half of it."""
 ROOM = 0.06
@@ -180,7 +182,8 @@ def name_panel(axes: Any, name: str, across: int = 1) -> None:
     across : int
         Panels beside each other.
     """
-    axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
+    if name != ALONE:
+        axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
 
 
 def label_all(figure: Figure, panels: Any, x_label: str, y_label: str) -> None:

@@ -289,8 +289,10 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     )
     # The patch is a hundred times longer than wide: each axis has its own scale.
     axes.set_box_aspect((1.0, 1.6, 0.85))
-    axes.set_xlabel("across [µm]")
-    axes.set_ylabel("along [mm]")
+    for axis, label in ((axes.xaxis, "across [µm]"), (axes.yaxis, "along [mm]")):
+        axis.set_rotate_label(False)
+        axis.set_label_text(label, rotation=0.0)
+        axis.labelpad = 11.0
     axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
     axes.yaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
     axes.set_zticks([tick for tick in ticks if tick <= top])

@@ -99,7 +99,7 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
             name_panel(axes, names[row], 2)
         grid[0, column].margins(x=0.0, y=0.08)
         grid[0, column].yaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
-        grid[0, column].set_title(words + ("\n" if rows > 1 else ""), loc="center")
+        grid[0, column].set_title(words + "\n", loc="center")
         formula(grid[-1, column].set_xlabel(CRANK))
     mark_a_turn(grid[0, 0], x[order])
     figure.supylabel("deviation from the mean [″]", fontsize=9.0)
@@ -224,7 +224,7 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
 
 FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
     "fig23_transmission_error": _transmission_error,
-    "fig24_pin_load": _over_its_mesh("pin_load", "pin_load", "load [N]", "Load of wheel pin{} over its mesh", 24),
+    "fig24_pin_load": _over_its_mesh("pin_load", "pin_load", "load [N]", "Load of wheel pin{} over a mesh", 24),
     "fig25_loaded_pins": _number_loaded("pin_load", "Number of loaded wheel pins", 25),
     "fig26_pin_pressure": _over_its_mesh(
         "pin_load", "pin_pressure_mid", "pressure at mid-width [MPa]", "Largest flank pressure at wheel pin{}", 26
