@@ -28,7 +28,7 @@ from ltca.figures.house_style import STYLE
 from ltca.figures.optimum_figures import _front, _search, _title
 from ltca.figures.pressure_figures import draw_contact_zone, draw_roller_pressure, draw_sections
 from ltca.figures.run_figures import draw_figure, figure_names
-from ltca.figures.study_figures import study_figures
+from ltca.figures.study_figures import chance_of, study_figures
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -270,3 +270,17 @@ def test_the_window_on_a_mesh_leaves_out_what_is_empty():
     low, high = loaded_window(angle, load[:, :, 1])
     assert 60.0 <= low <= 80.0
     assert 160.0 <= high <= 180.0
+
+
+def test_ranks_of_chance_are_those_of_fields_without_influence():
+    """Ranks of noise stood beside those that say something: one field without influence of twenty exceeds its chance."""
+    study = tolerance_study(load_drive("paper"), samples=101, positions=28, quantities=("max_pin_load",))
+    chance, random = chance_of(study, 0.0, 101), np.random.default_rng(2)
+    sizes = {name: columns.stop - columns.start for name, columns in study.design.groups}
+    assert set(sizes.values()) >= {1, 8, 14}
+    for name, limit in chance.items():
+        # Coefficients without influence have the variance 1/100, which is taken off each square.
+        squares = (0.1 * random.normal(size=(20_000, sizes[name]))) ** 2
+        beyond = np.mean(np.maximum(squares - 0.01, 0.0).sum(axis=1) > limit)
+        # 2.3 % of a normal sum, 5 % of a single element; 20000 trials know it to 0.2 %.
+        assert 0.02 < beyond < 0.06, name
