@@ -138,7 +138,7 @@ class Plots:
         return self._drawn("fig23_transmission_error")
 
     def pin_load(self) -> Figure:
-        """Draw the load of wheel pin 0 over its mesh."""
+        """Draw the load of a wheel pin over its mesh: of the first one whose mesh is whole."""
         return self._drawn("fig24_pin_load")
 
     def loaded_pins(self) -> Figure:
@@ -146,7 +146,7 @@ class Plots:
         return self._drawn("fig25_loaded_pins")
 
     def pin_pressure(self) -> Figure:
-        """Draw the largest flank pressure at wheel pin 0."""
+        """Draw the largest flank pressure at a wheel pin, the one of `pin_load`."""
         return self._drawn("fig26_pin_pressure")
 
     def bearing_load(self) -> Figure:

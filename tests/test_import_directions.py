@@ -28,6 +28,7 @@ UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": se
 FEM_MAY_IMPORT = (
     "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
     "ltca.page.study_page", "ltca.page.tables", "ltca.page.verdict_tables",
+    "ltca.figures.house_style",
 )  # fmt: skip
 LIGHT_COMMANDS = {
     "contextlib",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,17 +30,6 @@ def open_plotter(**options: Any) -> Any:
     # VTK warns about a missing X server before it takes EGL.
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     return pyvista.Plotter(off_screen=True, **options)
-
-
-def plain_text(text: str) -> str:
-    """Return a text as VTK takes it: what stands between dollar signs is no formula to it.
-
-    Parameters
-    ----------
-    text : str
-        Title with names of the user's.
-    """
-    return text.replace("$", "\\$")
 
 
 def flat_surface(points: ComplexArray, faces: IntArray) -> pyvista.PolyData:
@@ -78,6 +68,37 @@ def flat_lines(points: ComplexArray, height: float) -> pyvista.PolyData:
 def _at_height(points: ComplexArray, height: float) -> FloatArray:
     ravelled = points.ravel()
     return np.column_stack([ravelled.real, ravelled.imag, np.full(ravelled.size, height)])
+
+
+def snapshot(
+    layers: Sequence[tuple[Any, dict[str, Any]]], centre: complex, half_side: float, side: int
+) -> NDArray[np.uint8]:
+    """Return a square window on flat things as pixels, nothing written on them.
+
+    Parameters
+    ----------
+    layers : sequence of (mesh, options)
+        From below, options of `pyvista.Plotter.add_mesh`.
+    centre : complex
+        Of the window, mm.
+    half_side : float
+        Of the window, mm.
+    side : int
+        Pixels.
+
+    Returns
+    -------
+    array, shape (side, side, 3)
+    """
+    plotter = open_plotter(window_size=[side, side])
+    plotter.set_background("white")
+    for mesh, options in layers:
+        # Without light: colours are those of the scale.
+        plotter.add_mesh(mesh, lighting=False, **options)
+    look_down(plotter, centre, half_side, 10.0 * half_side)
+    image = np.asarray(plotter.screenshot(None, return_img=True))
+    plotter.close()
+    return image
 
 
 def look_down(plotter: Any, centre: complex, half_side: float, distance: float) -> None:

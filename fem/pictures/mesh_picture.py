@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +18,17 @@ from fem.pictures.flat_view import (
     coordinate_pairs,
     flat_lines,
     flat_surface,
-    look_down,
     may_show,
-    open_plotter,
-    plain_text,
+    snapshot,
 )
 from fem.pictures.offscreen import rendering_problem
 from fem.shapes import CircleShape
+from ltca.figures.house_style import STYLE
 from ltca.geometry.placement import Placement
 from ltca.output.files import whole_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -39,6 +42,9 @@ COLOURS = {
     "shaft_pin": ("#dddddd", "#666666"),
 }
 ZOOM_HALF_WIDTHS = 4.0
+SIDE_INCHES = 7.6
+"""Of the whole drive; its windows are half as large."""
+PIXELS_PER_INCH = 160.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,82 +157,94 @@ def draw_drive_mesh(
     CycloError
         When the file cannot be written.
     """
+    import matplotlib as mpl
+
     problem = rendering_problem()
     circles = [centre + shape.radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721)) for centre, shape in shaft_pins]
-    with whole_file(Path(path)) as part:
-        draw = _draw_with_matplotlib if problem else _draw_with_pyvista
-        draw(part, placed, zooms, circles, title)
+    with mpl.rc_context({**STYLE, "axes.grid": False}), whole_file(Path(path)) as part:
+        paint = _painter_with_matplotlib if problem else _painter_with_pyvista
+        figure = _compose(placed, zooms[:4], title, paint(placed, circles))
+        figure.savefig(part, dpi=PIXELS_PER_INCH)
     return problem
 
 
-def _draw_with_pyvista(
-    path: Path, placed: Sequence[PlacedBody], zooms: Sequence[Zoom], circles: Sequence[ComplexArray], title: str
-) -> None:
-    layers = []
+def _compose(
+    placed: Sequence[PlacedBody], zooms: Sequence[Zoom], title: str, paint: Callable[[Any, Zoom, int], None]
+) -> Figure:
+    """The whole drive on the left, windows on its contacts on the right."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
+
+    figure = Figure(figsize=(SIDE_INCHES * (1.0 + 0.5 * (2 if len(zooms) > 2 else len(zooms) > 0)), SIDE_INCHES))
+    figure.set_layout_engine("constrained")
+    FigureCanvasAgg(figure)
+    across = min(2, len(zooms))
+    grid = figure.add_gridspec(2, 2 + across)
+    everything = np.concatenate([item.nodes for item in placed])
+    low, high = (complex(pick(everything.real), pick(everything.imag)) for pick in (np.min, np.max))
+    reach = 0.52 * max((high - low).real, (high - low).imag)
+    windows: list[tuple[Any, Zoom]] = [(grid[:, :2], Zoom(title=title, centre=0.5 * (low + high), half_side=reach))]
+    windows += [(grid[k // 2, 2 + k % 2], zoom) for k, zoom in enumerate(zooms)]
+    for number, (cell, window) in enumerate(windows):
+        axes = figure.add_subplot(cell)
+        paint(axes, window, int(PIXELS_PER_INCH * SIDE_INCHES * (0.92 if number == 0 else 0.42)))
+        letters = 100 if number == 0 else 46
+        axes.set_title(
+            "\n".join(fill(line, letters) for line in window.title.split("\n")), parse_math=False, fontsize=9.0
+        )
+        axes.set_aspect("equal")
+        axes.set_xlim(window.centre.real - window.half_side, window.centre.real + window.half_side)
+        axes.set_ylim(window.centre.imag - window.half_side, window.centre.imag + window.half_side)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(MaxNLocator(4 if number else 7))
+        axes.ticklabel_format(useOffset=False)
+        axes.set_xlabel("x [mm]")
+        axes.set_ylabel("y [mm]")
+    return figure
+
+
+def _painter_with_pyvista(
+    placed: Sequence[PlacedBody], circles: Sequence[ComplexArray]
+) -> Callable[[Any, Zoom, int], None]:
+    layers: list[tuple[Any, dict[str, Any]]] = []
     for item in placed:
-        fill, line = COLOURS[item.kind]
-        layers.append((flat_surface(item.nodes, item.faces()), fill))
-        layers.append((flat_lines(item.edge_lines(), 0.01), line))
+        fill_colour, line = COLOURS[item.kind]
+        layers.append((flat_surface(item.nodes, item.faces()), {"color": fill_colour}))
+        layers.append((flat_lines(item.edge_lines(), 0.01), {"color": line, "line_width": 1}))
     for circle in circles:
         corners = circle[:-1]  # without the repeated end
-        layers.append((flat_surface(corners, np.arange(corners.size)[None, :]), COLOURS["shaft_pin"][0]))
-        layers.append((flat_lines(circle[None, :], 0.02), COLOURS["shaft_pin"][1]))
+        layers.append((flat_surface(corners, np.arange(corners.size)[None, :]), {"color": COLOURS["shaft_pin"][0]}))
+        layers.append((flat_lines(circle[None, :], 0.02), {"color": COLOURS["shaft_pin"][1], "line_width": 1}))
 
-    plotter = open_plotter(shape=(2, 4), groups=[(slice(0, 2), slice(0, 2))], window_size=[2400, 1200])
-    everything = np.concatenate([item.nodes for item in placed])
-    reach = 1.04 * max(float(np.ptp(everything.real)), float(np.ptp(everything.imag))) / 2.0
-    middle = complex(
-        0.5 * (everything.real.max() + everything.real.min()), 0.5 * (everything.imag.max() + everything.imag.min())
-    )
-    windows = [((0, 0), Zoom(title=title, centre=middle, half_side=reach))]
-    windows += [((k // 2, 2 + k % 2), zoom) for k, zoom in enumerate(zooms[:4])]
-    for (row, column), zoom in windows:
-        plotter.subplot(row, column)
-        plotter.set_background("white")
-        for mesh, colour in layers:
-            plotter.add_mesh(mesh, color=colour, lighting=False, line_width=1)
-        plotter.add_text(plain_text(zoom.title), font_size=10, color="black", position="upper_edge")
-        look_down(plotter, zoom.centre, zoom.half_side, 10.0)
-    plotter.screenshot(str(path))
-    plotter.close()
+    def paint(axes: Any, window: Zoom, side: int) -> None:
+        reach, middle = window.half_side, window.centre
+        extent = (middle.real - reach, middle.real + reach, middle.imag - reach, middle.imag + reach)
+        # The camera stands at ten half-sides or more: lines lie above the surfaces in every window.
+        axes.imshow(snapshot(layers, middle, reach, side), extent=extent, interpolation="antialiased")
+
+    return paint
 
 
-def _draw_with_matplotlib(
-    path: Path, placed: Sequence[PlacedBody], zooms: Sequence[Zoom], circles: Sequence[ComplexArray], title: str
-) -> None:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+def _painter_with_matplotlib(
+    placed: Sequence[PlacedBody], circles: Sequence[ComplexArray]
+) -> Callable[[Any, Zoom, int], None]:
     from matplotlib.collections import LineCollection, PolyCollection
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(24.0, 12.0), layout="constrained")
-    FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(2, 4)
-    windows: list[tuple[Any, Zoom | None]] = [(grid[:, :2], None)]
-    windows += [(grid[k // 2, 2 + k % 2], zoom) for k, zoom in enumerate(zooms[:4])]
-    for cell, window in windows:
-        axes = figure.add_subplot(cell)
+    def paint(axes: Any, window: Zoom, side: int) -> None:
         for item in placed:
-            fill, line = COLOURS[item.kind]
+            fill_colour, line = COLOURS[item.kind]
             nodes = item.nodes
             polygons, edges = nodes[item.faces()], item.edge_lines()
-            if window is not None:
-                polygons, edges = (rows[may_show(rows, window.centre, window.half_side)] for rows in (polygons, edges))
+            polygons, edges = (rows[may_show(rows, window.centre, window.half_side)] for rows in (polygons, edges))
             axes.add_collection(
-                PolyCollection(coordinate_pairs(polygons), facecolors=fill, edgecolors=fill, linewidths=0.2)
+                PolyCollection(
+                    coordinate_pairs(polygons), facecolors=fill_colour, edgecolors=fill_colour, linewidths=0.2
+                )
             )
-            axes.add_collection(
-                LineCollection(coordinate_pairs(edges), colors=line, linewidths=0.25 if window is None else 0.7)
-            )
+            axes.add_collection(LineCollection(coordinate_pairs(edges), colors=line, linewidths=0.3))
         for circle in circles:
-            fill, line = COLOURS["shaft_pin"]
-            axes.fill(circle.real, circle.imag, facecolor=fill, edgecolor=line, linewidth=1.0)
-        axes.set_aspect("equal")
-        axes.set_title(title if window is None else window.title, parse_math=False)
-        if window is None:
-            axes.autoscale_view()
-        else:
-            axes.set_xlim(window.centre.real - window.half_side, window.centre.real + window.half_side)
-            axes.set_ylim(window.centre.imag - window.half_side, window.centre.imag + window.half_side)
-        axes.set_xlabel("x, mm")
-        axes.set_ylabel("y, mm")
-    figure.savefig(path, dpi=100.0)
+            fill_colour, line = COLOURS["shaft_pin"]
+            axes.fill(circle.real, circle.imag, facecolor=fill_colour, edgecolor=line, linewidth=0.6)
+
+    return paint

@@ -1,32 +1,34 @@
-"""Flat scenes of coloured triangles and lines, rendered by pyvista off-screen or, without GL, by matplotlib."""
+"""Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; words by matplotlib."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.pictures.flat_view import (
-    coordinate_pairs,
-    flat_lines,
-    flat_surface,
-    look_down,
-    may_show,
-    open_plotter,
-    plain_text,
-)
+from fem.pictures.flat_view import coordinate_pairs, flat_lines, flat_surface, may_show, snapshot
 from fem.pictures.offscreen import rendering_problem
+from ltca.figures.house_style import COLOUR_MAP, STYLE
 from ltca.output.files import whole_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 IntArray = NDArray[np.int64]
 
-COLOUR_MAP = "turbo"
+PIXELS_PER_INCH = 200.0
+"""Of pictures: words keep their size, so they read larger on a smaller one."""
+BESIDE, ABOVE = 1.25, 0.85
+"""Inches for the scales beside a panel, and for its title and the scale below."""
+LETTERS_PER_INCH = 12.5
+LEAST_INCHES = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +92,8 @@ class Panel:
         Of the colour bar; "" for none.
     limits : tuple of two floats
         Of the colours.
+    logarithmic : bool
+        Whether equal steps of colour are equal ratios; what is below the limits has the colour of the lower one.
     """
 
     title: str
@@ -99,6 +103,7 @@ class Panel:
     lines: tuple[Lines, ...]
     label: str = ""
     limits: tuple[float, float] = (0.0, 1.0)
+    logarithmic: bool = False
 
 
 def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
@@ -123,10 +128,13 @@ def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
     CycloError
         When the file cannot be written.
     """
+    import matplotlib as mpl
+
     problem = rendering_problem()
     clipped = [_clip(panel) for panel in panels]
-    with whole_file(path) as part:
-        (_render_with_matplotlib if problem else _render_with_pyvista)(part, clipped, side)
+    with mpl.rc_context({**STYLE, "axes.grid": False}), whole_file(path) as part:
+        figure = compose(clipped, side, _paint_with_matplotlib if problem else _paint_with_pyvista)
+        figure.savefig(part, dpi=side / _inches(side))
     return problem
 
 
@@ -145,81 +153,103 @@ def _clip(panel: Panel) -> Panel:
     return replace(panel, triangles=tuple(triangles), lines=tuple(lines))
 
 
-def _render_with_pyvista(path: Path, panels: Sequence[Panel], side: int) -> None:
-    plotter = open_plotter(shape=(1, len(panels)), window_size=[side * len(panels), side])
-    for column, panel in enumerate(panels):
-        plotter.subplot(0, column)
-        plotter.set_background("white")
-        bar = bool(panel.label)
-        for surface in panel.triangles:
-            mesh = flat_surface(surface.points, surface.faces)
-            if surface.values is None:
-                plotter.add_mesh(mesh, color=surface.colour, lighting=False)
-                continue
-            plotter.add_mesh(
-                mesh,
-                scalars=surface.values,
-                cmap=COLOUR_MAP,
-                clim=panel.limits,
-                lighting=False,
-                show_scalar_bar=bar,
-                scalar_bar_args={
-                    "title": panel.label + " " * column,
-                    "color": "black",
-                    "n_labels": 5,
-                    "vertical": True,
-                    "position_x": 0.90,
-                    "position_y": 0.2,
-                    "width": 0.06,
-                    "height": 0.6,
-                    "title_font_size": 16,
-                    "label_font_size": 14,
-                },
-            )
-            bar = False
-        for item in panel.lines:
-            lines = flat_lines(item.points, 0.01 * panel.half_side)
-            plotter.add_mesh(lines, color=item.colour, lighting=False, line_width=item.width)
-        plotter.add_text(plain_text(panel.title), font_size=11, color="black", position="upper_edge")
-        look_down(plotter, panel.centre, panel.half_side, 10.0 * panel.half_side)
-    plotter.screenshot(str(path))
-    plotter.close()
+def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any, int], None]) -> Figure:
+    """Return panels side by side: title above, scales of mm, the colours' scale beside the field.
 
-
-def _render_with_matplotlib(path: Path, panels: Sequence[Panel], side: int) -> None:
+    Parameters
+    ----------
+    panels : sequence of Panel
+        From left to right.
+    side : int
+        Pixels of each panel.
+    paint : callable
+        Draws a panel into axes by a norm of colours, at so many pixels.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.collections import LineCollection
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm, Normalize
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
-    figure = Figure(figsize=(side * len(panels) / 100.0, side / 100.0), layout="constrained")
+    width = _inches(side)
+    figure = Figure(figsize=((width + BESIDE) * len(panels), width + ABOVE), layout="constrained")
     FigureCanvasAgg(figure)
-    for column, panel in enumerate(panels):
-        axes = figure.add_subplot(1, len(panels), column + 1)
-        coloured: Any = None
-        for surface in panel.triangles:
-            values = np.zeros(len(surface.points)) if surface.values is None else surface.values
-            drawn: Any = axes.tripcolor(  # type: ignore[call-overload]
-                surface.points.real,
-                surface.points.imag,
-                surface.faces,
-                values,
-                shading="gouraud",
-                cmap=COLOUR_MAP if surface.values is not None else _single(surface.colour),
-                vmin=panel.limits[0],
-                vmax=panel.limits[1],
-            )
-            coloured = drawn if surface.values is not None else coloured
-        for item in panel.lines:
-            segments = coordinate_pairs(item.points)
-            axes.add_collection(LineCollection(segments, colors=item.colour, linewidths=0.6 * item.width))
-        if coloured is not None and panel.label:
-            figure.colorbar(coloured, ax=axes, label=panel.label, shrink=0.8)
+    for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+        norm = LogNorm(*panel.limits, clip=True) if panel.logarithmic else Normalize(*panel.limits)
+        paint(axes, panel, norm, side)
+        letters = int(LETTERS_PER_INCH * width)
+        axes.set_title("\n".join(fill(line, letters) for line in panel.title.split("\n")), parse_math=False)
         axes.set_aspect("equal")
         axes.set_xlim(panel.centre.real - panel.half_side, panel.centre.real + panel.half_side)
         axes.set_ylim(panel.centre.imag - panel.half_side, panel.centre.imag + panel.half_side)
-        axes.set(xlabel="x, mm", ylabel="y, mm")
-        axes.set_title(panel.title, parse_math=False)
-    figure.savefig(path, dpi=100.0)
+        axes.set(xlabel="x [mm]", ylabel="y [mm]")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(MaxNLocator(5))
+        axes.ticklabel_format(useOffset=False)
+        if panel.label:
+            bar = figure.colorbar(
+                ScalarMappable(norm, COLOUR_MAP), ax=axes, label=panel.label, shrink=0.75, pad=0.02,
+                extend="min" if panel.logarithmic else "neither",
+            )  # fmt: skip
+            bar.outline.set_visible(False)
+            if panel.logarithmic:
+                ticks = _round_values(*panel.limits)
+                bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
+                bar.minorticks_off()
+            else:
+                bar.set_ticks([tick for tick in MaxNLocator(6).tick_values(*panel.limits) if tick <= panel.limits[1]])
+    return figure
+
+
+def _inches(side: int) -> float:
+    """Side of a panel on paper: on one of few pixels words shrink with it."""
+    return max(side / PIXELS_PER_INCH, LEAST_INCHES)
+
+
+def _round_values(low: float, high: float) -> list[float]:
+    """1, 2 and 5 of every power of ten within limits."""
+    powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
+    return [step * 10.0**power for power in powers for step in (1.0, 2.0, 5.0) if low <= step * 10.0**power <= high]
+
+
+def _paint_with_pyvista(axes: Any, panel: Panel, norm: Any, side: int) -> None:
+    layers: list[tuple[Any, dict[str, Any]]] = []
+    for surface in panel.triangles:
+        mesh = flat_surface(surface.points, surface.faces)
+        if surface.values is None:
+            layers.append((mesh, {"color": surface.colour}))
+            continue
+        coloured = np.asarray(norm(surface.values))
+        layers.append((mesh, {"scalars": coloured, "cmap": COLOUR_MAP, "clim": (0.0, 1.0), "show_scalar_bar": False}))
+    for number, item in enumerate(panel.lines):
+        height = (0.01 + 1e-4 * number) * panel.half_side
+        layers.append((flat_lines(item.points, height), {"color": item.colour, "line_width": item.width}))
+    image = snapshot(layers, panel.centre, panel.half_side, side)
+    reach, middle = panel.half_side, panel.centre
+    extent = (middle.real - reach, middle.real + reach, middle.imag - reach, middle.imag + reach)
+    axes.imshow(image, extent=extent, interpolation="antialiased")
+
+
+def _paint_with_matplotlib(axes: Any, panel: Panel, norm: Any, side: int) -> None:
+    from matplotlib.collections import LineCollection
+
+    for surface in panel.triangles:
+        coloured = surface.values is not None
+        axes.tripcolor(
+            surface.points.real,
+            surface.points.imag,
+            surface.faces,
+            np.zeros(len(surface.points)) if surface.values is None else np.asarray(norm(surface.values)),
+            shading="gouraud",
+            cmap=COLOUR_MAP if coloured else _single(surface.colour),
+            vmin=0.0,
+            vmax=1.0,
+        )
+    for number, item in enumerate(panel.lines):
+        segments = coordinate_pairs(item.points)
+        axes.add_collection(
+            LineCollection(segments, colors=item.colour, linewidths=0.4 * item.width, zorder=3 + 0.01 * number)
+        )
 
 
 def _single(colour: str) -> Any:

@@ -1,4 +1,4 @@
-"""Pictures of a full solution: von Mises over the drive, the three most loaded contacts, the deformed shape."""
+"""Pictures of a full solution: von Mises over the drive, the most loaded contact of each kind, the deformed shape."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from fem.pictures.scene import Lines, Panel, Triangles, render
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-# Colours over the whole drive end where this share of its area is below: the spots under the contacts would leave
-# the rest of the drive in one colour.
-COLOUR_AREA = 0.995
+# Colours over the whole drive run over ratios, from where this share of its area is below up to the largest stress: on an
+# even scale the spots under the contacts would leave the rest of the drive in one colour.
+COLOUR_AREA = 0.10
+MOST_RATIO = 500.0
 # The largest elastic displacement is drawn as this part of the drive's radius.
 DEFORMED_SHARE = 0.04
 ZOOM_HALF_WIDTHS = 3.5
@@ -64,27 +65,27 @@ def draw_solution(
         "" when pyvista drew them, else why matplotlib did.
     """
     everything = np.concatenate([field.places for field in fields])
-    # Room for the colour bar on the right.
-    reach = 1.14 * float(np.max(np.abs(everything)))
-    room = 0.1 * reach + 0j
-    limit = _stress_below(fields, COLOUR_AREA)
+    reach = 1.03 * float(np.max(np.abs(everything)))
+    highest = max(float(np.max(field.stress.von_mises)) for field in fields)
+    lowest = _round_down(max(_stress_below(fields, COLOUR_AREA), highest / MOST_RATIO))
     shaft = _shaft_pins(solution)
     whole = Panel(
-        title=f"{headline}: von Mises stress, colours end at {limit:.3g} MPa",
-        centre=room,
+        title=f"{headline}\nvon Mises stress, largest {highest:.3g} MPa (logarithmic scale)",
+        centre=0j,
         half_side=reach,
         triangles=tuple(_triangles(field, field.places, field.stress.von_mises) for field in fields),
         lines=(*(_outline(field, field.places) for field in fields), shaft),
-        label="von Mises, MPa",
-        limits=(0.0, limit),
+        label="von Mises stress [MPa]",
+        limits=(lowest, highest),
+        logarithmic=True,
     )
     problem = render(folder / f"{prefix}von_mises.png", [whole], side=side)
     render(folder / f"{prefix}contacts.png", _zooms(solution, fields))
     largest = max(float(np.max(np.abs(field.elastic))) for field in fields)
     scale = _round_down(DEFORMED_SHARE * reach / largest)
     deformed = Panel(
-        title=f"{headline}: elastic displacement x {scale:g} at the loaded pose (grey: undeformed)",
-        centre=room,
+        title=f"{headline}\nelastic displacement × {scale:g} at the loaded pose (grey: undeformed)",
+        centre=0j,
         half_side=reach,
         triangles=tuple(
             _triangles(field, field.places + scale * field.elastic, 1e3 * np.abs(field.elastic)) for field in fields
@@ -94,7 +95,7 @@ def draw_solution(
             *(_outline(field, field.places + scale * field.elastic) for field in fields),
             shaft,
         ),
-        label="elastic displacement, µm",
+        label="elastic displacement [µm]",
         limits=(0.0, 1e3 * largest),
     )
     render(folder / f"{prefix}deformed.png", [deformed], side=side)
@@ -139,22 +140,20 @@ def _shaft_pins(solution: FullSolution) -> Lines:
     return Lines(points=centres[:, None] + place.shaft_pin_radii[:, None] * circle, colour="#777777", width=1.5)
 
 
+def _chosen(kinds: Sequence[str], loads: Sequence[float]) -> list[int]:
+    """Return the most loaded contact of the flank, of the holes and of the rollers, whose two carry the same load."""
+    chosen = []
+    for group in (("pin",), ("hole",), ("roller_outer", "roller_inner")):
+        numbers = [number for number, kind in enumerate(kinds) if kind in group and loads[number] > 0.0]
+        if numbers:
+            chosen.append(max(numbers, key=lambda number: loads[number]))
+    return chosen
+
+
 def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
-    """Return windows on the three most loaded contacts: mesh, stress and pressure diagram."""
+    """Return windows on the most loaded contact of each kind: mesh, stress and pressure diagram."""
     model, details = solution.model, solution.contacts.details
-    order = np.argsort([-detail.load for detail in details], kind="stable")
-    chosen: list[int] = []
-    for candidate in order.tolist():
-        # A roller's two contacts carry the same load: one of them is enough.
-        pair = model.pairs[candidate]
-        twin = any(
-            model.pairs[k].index == pair.index and {model.pairs[k].kind, pair.kind} == {"roller_outer", "roller_inner"}
-            for k in chosen
-        )
-        if details[candidate].load > 0.0 and not twin:
-            chosen.append(candidate)
-        if len(chosen) == 3:
-            break
+    chosen = _chosen([pair.kind for pair in model.pairs], [detail.load for detail in details])
     panels = []
     for number in chosen:
         pair, detail = model.pairs[number], details[number]
@@ -169,15 +168,18 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         on = np.flatnonzero(pressure > 0.0)
         diagram = places + height * pressure * into
         teeth = np.column_stack([places[on], diagram[on]])
+        outline = diagram[None, max(on[0] - 1, 0) : on[-1] + 2]
         half_side = ZOOM_HALF_WIDTHS * detail.half_width
         near = [field for field in fields if float(np.min(np.abs(field.places - middle))) < half_side]
-        limit = 0.65 * detail.peak_pressure
+        limit = max(
+            float(np.max(field.stress.von_mises, where=np.abs(field.places - middle) < 1.4 * half_side, initial=0.0))
+            for field in near
+        )
         panels.append(
             Panel(
                 title=(
-                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N, "
-                    f"peak {detail.peak_pressure:.0f} MPa,\n"
-                    f"half-width {1e3 * detail.half_width:.1f} µm, window {2.0 * half_side:.3g} mm; white: pressure"
+                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N\n"
+                    f"white: pressure, peak {detail.peak_pressure:.0f} MPa, half-width {1e3 * detail.half_width:.1f} µm"
                 ),
                 centre=middle,
                 half_side=half_side,
@@ -187,10 +189,13 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
                 lines=(
                     *(Lines(points=_edges(field), colour="#404040", width=0.8) for field in near),
                     _shaft_pins(solution),
+                    # Dark beside white: both are seen on every colour of the scale.
+                    Lines(points=teeth, colour="#202020", width=3.5),
+                    Lines(points=outline, colour="#202020", width=6.0),
                     Lines(points=teeth, colour="#ffffff", width=1.5),
-                    Lines(points=diagram[None, max(on[0] - 1, 0) : on[-1] + 2], colour="#ffffff", width=3.0),
+                    Lines(points=outline, colour="#ffffff", width=3.0),
                 ),
-                label="von Mises, MPa",
+                label="von Mises stress [MPa]",
                 limits=(0.0, limit),
             )
         )

@@ -324,10 +324,8 @@ def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], fol
     print(f"figures: {folder} ({len(names)} as SVG and PNG)")
     if fields is None:
         return
-    from ltca.figures.pressure_figures import can_render, write_pressure_figures
+    from ltca.figures.pressure_figures import write_pressure_figures
 
-    if not can_render():
-        print("pyvista cannot render here (no GL): 3-D pressures are drawn with matplotlib")
     with progress("pressure figures", 3 + len(cases)) as advance:
         for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), folder):
             advance(path.name)

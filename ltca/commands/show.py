@@ -73,7 +73,7 @@ def _show(cases: dict[str, Drive], angle: FloatArray, out: Path) -> None:
         for title, value in _loads(analysis):
             print(f"    {title:<45} {value}")
         path = out / f"drive_{name}.png"
-        draw_drive(drive, analysis, 0, path)
+        draw_drive(drive, analysis, 0, path, name if len(cases) > 1 or name != "nominal" else "")
         print(f"  picture: {path}")
 
 

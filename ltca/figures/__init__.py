@@ -1,14 +1,17 @@
-"""Pictures of results, by matplotlib and pyvista.
+"""Pictures of results, by matplotlib.
 
 Modules in the order data passes:
 
 ================  ============================================================
-labelled_curves   Curves with their names at their right ends, in the style of the house; discs and cranks as cases
-                  of their own
+house_style       One look for every picture: colours, maps, fonts, proper symbols, and files that are the same for the
+                  same input
+field_scale       Units in which values of fields of a drive are drawn: small angles in minutes or degrees
+free_labels       Words beside points where nothing else stands
+curve_panels      Curves in panels of their own, the others grey behind; discs and cranks as cases of their own
+mesh_range        Which pin is shown over its mesh, and over which crank angles
 crank_figures     Figures of several cranks: moment and deflection of each, and the loads of its rollers
-run_figures       Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: six cases per axes,
-                  labelled directly
-drive_picture     Picture of a drive at one crank angle: its parts, contact normals, and loads as arrows
+run_figures       Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: a panel for each case
+drive_picture     Picture of a drive at one crank angle: its parts with their numbers, contact normals, loads as arrows
 curve_figures     Figures of `cyclo curves`: torque against wind-up, orders of the transmission error, flank pressure
                   and its limit
 pressure_figures  Pictures of contact pressure, corresponding to the paper's Fig. 27 and 31–33

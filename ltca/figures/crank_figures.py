@@ -2,28 +2,35 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ltca.figures.labelled_curves import (
-    CRANK,
+from ltca.figures.curve_panels import (
+    BESIDE,
     DASHES,
     FloatArray,
-    Line,
     case_names,
     degrees,
-    draw_curves,
+    label_all,
     lines_of,
+    mark_a_turn,
+    name_panel,
     one_by_one,
+    panel_grid,
 )
+from ltca.figures.house_style import COLOURS, CRANK, OTHERS, formula
 
 SECTORS, FEWEST_IN_A_SECTOR = 60, 8
 """Places of the rollers about a crank at which mean and range are taken, and rollers of one disc that pass each."""
+HALF_TURN = 180.0
+"""Places of rollers run from minus to plus this, degrees: what the eccentricity loads stands in the middle."""
 
 
-def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray) -> None:
-    """Draw mean and range of the roller loads of each crank, all its discs together: curves of each hide each other.
+def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray, title: str) -> None:
+    """Draw mean and range of the roller loads of each crank, all its discs together, a panel for each crank.
 
     Parameters
     ----------
@@ -32,20 +39,20 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
     data : xarray.Dataset
         Of `one_by_one`.
     place : array, shape (discs and cranks, positions, rollers) or what broadcasts to it
-        Of the rollers from the eccentricity, degrees.
+        Of the rollers from the eccentricity, degrees from −180 to 180.
+    title : str
+        Above all.
     """
     steps = min(SECTORS, max(4, place.size // FEWEST_IN_A_SECTOR))
-    sector = np.minimum((place / 360.0 * steps).astype(int), steps - 1)
+    sector = np.minimum(((place + HALF_TURN) / 360.0 * steps).astype(int), steps - 1)
     load, names, lines = data["roller_load"].values, case_names(data), lines_of(data)
     owners = list(zip(data["of_case"].values.tolist(), data["crank"].values.tolist(), strict=True))
-    several = len({case for case, _ in owners}) > 1
     told: dict[tuple[int, int], list[int]] = {}
     for row, owner in enumerate(owners):
         told.setdefault(owner, []).append(row)
-    met = np.flatnonzero(
-        np.bincount(sector.ravel(), minlength=steps)
-    )  # at few positions rollers pass some places never
-    drawn = []
+    # At few positions rollers pass some places never.
+    met = np.flatnonzero(np.bincount(sector.ravel(), minlength=steps))
+    middle, drawn = (met + 0.5) * 360.0 / steps - HALF_TURN, []
     for (_, crank), rows in told.items():
         inside = [load[rows][:, sector == number] for number in met]
         low, mean, high = (np.array([pick(part) for part in inside]) for pick in (np.min, np.mean, np.max))
@@ -53,19 +60,31 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
         name = names[rows[0]]
         if name.endswith(of_disc):
             name = f"{name.removesuffix(of_disc)}crank {crank}"
-        line = Line(lines[rows[0]].colour, DASHES[crank % len(DASHES)] if several else "-")
-        drawn.append((name, line, low, mean, high))
-    axes, middle = figure.subplots(), (met + 0.5) * 360.0 / steps
-    for _, line, low, _, high in drawn:
-        axes.fill_between(middle, low, high, color=line.colour, alpha=0.12, linewidth=0.0)
-    draw_curves(
-        figure, axes, middle, np.array([mean for _, _, _, mean, _ in drawn]), [name for name, *_ in drawn],
-        "angle of the roller from the eccentricity [°]", "load on the bore [N]",
-        (0.0, 1.04 * max(float(np.nanmax(high)) for *_, high in drawn) + 1e-9), [line for _, line, *_ in drawn],
-    )  # fmt: skip
-    axes.set_xlim(0.0, 360.0)
-    axes.set_xticks(np.arange(0.0, 361.0, 60.0))
-    axes.set_title("Load on the rollers of each crank, all discs: mean and range (Fig. 34)")
+        drawn.append((name, lines[rows[0]].colour, low, mean, high))
+    panels = panel_grid(figure, len(drawn))
+    for axes, (name, colour, low, mean, high) in zip(panels, drawn, strict=True):
+        axes.fill_between(middle, low, high, color=colour, alpha=0.15, linewidth=0.0)
+        axes.plot(middle, mean, color=colour, zorder=2.5)
+        for _, _, _, other, _ in drawn:
+            if other is not mean:
+                axes.plot(middle, other, color=OTHERS, linewidth=0.9, zorder=2.0)
+        name_panel(axes, name, 1 if len(drawn) < BESIDE else 2)
+    panels[0].set_ylim(0.0, 1.06 * max(float(np.nanmax(high)) for *_, high in drawn) + 1e-9)
+    mark_a_half_turn(panels[0])
+    label_all(figure, panels, "angle of the roller from the eccentricity [°]", "load on the bore [N]")
+    figure.suptitle(title)
+
+
+def mark_a_half_turn(axes: Any) -> None:
+    """Show places of rollers from −180° to 180°.
+
+    Parameters
+    ----------
+    axes : Axes
+        Its scale of x.
+    """
+    axes.set_xlim(-HALF_TURN, HALF_TURN)
+    axes.set_xticks(np.arange(-HALF_TURN, HALF_TURN + 1.0, 90.0))
 
 
 def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
@@ -79,20 +98,44 @@ def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
         Of `ltca.analysis.results.build_dataset`, with several cranks.
     """
     cranks, yields = data.sizes["crank"], "crank_deflection_radial" in data
-    figure.set_figheight((1.0 + yields) * figure.get_figheight() * 0.85)
-    panels = np.atleast_1d(figure.subplots(1 + yields, 1, sharex=True))
     torque = one_by_one(data.isel(disc=[0]), cranks)
-    values = torque["crank_torque"].values / 1e3
-    room = 0.06 * max(np.ptp(values), 1e-6)
-    draw_curves(
-        figure, panels[0], degrees(torque), values, case_names(torque), "" if yields else CRANK, "torque [N m]",
-        (values.min() - room, values.max() + room), lines_of(torque),
-    )  # fmt: skip
+    values, names = torque["crank_torque"].values / 1e3, case_names(torque)
+    colours = [COLOURS[int(number) % len(COLOURS)] for number in torque["crank"].values]
+    rows = len(names)
+    figure.set_figheight(max(3.6, 1.0 + 1.25 * rows))
+    grid = figure.subplots(rows, 1 + yields, sharex=True, sharey="col", squeeze=False)
+    x = degrees(torque)
+    order = np.argsort(x, kind="stable")
+    for row in range(rows):
+        axes = grid[row, 0]
+        axes.plot(x[order], values[row][order], color=colours[row], zorder=2.5)
+        for other in np.delete(values, row, axis=0):
+            axes.plot(x[order], other[order], color=OTHERS, linewidth=0.9, zorder=2.0)
+        name_panel(axes, names[row], 1 + yields)
+    grid[0, 0].margins(x=0.0, y=0.06)
+    heading = "Moment that holds each crank"
     if yields:
-        moved = one_by_one(data, cranks)
-        size = 1e3 * np.hypot(moved["crank_deflection_radial"].values, moved["crank_deflection_tangential"].values)
-        draw_curves(
-            figure, panels[1], degrees(moved), size, case_names(moved), CRANK, "deflection at the disc [µm]",
-            (0.0, 1.04 * float(np.nanmax(size)) + 1e-9), lines_of(moved),
-        )  # fmt: skip
-    figure.suptitle("Moment that holds each crank" + (", and how far it yields on its bearings" if yields else ""))
+        shown = data.isel(case=np.unique(torque["of_case"].values))
+        parts = (
+            shown[name].transpose("case", "crank", "disc", "position").values
+            for name in ("crank_deflection_radial", "crank_deflection_tangential")
+        )
+        moved = 1e3 * np.hypot(*parts).reshape(-1, shown.sizes["disc"], shown.sizes["position"])
+        for row in range(rows):
+            axes = grid[row, 1]
+            for disc, curve in enumerate(moved[row]):
+                dashes = DASHES[disc % len(DASHES)]
+                axes.plot(x[order], curve[order], color=colours[row], linestyle=dashes, label=f"disc {disc}")
+        grid[0, 1].set_ylim(0.0, 1.06 * float(np.nanmax(moved)) + 1e-9)
+        if moved.shape[1] > 1:
+            handles, words = grid[0, 1].get_legend_handles_labels()
+            figure.legend(
+                handles, words, loc="outside lower right", ncols=min(len(words), 5), frameon=False, fontsize=8.0
+            )
+        heading += ", and how far it yields on its bearings"
+    for axes, label in zip(grid[rows // 2], ("torque [N m]", "deflection at the disc [µm]"), strict=False):
+        axes.set_ylabel(label)
+    for axes in grid[-1]:
+        formula(axes.set_xlabel(CRANK))
+    mark_a_turn(grid[0, 0], x[order])
+    figure.suptitle(heading)

@@ -1,4 +1,4 @@
-"""Picture of a drive at one crank angle: its parts, contact normals, and loads as arrows."""
+"""Picture of a drive at one crank angle: its parts with their numbers, contact normals, and loads as arrows."""
 
 from __future__ import annotations
 
@@ -8,27 +8,36 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib import patheffects
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Circle, Polygon
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.drive.parts import Drive, PinShaft, PinWheel
-from ltca.figures.labelled_curves import STYLE
+from ltca.figures.free_labels import FreeLabels
+from ltca.figures.house_style import CRANK_ANGLE, STYLE, save_figure, shortened_name
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
-from ltca.output.files import whole_file
 
 STEEL, PIN, ROLLER, RACE, SHAFT = "#e9edf2", "#cfd6de", "#d9dde3", "#bfc8d2", "#c9cfd8"
 SLEEVE, SLOT = "#e6d9bf", "#8a6f3c"
-LOAD, NORMAL = "#D55E00", "#5B7FA6"
+EDGE = "#4a5560"
+LOAD, NORMAL = "#B34A00", "#5B7FA6"
+NUMBER = "#3a4550"
+INCHES = 8.0
+"""Side of the square in which a disc stands."""
+FITS = 0.72
+"""Height of a number by the radius of the pin it stands in."""
+SMALLEST, LARGEST = 5.0, 8.0
+"""Sizes of numbers, points; beside a pin where they would not fit into it."""
 
 
 def _circles(axes: Any, centres: Any, radii: Any, colour: str, zorder: int) -> None:
     patches = [Circle((c.real, c.imag), r) for c, r in zip(centres, np.broadcast_to(radii, centres.shape), strict=True)]
-    axes.add_collection(PatchCollection(patches, facecolor=colour, edgecolor="#4a5560", linewidth=0.7, zorder=zorder))
+    axes.add_collection(PatchCollection(patches, facecolor=colour, edgecolor=EDGE, linewidth=0.7, zorder=zorder))
 
 
-def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path) -> None:
+def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path, case: str = "") -> None:
     """Write a picture of the drive at one analysed position, of several discs each beside the other.
 
     Parameters
@@ -41,54 +50,96 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
         Which position of the analysis.
     path : Path
         Picture file; the suffix chooses the format.
+    case : str
+        Its name, where there are several.
+    """
+    save_figure(drive_figure(drive, analysis, position, case), path.with_name(path.stem), (path.suffix,))
+
+
+def drive_figure(drive: Drive, analysis: LoadedAnalysis, position: int, case: str = "") -> Figure:
+    """Return the picture that `draw_drive` writes.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    analysis : LoadedAnalysis
+        Its analysis.
+    position : int
+        Which position of the analysis.
+    case : str
+        Its name, where there are several.
     """
     discs = analysis.discs
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(8.0 * len(discs), 8.6))
+        figure = Figure(figsize=((INCHES + 0.6) * len(discs), INCHES + 1.4))
         panels = np.atleast_1d(figure.subplots(1, len(discs), sharey=True))
-        largest = max(_Position(disc, position).largest for disc in discs)
-        for number, (axes, disc) in enumerate(zip(panels, discs, strict=True)):
-            shown = _Position(disc, position)
-            _draw_disc(axes, shown, largest)
-            held = "wheel held, " if drive.wheel_is_held else ""
-            name = drive.name if len(discs) == 1 else f"{drive.name}, disc {number}"
-            axes.set_title(
-                f"{name}: forces on the disc at φ_C = {shown.crank_angle:.4g} rad, {held}"
-                f"torque {analysis.torque / 1000.0:g} N·m\n"
-                f"blue: contact normals; + crank axis, • inner-race centre (eccentricity)"
-                f"{', number of the crank' if drive.crank.number > 1 else ''}{_legend(drive)}",
-                fontsize=9.0,
-            )
-        with whole_file(path) as part:
-            figure.savefig(part, dpi=130)
+        shown = [_Position(disc, position) for disc in discs]
+        largest = max(one.largest for one in shown)
+        for number, (axes, one) in enumerate(zip(panels, shown, strict=True)):
+            _draw_disc(axes, one)
+            if len(discs) > 1:
+                axes.set_title(f"disc {number}, seen from the same side", fontsize=9.5)
+        panels[0].set_ylabel("y [mm]")
+        name = shortened_name(drive.name + (f", {case}" if case else ""), 48)
+        angle = shown[0].crank_angle
+        # A name may hold a dollar sign: the formula stands in a text of its own.
+        held = ", wheel held" if drive.wheel_is_held else ""
+        figure.suptitle(f"{name}: forces on the disc{'s' if len(discs) > 1 else ''}")
+        told = (
+            f"{CRANK_ANGLE} = {np.degrees(angle):.4g}° ({angle:.4g} rad), torque {analysis.torque / 1000.0:g} N·m{held}"
+        )
+        figure.text(0.5, 1.0 - 0.42 / figure.get_figheight(), told, ha="center", va="center", parse_math=True)
+        layout: Any = figure.get_layout_engine()
+        layout.set(rect=(0.0, 0.0, 1.0, 1.0 - 0.30 / figure.get_figheight()))
+        figure.legend(
+            handles=_legend(drive, largest), loc="outside lower center", ncols=5 if len(discs) == 1 else 8, frameon=False,
+            fontsize=8.0, handlelength=1.6, columnspacing=1.4,
+        )  # fmt: skip
+        layout.execute(figure)
+        for axes, one in zip(panels, shown, strict=True):
+            _draw_loads(figure, axes, one, largest)
+        # Words keep the places found for them.
+        figure.set_layout_engine("none")
+    return figure
 
 
-def _legend(drive: Drive) -> str:
-    """What stands for slots and sleeves, where there are any."""
+def _legend(drive: Drive, largest: float) -> list[Any]:
+    """What the marks stand for; slots and sleeves where there are any."""
     kinds = {part.seat.kind for part in (drive.pin_wheel, drive.pin_shaft) if part is not None}
-    told = {"slot": "brown arcs: slots", "sleeve": "sand: sleeves"}
-    named = [text for kind, text in told.items() if kind in kinds]
-    return f"; {', '.join(named)}" if named else ""
+    black: dict[str, Any] = {"color": "black", "linestyle": "none"}
+    marks = [
+        Line2D([], [], color=LOAD, marker=">", markersize=5, linewidth=1.4, label=f"force, longest {largest:.0f} N"),
+        Line2D([], [], color=NORMAL, linewidth=0.9, label="contact normal"),
+        Line2D([], [], marker="+", markersize=9, label="crank axis", **black),
+        Line2D([], [], marker="o", markersize=3, label="centre of the inner race", **black),
+    ]
+    if "slot" in kinds:
+        marks.append(Line2D([], [], color=SLOT, linewidth=2.4, label="slot"))
+    if "sleeve" in kinds:
+        marks.append(Line2D([], [], color=SLEEVE, marker="o", markersize=7, linestyle="none", label="sleeve"))
+    return marks
 
 
-def _draw_disc(axes: Any, shown: _Position, largest: float) -> None:
+def _draw_disc(axes: Any, shown: _Position) -> None:
     _draw_parts(axes, shown)
-    _draw_loads(axes, shown, largest)
     for axis, race in zip(shown.cranks, shown.races, strict=True):
         axes.plot([axis.real, race.real], [axis.imag, race.imag], color="black", linewidth=1.2, zorder=6)
         axes.plot([axis.real], [axis.imag], marker="+", color="black", markersize=9, zorder=6)
         axes.plot([race.real], [race.imag], marker="o", color="black", markersize=3, zorder=6)
     if shown.cranks.size > 1:  # on the side of the axis that the eccentric leaves free
         for number, (axis, race) in enumerate(zip(shown.cranks, shown.races, strict=True)):
-            place = axis - 0.55 * shown.place.inner_race_radius * (race - axis) / np.abs(race - axis)
-            axes.text(place.real, place.imag, f"{number}", fontsize=10.0, ha="center", va="center", zorder=6)
-    reach = 1.06 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
+            below = -1.0 if (race - axis).imag >= 0.0 else 1.0
+            place = axis + 0.5j * below * shown.place.inner_race_radius
+            axes.text(place.real, place.imag, f"crank {number}", fontsize=8.0, ha="center", va="center", zorder=6)
+    reach = 1.04 * (np.abs(shown.pins).max() + shown.place.wheel_pin_radii.max())
+    if _room_for_numbers(reach, float(shown.place.wheel_pin_radii.min())) is None:
+        reach *= 1.04
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal")
     axes.grid(visible=False)
     axes.set_xlabel("x [mm]")
-    axes.set_ylabel("y [mm]")
 
 
 class _Position:
@@ -172,35 +223,63 @@ def _pins(axes: Any, part: PinWheel | PinShaft, seats: Any, touched: Any, radii:
             axes.add_patch(arc)
 
 
-def _draw_loads(axes: Any, shown: _Position, largest: float) -> None:
+def _room_for_numbers(reach: float, radius: float) -> float | None:
+    """Size of numbers inside of pins of a radius, points; None where they would not fit."""
+    points = FITS * radius / (2.0 * reach) * INCHES * 72.0
+    return min(points, LARGEST) if points >= SMALLEST else None
+
+
+def _draw_numbers(axes: Any, shown: _Position, labels: FreeLabels) -> None:
+    """The number of each pin, roller and shaft pin: in it, or beside it on the side away from the disc."""
+    reach = float(axes.get_xlim()[1])
+    outward = shown.pins / np.abs(shown.pins)
+    kinds = (
+        (shown.pins, shown.place.wheel_pin_radii, outward),
+        (shown.rollers, shown.place.roller_radii, None),
+        (shown.touched_shaft_pins, shown.place.shaft_pin_radii, None),
+    )
+    each = shown.rollers.size // shown.cranks.size
+    for centres, radii, beside in kinds:
+        if not centres.size:
+            continue
+        size = _room_for_numbers(reach, float(np.min(radii)))
+        if size is None and beside is None:
+            continue
+        for number, (centre, radius) in enumerate(zip(centres, np.broadcast_to(radii, centres.shape), strict=True)):
+            place = centre
+            if size is None and beside is not None:
+                place = centre + beside[number] * (radius + 0.02 * reach)
+            told = number % each if centres is shown.rollers else number
+            text = axes.text(
+                place.real, place.imag, f"{told}", fontsize=size or SMALLEST, color=NUMBER, ha="center",
+                va="center_baseline", zorder=7,
+            )  # fmt: skip
+            labels.keep(text)
+
+
+def _draw_loads(figure: Figure, axes: Any, shown: _Position, largest: float) -> None:
+    """Draw normals and forces; numbers first, for their places are fixed, then each force where there is room."""
     longest = 0.2 * float(shown.place.mean_eccentricity[0]) * shown.place.reduction_ratio + 12.0
-    reach, labels = float(np.abs(shown.pins).max()), list[complex]()
+    labels, arrows, normals = FreeLabels(figure, axes), [], []
     for centres, load, radii, towards in shown.loads:
         for centre, force, radius, direction in zip(centres, load, radii, towards, strict=True):
             contact = centre + radius * direction
-            ends = np.array([contact - 0.6 * radius * direction, contact + 0.6 * radius * direction])
-            axes.plot(ends.real, ends.imag, color=NORMAL, linewidth=0.7, zorder=6)
+            normals.append([contact - 0.3 * radius * direction, contact + 0.6 * radius * direction])
             if force > 1e-3 * largest:
-                tip = contact + direction * longest * force / largest
-                axes.annotate(
-                    "",
-                    xy=(tip.real, tip.imag),
-                    xytext=(contact.real, contact.imag),
-                    arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0},
-                    zorder=7,
-                )
-                side = 1.0 if direction.real >= 0 else -1.0
-                middle = tip + 0.06 * reach * side
-                while any(_overlap(middle - other, reach) for other in labels):
-                    middle += 0.04j * reach
-                labels.append(middle)
-                axes.text(
-                    tip.real, middle.imag, f" {force:.0f} N", fontsize=6.5, color=LOAD, zorder=8,
-                    ha="left" if side > 0.0 else "right", va="center",
-                    path_effects=[patheffects.withStroke(linewidth=2.0, foreground="white", alpha=0.8)],
-                )  # fmt: skip
-
-
-def _overlap(distance: complex, reach: float) -> bool:
-    """Tell whether labels with their middles at a distance cover each other, in a picture of some reach about its middle."""
-    return abs(distance.real) < 0.13 * reach and abs(distance.imag) < 0.039 * reach
+                arrows.append((contact, contact + direction * longest * force / largest, float(force)))
+    ends = np.array(normals)
+    segments: Any = np.stack([ends.real, ends.imag], axis=-1)
+    axes.add_collection(LineCollection(segments, colors=NORMAL, linewidths=0.8, zorder=6))
+    _draw_numbers(axes, shown, labels)
+    for contact, tip, _ in arrows:
+        axes.annotate(
+            "",
+            xy=(tip.real, tip.imag),
+            xytext=(contact.real, contact.imag),
+            arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0},
+            zorder=7.5,
+        )
+        labels.keep_line(contact, tip)
+    halo = [patheffects.withStroke(linewidth=2.0, foreground="white", alpha=0.85)]
+    for contact, tip, force in sorted(arrows, key=lambda arrow: -arrow[2]):
+        labels.place(f"{force:.0f} N", tip, tip - contact, fontsize=7.0, color=LOAD, zorder=8, path_effects=halo)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import matplotlib as mpl
@@ -10,8 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ltca.drive.fields import whose
-from ltca.figures.labelled_curves import COLOURS, STYLE
-from ltca.output.files import whole_file
+from ltca.figures.field_scale import field_scale
+from ltca.figures.house_style import COLOURS, DASHED, OTHERS, STYLE, save_figure
 from ltca.studies.optimiser import Optimum, describe_limit
 from ltca.studies.quantities import QUANTITIES
 
@@ -22,16 +23,13 @@ def write_optimum_figure(optimum: Optimum, positions: int, folder: Path) -> Path
     with mpl.rc_context(STYLE):
         title = _title(optimum, positions)
         figure, name = (_front(optimum, title), "pareto") if two else (_search(optimum, title), "search")
-        for suffix in (".svg", ".png"):
-            path = folder / "figures" / f"{name}{suffix}"
-            with whole_file(path) as part:
-                figure.savefig(part, dpi=130, metadata={"Date": None} if suffix == ".svg" else None)
-    return path
+    return save_figure(figure, folder / "figures" / name)
 
 
 def _title(optimum: Optimum, positions: int) -> str:
     limits = ", ".join(describe_limit(limit) for limit in optimum.problem.limits)
-    return f"{len(optimum.variables)} candidates × {positions} positions" + (f", subject to {limits}" if limits else "")
+    told = f"{len(optimum.variables)} candidates × {positions} positions" + (f", subject to {limits}" if limits else "")
+    return fill(told, 76)
 
 
 def _front(optimum: Optimum, title: str) -> Figure:
@@ -39,7 +37,7 @@ def _front(optimum: Optimum, title: str) -> Figure:
     axes = figure.subplots()
     points = optimum.values[:, :2]
     fine = optimum.feasible
-    axes.plot(*points[~fine].T, ".", color="#c8c8c8", markersize=3.0, label="beyond a limit")
+    axes.plot(*points[~fine].T, ".", color=OTHERS, markersize=3.0, label="beyond a limit")
     axes.plot(*points[fine].T, ".", color=COLOURS[6], markersize=4.0, label="within the limits")
     axes.plot(*points[optimum.front].T, "o-", color=COLOURS[1], markersize=4.0, label="Pareto front")
     axes.plot(*optimum.start[:2], "s", color=COLOURS[0], label="the drive as it is")
@@ -53,27 +51,35 @@ def _front(optimum: Optimum, title: str) -> Figure:
     axes.set_xlabel(QUANTITIES[optimum.problem.aims[0]].heading)
     axes.set_ylabel(QUANTITIES[optimum.problem.aims[1]].heading)
     axes.legend(frameon=False, fontsize=8.0)
-    axes.set_title(title, fontsize=9.0)
+    figure.suptitle(title, fontsize=9.5)
     return figure
 
 
 def _search(optimum: Optimum, title: str) -> Figure:
     count = len(optimum.problem.variables)
-    figure = Figure(figsize=(1.2 + 3.0 * count, 3.8))
-    all_axes = figure.subplots(1, count, sharey=True, squeeze=False)[0]
+    columns = min(count, 4)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(max(1.2 + 3.0 * columns, 6.8), 0.8 + 3.0 * rows))
+    grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    all_axes = grid.ravel()[:count]
+    for spare in grid.ravel()[count:]:
+        spare.set_visible(False)
     aim, fine = optimum.values[:, 0], optimum.feasible
     for column, (axes, variable) in enumerate(zip(all_axes, optimum.problem.variables, strict=True)):
-        x = optimum.variables[:, column]
-        axes.plot(x[~fine], aim[~fine], ".", color="#c8c8c8", markersize=3.0, label="beyond a limit")
+        scale, unit = field_scale(variable.path, np.array([variable.low, variable.high]))
+        x = scale * optimum.variables[:, column]
+        if not fine.all():
+            axes.plot(x[~fine], aim[~fine], ".", color=OTHERS, markersize=3.0, label="beyond a limit")
         axes.plot(x[fine], aim[fine], ".", color=COLOURS[6], markersize=3.5, label="within the limits")
         axes.plot(x[optimum.best], aim[optimum.best], "D", color=COLOURS[2], label="best")
-        axes.axhline(optimum.start[0], color=COLOURS[0], linewidth=0.8, linestyle=(0, (4, 2)), label="as it is")
+        axes.axhline(optimum.start[0], color=COLOURS[0], linewidth=0.8, linestyle=DASHED, label="as it is")
         owner = whose(optimum.problem.drive, variable.path)
-        axes.set_xlabel(variable.path + (f"\n({owner})" if owner else ""))
-        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
-    all_axes[0].set_ylabel(QUANTITIES[optimum.problem.aims[0]].heading)
+        axes.set_xlabel(variable.path + (f" [{unit}]" if unit else "") + (f"\n({owner})" if owner else ""))
+        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+    for axes in grid[:, 0]:
+        axes.set_ylabel(QUANTITIES[optimum.problem.aims[0]].heading)
     # Below all axes: points lie anywhere in them.
     handles, words = all_axes[-1].get_legend_handles_labels()
     figure.legend(handles, words, loc="outside lower center", ncols=2 if count == 1 else 4, frameon=False, fontsize=7.5)
-    figure.suptitle(title, fontsize=9.0)
+    figure.suptitle(title, fontsize=9.5)
     return figure

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,30 +16,16 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.figures.labelled_curves import COLOURS, STYLE, draw_curves
+from ltca.figures.curve_panels import BESIDE, MOST_CURVES, draw_panels, name_panel
+from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
+from ltca.figures.run_figures import numbered
 from ltca.geometry.flank import FlankProfile
-from ltca.output.files import whole_file
 
 FloatArray = NDArray[np.float64]
 
 SIDES = ("outer", "inner")
 PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")
 """Drawn once for all cases."""
-
-_PROBE = (
-    "import pyvista as pv; p = pv.Plotter(off_screen=True, window_size=(64, 64)); p.add_mesh(pv.Sphere()); "
-    "p.screenshot(None, return_img=True); p.close()"
-)
-
-
-@cache
-def can_render() -> bool:
-    """Return whether pyvista renders off-screen here; tried in a process of its own, for without GL it crashes."""
-    try:
-        done = subprocess.run([sys.executable, "-c", _PROBE], capture_output=True, timeout=120.0, check=False)
-    except (OSError, subprocess.TimeoutExpired):
-        return False
-    return done.returncode == 0
 
 
 def even_cells(edges: FloatArray, pressure: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -108,45 +91,101 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     half = theta.size // 2
     tip = float(arc[half])
     outline = profile.flank(theta[: half + 1])
-    left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.7))
-    names = [str(name) for name in results["case"].values]
+    names = [str(name) for name in results["case"].values][:MOST_CURVES]
+    across = 1 if len(names) < BESIDE else 2
+    rows = -(-len(names) // across)
+    figure.set_figheight(max(4.0, 0.9 + 1.3 * rows))
+    grid = figure.add_gridspec(rows, 1 + across, width_ratios=(1.1, *(2.4 / across,) * across))
+    left = figure.add_subplot(grid[:, 0])
+    panels: list[Any] = []
+    for number in range(len(names)):
+        cell, first = grid[number // across, 1 + number % across], panels[0] if panels else None
+        panels.append(figure.add_subplot(cell, sharex=first, sharey=first))
     left.plot(np.abs(outline), arc[: half + 1], color="#555555")
     left.set_xlabel("distance from the disc centre [mm]")
     left.set_ylabel("arc length from the root [mm]")
     left.set_ylim(0.0, tip)
-    reach = np.ptp(np.abs(outline))
-    tooth = theta[-1]
-    for number, name in enumerate(names):
+    left.set_title("range of contact beside the flank")
+    reach, tooth = np.ptp(np.abs(outline)), theta[-1]
+    found = [_contacts(results.isel(case=number, crank=0), theta, arc, tooth) for number in range(len(names))]
+    step = min(0.055, 0.6 / len(names)) * reach
+    for number, (axes, (place, width, pressure)) in enumerate(zip(panels, found, strict=True)):
         colour = COLOURS[number % len(COLOURS)]
-        data = results.isel(case=number, crank=0)  # all discs: their flanks are alike
-        load = data["pin_load"].values
-        loaded = load > LOADED_FRACTION * load.max()
-        place = np.interp(np.mod(data["pin_contact_parameter"].values[loaded], tooth), theta, arc)
-        place = np.minimum(place, arc[-1] - place)  # both flanks of a tooth are mirror images
-        width, pressure = data["pin_half_width"].values[loaded], data["pin_pressure_mid"].values[loaded]
         low, high = float(np.min(place - width)), float(np.max(place + width))
-        offset = np.abs(outline).min() - (0.05 + 0.055 * number) * reach
+        offset = np.abs(outline).min() - step * (1.0 + number)
         left.plot([offset, offset], [low, high], color=colour, linewidth=3.0, solid_capstyle="butt")
-        order = np.argsort(place)
-        right.plot(place[order], pressure[order], color=colour, linestyle="none", marker=".", markersize=2.0)
+        axes.plot(place, pressure, color=colour, linestyle="none", marker=".", markersize=2.5, zorder=2.5)
+        for other, (at, _, behind) in enumerate(found):
+            if other != number:
+                axes.plot(at, behind, color=OTHERS, linestyle="none", marker=".", markersize=1.5, zorder=2.0)
         top = int(np.argmax(pressure))
-        right.plot(place[top], pressure[top], color=colour, marker="o", markersize=4.0)
-        right.annotate(
-            f"{name}\n{low:.2f} to {high:.2f} mm\n{pressure[top]:.0f} MPa at {place[top]:.2f} mm",
-            xy=(1.03, 1.0 - number / len(names)),
-            xycoords="axes fraction",
-            va="top",
-            fontsize=8.0,
-            color=colour,
-            annotation_clip=False,
-        )
-    left.set_xlim(np.abs(outline).min() - (0.08 + 0.055 * len(names)) * reach, None)
-    right.set_xlabel("arc length from root (0) to tip [mm]")
-    right.set_ylabel("pressure at mid-width [MPa]")
-    right.set_xlim(0.0, tip)
-    right.set_title("range of contact, place of the largest pressure (o)", fontsize=9)
-    right.set_ylim(bottom=0.0)
-    figure.suptitle("Contact zone on the flank, contact half-width included (Fig. 27)")
+        axes.plot(place[top], pressure[top], color=colour, marker="o", markersize=4.5, zorder=2.6)
+        name_panel(axes, names[number], 2)
+        # Where it is written nothing is drawn: pressures fall to both ends of the flank.
+        told = f"{low:.2f} to {high:.2f} mm\n{pressure[top]:.0f} MPa at {place[top]:.2f} mm"
+        axes.set_title(told, loc="right", fontsize=7.5, color=colour if colour == COLOURS[0] else "#444444", pad=3.0)
+        inner = number + across < len(names)
+        axes.tick_params(labelbottom=not inner, labelleft=number % across == 0)
+        if not inner:
+            axes.set_xlabel("arc length from root (0) to tip [mm]")
+        if number % across == 0 and number // across == rows // 2:
+            axes.set_ylabel("pressure at mid-width [MPa]")
+    left.set_xlim(np.abs(outline).min() - step * (len(names) + 1.0), None)
+    panels[0].set_xlim(0.0, tip)
+    panels[0].set_ylim(0.0, 1.08 * max(float(np.max(pressure)) for _, _, pressure in found))
+    figure.suptitle(
+        numbered("Contact zone on the flank, contact half-width included; o: largest pressure", 27, results)
+    )
+
+
+def _contacts(
+    data: xr.Dataset, theta: FloatArray, arc: FloatArray, tooth: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Places on the flank, half-widths and pressures of all loaded contacts of all discs: their flanks are alike."""
+    load = data["pin_load"].values
+    loaded = load > LOADED_FRACTION * load.max()
+    place = np.interp(np.mod(data["pin_contact_parameter"].values[loaded], tooth), theta, arc)
+    place = np.minimum(place, arc[-1] - place)  # both flanks of a tooth are mirror images
+    return place, data["pin_half_width"].values[loaded], data["pin_pressure_mid"].values[loaded]
+
+
+def joined_as_hertz(centres: FloatArray, pressure: FloatArray, points: int = 401) -> tuple[FloatArray, FloatArray]:
+    """Return points of a smooth line through mean pressures of cells across a contact, down to its edges.
+
+    The square of a Hertzian pressure is a parabola: squares are interpolated, and continued to zero beyond the outermost
+    cells but one, for those at the edge are loaded on a part of them.
+
+    Parameters
+    ----------
+    centres : array, shape (n,)
+        Of the cells, mm.
+    pressure : array, shape (n,)
+        Their means, MPa.
+    points : int
+        Of the line.
+
+    Returns
+    -------
+    x : array
+        Of the line, mm.
+    y : array
+        Pressures there, MPa; through the means themselves where fewer than six cells are loaded.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    touched = np.flatnonzero(pressure > 0.0)
+    if touched.size < 6:
+        return centres, pressure
+    inner = touched[1:-1]
+    x, square = centres[inner], pressure[inner] ** 2
+    step = x[1] - x[0]
+    ends = []
+    for end, beside, sign in ((0, 1, -1.0), (-1, -2, 1.0)):
+        fall = max(square[beside] - square[end], square[end] / 2.5)  # no further than two cells and a half
+        ends.append(x[end] + sign * step * square[end] / fall)
+    knots = PchipInterpolator(np.array([ends[0], *x, ends[1]]), np.array([0.0, *square, 0.0]))
+    line = 0.5 * (ends[0] + ends[1]) + 0.5 * (ends[1] - ends[0]) * -np.cos(np.linspace(0.0, np.pi, points))
+    return line, np.sqrt(np.maximum(knots(line), 0.0))
 
 
 def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
@@ -159,10 +198,9 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
     major : bool
         Along the roller (over y at x = 0) or across it (over x at mid-width).
     """
-    figure = Figure(figsize=(7.2, 4.4))
-    axes = figure.subplots()
-    names = [str(name) for name in fields["case"].values]
-    curves, places, titles = [], [], []
+    figure = Figure(figsize=(7.2, 3.9))
+    names = [str(name) for name in fields["case"].values][:MOST_CURVES]
+    curves, places, titles, cells = [], [], [], []
     for name in names:
         side, place = hardest_roller(fields, name)
         field = fields.sel(case=name).isel(place)
@@ -174,23 +212,41 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
             curves.append(means[middle - 1 : middle + 1].mean(axis=0))
         else:
             middle = pressure.shape[1] // 2
-            centres = 0.5 * (x[1:] + x[:-1])
-            curves.append(pressure[:, middle - 1 : middle + 1].mean(axis=1))
+            across = pressure[:, middle - 1 : middle + 1].mean(axis=1)
+            x, across = _both_halves(x, across)
+            cells.append((0.5 * (x[1:] + x[:-1]), across))
+            centres, curve = joined_as_hertz(*cells[-1])
+            curves.append(curve)
         places.append(centres)
         titles.append(_named(fields, side, place))
     # One axis for all: patches differ a little in size.
-    reach = max(float(np.max(np.abs(c[curve > 0.0]))) for c, curve in zip(places, curves, strict=True)) * 1.1
-    common = np.linspace(-reach, 0.0, 401) if not major else places[int(np.argmax([c[-1] for c in places]))]
+    reach = max(float(np.max(np.abs(c[curve > 0.0]))) for c, curve in zip(places, curves, strict=True))
+    common = np.linspace(-1.1 * reach, 1.1 * reach, 881)
+    if major:
+        common = places[int(np.argmax([c[-1] for c in places]))]
     resampled = np.array([np.interp(common, c, curve, 0.0, 0.0) for c, curve in zip(places, curves, strict=True)])
     label = "distance from mid-width [mm]" if major else "distance across the contact [mm]"
-    draw_curves(figure, axes, common, resampled, names, label, "pressure [MPa]")
     shown = titles[0] if len(set(titles)) == 1 else "the hardest loaded roller of each case"
     if major:
         cell = float(np.mean(np.diff(common)))
-        axes.set_title(f"Pressure along the roller, means over {cell:.3g} mm (Fig. 32)\n{shown}", fontsize=10)
+        title = numbered(f"Pressure along the roller, means over {cell:.3g} mm", 32, fields)
     else:
-        axes.set_title(f"Pressure across the roller at mid-width, one half of it (Fig. 33)\n{shown}", fontsize=10)
+        title = numbered("Pressure across the roller at mid-width; dots: means of the cells", 33, fields)
+    panels = draw_panels(figure, common, resampled, names, label, "pressure [MPa]", title=f"{title}\n{shown}")
+    for axes, (at, means), number in zip(panels, cells, range(len(cells)), strict=False):
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(at, means, ".", color=colour, markersize=3.5)
+    panels[0].set_xlim(-1.04 * float(np.abs(common).max()), 1.04 * float(np.abs(common).max()))
     return figure
+
+
+def _both_halves(x: FloatArray, pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Edges and pressures across the whole contact, where one half of it is kept."""
+    if x[0] < 0.0 < x[-1]:
+        return x, pressure
+    order = slice(None, None, -1)
+    whole = (np.concatenate([x, -x[order][1:]]), np.concatenate([pressure, pressure[order]]))
+    return whole if x[-1] <= 0.0 else (np.concatenate([-x[order], x[1:]]), np.concatenate([pressure[order], pressure]))
 
 
 def _surface(fields: xr.Dataset, case: str) -> tuple[FloatArray, FloatArray, FloatArray, str]:
@@ -204,80 +260,56 @@ def _surface(fields: xr.Dataset, case: str) -> tuple[FloatArray, FloatArray, Flo
     return 0.5 * (x[1:] + x[:-1])[rows], y, pressure[rows], _named(fields, side, place)
 
 
-def render_roller_pressure(fields: xr.Dataset, case: str, path: Path) -> None:
-    """Render the pressure over the hardest loaded roller of a case in 3-D with pyvista, off-screen (Fig. 31)."""
-    import pyvista as pv
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    # Without an X server VTK says so before it takes EGL: no concern of the user's.
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    x, y, pressure, title = _surface(fields, case)
-    # The patch is a hundred times longer than wide: each axis is drawn to its own scale, with its own numbers.
-    across, along = np.meshgrid(x / np.ptp(x), 1.6 * y / np.ptp(y), indexing="ij")
-    top = float(pressure.max())
-    grid = pv.StructuredGrid(across, along, 0.9 * pressure / top)
-    grid["pressure [MPa]"] = pressure.ravel(order="F")
-    plotter = pv.Plotter(off_screen=True, window_size=[1280, 860])
-    plotter.set_background("white")  # type: ignore[arg-type]  # stub takes the wrapper
-    plotter.add_mesh(
-        grid,
-        scalars="pressure [MPa]",
-        cmap="viridis",
-        smooth_shading=False,
-        show_edges=True,
-        edge_opacity=0.15,
-        scalar_bar_args={"color": "black", "vertical": True, "position_x": 0.9, "position_y": 0.2, "fmt": "%.0f"},
-    )
-    ticks = {
-        "x": [(f"{value:.3g}", (value / np.ptp(x), -0.9, 0.0)) for value in (x[0], 0.0, x[-1])],
-        "y": [(f"{value:.3g}", (0.6, 1.6 * value / np.ptp(y), 0.0)) for value in 0.98 * np.array([y[0], 0.0, y[-1]])],
-        "z": [(f"{part * top:.0f}", (-0.5, -0.86, 0.9 * part)) for part in (0.25, 0.5, 0.75, 1.0)],
-    }
-    titles = [
-        ("across [mm]", (0.0, -1.05, 0.0)),
-        ("along [mm]", (0.78, 0.0, 0.0)),
-        ("pressure [MPa]", (-0.5, -0.86, 1.0)),
-    ]
-    labels = [label for axis in ticks.values() for label in axis] + titles
-    plotter.add_point_labels(
-        np.array([place for _, place in labels]),
-        [text for text, _ in labels],
-        text_color="black",
-        font_size=13,
-        shape=None,
-        show_points=False,
-        always_visible=True,
-        justification_horizontal="center",
-        justification_vertical="center",
-    )
-    for corner in ((0.5, -0.8, 0.0), (-0.5, -0.8, 0.9)):
-        plotter.add_mesh(pv.Line((-0.5, -0.8, 0.0), corner), color="#888888")
-    plotter.add_mesh(pv.Line((0.5, -0.8, 0.0), (0.5, 0.8, 0.0)), color="#888888")
-    # VTK, too, reads what stands between dollar signs as a formula.
-    plotter.add_text(f"{case}: {title}".replace("$", "\\$"), font_size=11, color="black", position="upper_edge")
-    plotter.camera_position = [(2.6, -2.9, 2.0), (0.05, 0.0, 0.33), (0.0, 0.0, 1.0)]
-    with whole_file(path) as part:
-        plotter.screenshot(str(part))
-    plotter.close()
-
-
 def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
-    """Draw what `render_roller_pressure` renders with matplotlib, where there is no GL (Fig. 31)."""
+    """Draw the pressure over the hardest loaded roller of a case as a surface (Fig. 31).
+
+    Parameters
+    ----------
+    fields : xarray.Dataset
+        Of `ltca.analysis.pressure_fields.build_pressure_dataset`.
+    case : str
+        Whose.
+
+    Returns
+    -------
+    Figure
+        No light falls on the surface: its colours are those of the scale.
+    """
     x, y, pressure, title = _surface(fields, case)
-    figure = Figure(figsize=(7.6, 5.4))
-    axes: Any = figure.add_subplot(projection="3d")
-    across, along = np.meshgrid(x, y, indexing="ij")
-    axes.plot_surface(across, along, pressure, cmap="viridis", rstride=1, cstride=1, linewidth=0.0, antialiased=False)
-    axes.set_xlabel("across [mm]")
-    axes.set_ylabel("along [mm]")
-    axes.set_zlabel("pressure [MPa]")
-    axes.set_title(f"{case}: {title}", fontsize=10)
-    axes.view_init(elev=28.0, azim=-52.0)
+    figure = Figure(figsize=(7.2, 5.2))
+    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    across, along = np.meshgrid(1e3 * x, y, indexing="ij")
+    top = float(pressure.max())
+    ticks = mpl.ticker.MaxNLocator(5).tick_values(0.0, top)
+    limits = mpl.colors.Normalize(0.0, top)
+    corners = pressure[:-1, :-1], pressure[1:, :-1], pressure[:-1, 1:], pressure[1:, 1:]
+    colours = mpl.colormaps[COLOUR_MAP](limits(np.mean(corners, axis=0)))
+    axes.plot_surface(
+        across, along, pressure, facecolors=colours, rstride=1, cstride=1, linewidth=0.0, antialiased=False, shade=False
+    )
+    # The patch is a hundred times longer than wide: each axis has its own scale.
+    axes.set_box_aspect((1.0, 1.6, 0.85))
+    for axis, label in ((axes.xaxis, "across [µm]"), (axes.yaxis, "along [mm]")):
+        axis.set_rotate_label(False)
+        axis.set_label_text(label, rotation=0.0)
+        axis.labelpad = 11.0
+    axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+    axes.yaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
+    axes.set_zticks([tick for tick in ticks if tick <= top])
+    axes.set_zticklabels([])
+    axes.set_zlim(0.0, top)
+    axes.view_init(elev=26.0, azim=-58.0)
+    bar = figure.colorbar(
+        mpl.cm.ScalarMappable(limits, COLOUR_MAP), ax=axes, shrink=0.7, pad=0.02, label="pressure [MPa]"
+    )
+    bar.set_ticks([tick for tick in ticks if tick <= top])
+    bar.outline.set_visible(False)
+    figure.suptitle(f"{numbered(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
     return figure
 
 
 def write_pressure_figures(results: xr.Dataset, fields: xr.Dataset, drive: Drive, folder: Path) -> Iterator[Path]:
-    """Write Fig. 27 and 31–33; sections as SVG and PNG, 3-D pictures as PNG.
+    """Write Fig. 27 and 31–33; sections as SVG and PNG, surfaces as PNG.
 
     Parameters
     ----------
@@ -299,16 +331,9 @@ def write_pressure_figures(results: xr.Dataset, fields: xr.Dataset, drive: Drive
         zone = Figure(figsize=(10.4, 4.6))
         draw_contact_zone(zone, results, drive)
         drawn = zone, draw_sections(fields, major=True), draw_sections(fields, major=False)
-        for name, figure in zip(PRESSURE_FIGURES, drawn, strict=True):
-            for suffix in (".svg", ".png"):
-                with whole_file(folder / f"{name}{suffix}") as part:
-                    figure.savefig(part, dpi=130, metadata={"Date": None} if suffix == ".svg" else None)
-            yield folder / f"{name}.png"
-        for case in (str(name) for name in fields["case"].values):
-            path = folder / f"fig31_roller_pressure_{case}.png"
-            if can_render():
-                render_roller_pressure(fields, case, path)
-            else:
-                with whole_file(path) as part:
-                    draw_roller_pressure(fields, case).savefig(part, dpi=130)
-            yield path
+    for name, figure in zip(PRESSURE_FIGURES, drawn, strict=True):
+        yield save_figure(figure, folder / name)
+    for case in (str(name) for name in fields["case"].values):
+        with mpl.rc_context(STYLE):
+            surface = draw_roller_pressure(fields, case)
+        yield save_figure(surface, folder / f"fig31_roller_pressure_{case}", (".png",))

@@ -1,13 +1,14 @@
-"""Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: six cases per axes, labelled directly.
+"""Figures of a run, corresponding to the paper's Fig. 23–26, 28–30 and 34–36: a panel for each case, the others behind.
 
-Several discs have a curve each: dashed from the second on, so that equal ones are both seen; of several cases in the
-colour of their case.
+Several discs have a curve each: dashed from the second on, of several cases in the colour of their case.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -16,19 +17,46 @@ from matplotlib.figure import Figure
 
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.drive.units.quantities import ARCSEC
-from ltca.figures.crank_figures import draw_cranks, draw_rollers_of_each_crank
-from ltca.figures.labelled_curves import (
-    CRANK,
-    STYLE,
+from ltca.figures.crank_figures import HALF_TURN, draw_cranks, draw_rollers_of_each_crank, mark_a_half_turn
+from ltca.figures.curve_panels import (
+    FEW,
+    MOST_CURVES,
     FloatArray,
     case_names,
     degrees,
-    draw_curves,
+    draw_panels,
     lines_of,
     mark_a_turn,
+    name_panel,
     one_by_one,
 )
-from ltca.output.files import whole_file
+from ltca.figures.house_style import CRANK, INK, MARK, OTHERS, STYLE, formula, save_figure
+from ltca.figures.mesh_range import elements_shown, loaded_window
+
+MESHES_SHOWN = 20
+"""Of more meshes in a turn the steps of the numbers of loaded contacts would be hatching: fewer are shown."""
+
+
+@cache
+def _shipped() -> str:
+    from ltca.reading.drive_file import shipped_drive
+
+    return shipped_drive()
+
+
+def numbered(title: str, number: int, dataset: xr.Dataset) -> str:
+    """Return a title with the number of the paper's figure, where the drive is the paper's.
+
+    Parameters
+    ----------
+    title : str
+        What is drawn.
+    number : int
+        Of the figure in the paper.
+    dataset : xarray.Dataset
+        With the text of its drive file as an attribute.
+    """
+    return f"{title} (Fig. {number})" if dataset.attrs.get("drive_file") == _shipped() else title
 
 
 def _loaded(dataset: xr.Dataset, name: str) -> FloatArray:
@@ -37,71 +65,118 @@ def _loaded(dataset: xr.Dataset, name: str) -> FloatArray:
     return np.asarray((load > LOADED_FRACTION * largest).sum(axis=2), dtype=float)
 
 
+def _torque_words(data: xr.Dataset, name: str) -> str:
+    """The torque of all cases, with its unit; of different ones from the least to the largest."""
+    if name not in data.coords:
+        return ""
+    values = np.abs(np.atleast_1d(data[name].values)) / 1e3
+    least, most = f"{values.min():.4g}", f"{values.max():.4g}"
+    return f", {least if least == most else f'{least} … {most}'} N·m"
+
+
 def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    names = case_names(data)
-    light, full = (data[name].values * ARCSEC for name in ("transmission_error_light", "transmission_error"))
-    draw_curves(figure, upper, degrees(data), light - light.mean(axis=1, keepdims=True), names, "", "light torque [″]")
-    draw_curves(figure, lower, degrees(data), full - full.mean(axis=1, keepdims=True), names, CRANK, "full torque [″]")
+    names, lines, x = case_names(data), lines_of(data), degrees(data)
+    rows = len(names)
+    figure.set_figheight(max(3.6, 1.0 + 1.1 * rows))
+    grid = figure.subplots(rows, 2, sharex=True, sharey="col", squeeze=False)
+    order = np.argsort(x, kind="stable")
+    told = (
+        (f"light torque{_torque_words(data, 'light_torque')}", "transmission_error_light"),
+        (f"full torque{_torque_words(data, 'torque')}", "transmission_error"),
+    )
+    for column, (words, name) in enumerate(told):
+        values = data[name].values * ARCSEC
+        values = (values - values.mean(axis=1, keepdims=True))[:, order]
+        for row in range(rows):
+            axes = grid[row, column]
+            marker = "o" if x.size < FEW else None
+            axes.plot(
+                x[order], values[row], color=lines[row].colour, linestyle=lines[row].dashes, marker=marker,
+                markersize=3.0, zorder=2.5,
+            )  # fmt: skip
+            for other in np.delete(values, row, axis=0):
+                axes.plot(x[order], other, color=OTHERS, linewidth=0.9, zorder=2.0)
+            name_panel(axes, names[row], 2)
+        grid[0, column].margins(x=0.0, y=0.08)
+        grid[0, column].yaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+        grid[0, column].set_title(words + "\n", loc="center")
+        formula(grid[-1, column].set_xlabel(CRANK))
+    mark_a_turn(grid[0, 0], x[order])
+    figure.supylabel("deviation from the mean [″]", fontsize=9.0)
     member = "output (pin shaft)" if data.attrs.get("held") == "pin-wheel" else "wheel"
-    figure.suptitle(f"Transmission error at the {member}, deviation from its mean (Fig. 23)")
+    figure.suptitle(numbered(f"Transmission error at the {member}", 23, data))
 
 
-def _one_quantity(
-    name: str, element: int | None, label: str, title: str, factor: float = 1.0
-) -> Callable[[Figure, xr.Dataset], None]:
+def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
+    """One pin over the range in which it is loaded, by the load that tells the range."""
+
     def draw(figure: Figure, data: xr.Dataset) -> None:
-        values = data[name].values * factor
-        if element is not None:
-            values = values[:, :, element]
-        axes = figure.subplots()
-        draw_curves(figure, axes, degrees(data), values, case_names(data), CRANK, label, lines=lines_of(data))
-        axes.set_title(title)
+        x = degrees(data)
+        discs = np.atleast_1d(data["disc"].values) if "of_case" in data.coords else np.zeros(data.sizes["case"], int)
+        shown = elements_shown(x, data[load].values, discs)
+        pick = shown[discs][:, None, None]
+        values, loads = (np.take_along_axis(data[one].values, pick, axis=2)[:, :, 0] for one in (name, load))
+        different = len(set(shown.tolist())) > 1
+        pins = f"s {', '.join(map(str, shown.tolist()))} of the discs" if different else f" {shown[0]}"
+        panels = draw_panels(
+            figure, x, values, case_names(data), CRANK, label, lines=lines_of(data),
+            title=numbered(words.format(pins), number, data),
+        )  # fmt: skip
+        window = loaded_window(x, loads)
+        if window is not None:
+            panels[0].set_xlim(*window)
+            panels[0].xaxis.set_major_locator(mpl.ticker.MaxNLocator(7, steps=[1, 1.5, 2, 3, 6, 10]))
 
     return draw
 
 
-def _number_loaded(name: str, title: str) -> Callable[[Figure, xr.Dataset], None]:
+def _number_loaded(name: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
     def draw(figure: Figure, data: xr.Dataset) -> None:
         names, x, counts, lines = case_names(data), degrees(data), _loaded(data, name), lines_of(data)
+        order = np.argsort(x, kind="stable")
         # Whole numbers of six cases would lie on each other: one narrow axes each.
-        figure.set_figheight(max(figure.get_figheight(), 0.6 * len(names)))
-        axes = np.atleast_1d(figure.subplots(len(names), 1, sharex=True, sharey=True))
-        for number, (axis, case) in enumerate(zip(axes, names, strict=True)):
-            axis.step(x, counts[number], where="mid", color=lines[number].colour)
-            axis.set_ylim(counts.min() - 0.5, counts.max() + 0.5)
-            axis.yaxis.set_major_locator(mpl.ticker.MaxNLocator(integer=True, nbins=3))
-            axis.text(
-                1.01, 0.5, f"{case}\nmean {counts[number].mean():.2f}", transform=axis.transAxes, va="center",
-                color=lines[number].colour, fontsize=8.5,
-            )  # fmt: skip
-            axis.margins(x=0.0)
-        mark_a_turn(axes[-1], x)
-        axes[-1].set_xlabel(CRANK)
+        figure.set_figheight(max(2.6, 1.1 + 0.72 * len(names)))
+        axes = figure.subplots(len(names), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        for axis, case, count, line in zip(axes, names, counts, lines, strict=True):
+            axis.step(x[order], count[order], where="mid", color=line.colour)
+            axis.fill_between(x[order], count[order], step="mid", color=line.colour, alpha=0.12, linewidth=0.0)
+            name_panel(axis, case)
+            told = f"{count.min():.0f} to {count.max():.0f}, mean {count.mean():.2f}"
+            axis.set_title(told, loc="right", fontsize=8.5, color=INK, pad=3.0)
+        axes[0].set_ylim(max(0.0, counts.min() - 1.0), counts.max() + 0.5)
+        axes[0].yaxis.set_major_locator(mpl.ticker.MaxNLocator(integer=True, nbins=3))
+        axes[0].margins(x=0.0)
+        mark_a_turn(axes[0], x[order])
+        part = ""
+        meshes = max(data.sizes["pin"], 1)
+        if meshes > MESHES_SHOWN and np.ptp(x) > 300.0:
+            end = 30.0 * max(1.0, round(12.0 * MESHES_SHOWN / meshes))
+            axes[0].set_xlim(0.0, end)
+            axes[0].set_xticks(np.arange(0.0, end + 1.0, end / 6.0))
+            part = f", {end:.0f}° of the turn (ranges and means are those of all of it)"
+        formula(axes[-1].set_xlabel(CRANK))
         figure.supylabel("number", fontsize=9.0)
-        figure.suptitle(title)
+        figure.suptitle(numbered(words, number, data) + part)
 
     return draw
 
 
 def _bearing(figure: Figure, data: xr.Dataset) -> None:
     total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
-    axes = figure.subplots()
-    limits = (0.98 * total.min(), 1.01 * total.max())
-    draw_curves(
-        figure, axes, degrees(data), total, case_names(data), CRANK, "total bearing load [N]", limits, lines_of(data)
-    )
-    axes.set_title("Bearing load of the crank (Fig. 28)")
+    _from_anywhere(figure, data, total, "total bearing load [N]", numbered("Bearing load of the crank", 28, data))
 
 
-def _bearing_component(name: str, label: str, title: str) -> Callable[[Figure, xr.Dataset], None]:
+def _from_anywhere(figure: Figure, data: xr.Dataset, values: FloatArray, label: str, title: str) -> None:
+    """Draw values whose scale need not start at zero."""
+    room = 0.08 * max(np.ptp(values), 1e-6)
+    limits = (float(values.min() - room), float(values.max() + room))
+    names, lines = case_names(data), lines_of(data)
+    draw_panels(figure, degrees(data), values, names, CRANK, label, limits=limits, lines=lines, title=title)
+
+
+def _bearing_component(name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
     def draw(figure: Figure, data: xr.Dataset) -> None:
-        values = data[name].values
-        axes = figure.subplots()
-        room = 0.06 * max(np.ptp(values), 1e-6)
-        limits = (values.min() - room, values.max() + room)
-        draw_curves(figure, axes, degrees(data), values, case_names(data), CRANK, label, limits, lines_of(data))
-        axes.set_title(title)
+        _from_anywhere(figure, data, data[name].values, label, numbered(words, number, data))
 
     return draw
 
@@ -109,30 +184,30 @@ def _bearing_component(name: str, label: str, title: str) -> Callable[[Figure, x
 def _torque_share(figure: Figure, data: xr.Dataset) -> None:
     share, equal = data["torque_share"].values, 1.0 / (1 + int(data["disc"].values.max()))
     room = max(0.02, 1.1 * float(np.max(np.abs(share - equal))))
-    axes = figure.subplots()
-    axes.axhline(equal, color="#7a7a7a", linewidth=0.6)
-    limits = (equal - room, equal + room)
-    draw_curves(
-        figure, axes, degrees(data), share, case_names(data), CRANK, "part of the torque", limits, lines_of(data)
-    )
-    axes.set_title(f"Part of the torque that each disc carries (largest {share.max():.3f}, equal parts {equal:.3f})")
+    panels = draw_panels(
+        figure, degrees(data), share, case_names(data), CRANK, "part of the torque", limits=(equal - room, equal + room),
+        lines=lines_of(data),
+        title=f"Part of the torque that each disc carries (largest {share.max():.3f}, equal parts {equal:.3f})",
+    )  # fmt: skip
+    for axes in panels:
+        axes.axhline(equal, color=MARK, linewidth=0.6)
 
 
 def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
-    """Load of all rollers at all positions over their place against the eccentricity."""
+    """Load of all rollers at all positions over their place against the eccentricity, which stands in the middle."""
     rollers = data.sizes["roller"]
     angle = data["crank_angle"].values
     speed = float(data["cage_speed"].values[0])
     place = speed * angle[:, None] + 2.0 * np.pi * np.arange(rollers) / rollers - angle[:, None]
-    place = np.degrees(np.mod(place, 2.0 * np.pi))
+    place = np.degrees(np.mod(place + np.pi, 2.0 * np.pi)) - HALF_TURN
+    title = numbered("Load distribution over the rollers", 34, data)
     if "of_case" in data.coords and np.ptp(data["crank"].values) > 0:
-        draw_rollers_of_each_crank(figure, data, place)
+        draw_rollers_of_each_crank(figure, data, place, f"{title}, all discs: mean and range")
         return
-    edges = np.linspace(0.0, 360.0, 121)
+    edges = np.linspace(-HALF_TURN, HALF_TURN, 121)
     centres = 0.5 * (edges[1:] + edges[:-1])
     bins = np.digitize(place, edges[1:-1])
     names = case_names(data)
-    axes = figure.subplots()
     load = data["roller_load"].values
     if place.size < 4 * centres.size:
         order = np.argsort(place.ravel(), kind="stable")
@@ -143,29 +218,27 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
         x, sums = centres[met], [np.bincount(bins.ravel(), case.ravel(), minlength=centres.size) for case in load]
         curves = np.stack([total[met] / count[met] for total in sums])
     label = "angle of the roller from the eccentricity [°]"
-    draw_curves(figure, axes, x, curves, names, label, "load on the bore [N]", lines=lines_of(data))
-    axes.set_xlim(0.0, 360.0)
-    axes.set_xticks(np.arange(0.0, 361.0, 60.0))
-    axes.set_title("Load distribution over the rollers (Fig. 34)")
+    panels = draw_panels(figure, x, curves, names, label, "load on the bore [N]", lines=lines_of(data), title=title)
+    mark_a_half_turn(panels[0])
 
 
 FIGURES: dict[str, Callable[[Figure, xr.Dataset], None]] = {
     "fig23_transmission_error": _transmission_error,
-    "fig24_pin_load": _one_quantity("pin_load", 0, "load [N]", "Load of wheel pin 0 over its mesh (Fig. 24)"),
-    "fig25_loaded_pins": _number_loaded("pin_load", "Number of loaded wheel pins (Fig. 25)"),
-    "fig26_pin_pressure": _one_quantity(
-        "pin_pressure_mid", 0, "pressure at mid-width [MPa]", "Largest flank pressure at wheel pin 0 (Fig. 26)"
+    "fig24_pin_load": _over_its_mesh("pin_load", "pin_load", "load [N]", "Load of wheel pin{} over a mesh", 24),
+    "fig25_loaded_pins": _number_loaded("pin_load", "Number of loaded wheel pins", 25),
+    "fig26_pin_pressure": _over_its_mesh(
+        "pin_load", "pin_pressure_mid", "pressure at mid-width [MPa]", "Largest flank pressure at wheel pin{}", 26
     ),
     "fig28_bearing_load": _bearing,
     "fig29_tangential_bearing_load": _bearing_component(
-        "bearing_tangential", "tangential bearing load [N]", "Tangential bearing load (Fig. 29)"
+        "bearing_tangential", "tangential bearing load [N]", "Tangential bearing load", 29
     ),
     "fig30_radial_bearing_load": _bearing_component(
-        "bearing_radial", "radial bearing load [N]", "Radial bearing load (Fig. 30)"
+        "bearing_radial", "radial bearing load [N]", "Radial bearing load", 30
     ),
     "fig34_roller_load": _roller_distribution,
-    "fig35_pin_shaft_load": _one_quantity("pin_shaft_load", 0, "load [N]", "Load of shaft pin 0 (Fig. 35)"),
-    "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins (Fig. 36)"),
+    "fig35_pin_shaft_load": _over_its_mesh("pin_shaft_load", "pin_shaft_load", "load [N]", "Load of shaft pin{}", 35),
+    "fig36_loaded_shaft_pins": _number_loaded("pin_shaft_load", "Number of loaded shaft pins", 36),
     "torque_share": _torque_share,
     "cranks": draw_cranks,
 }
@@ -216,15 +289,18 @@ def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
     shown = one_by_one(dataset, dataset.sizes["crank"] if name in (*OF_THE_CRANKS, *OF_SEVERAL_CRANKS) else 1)
-    drawn = int(shown["of_case"].max()) + 1 if "of_case" in shown.coords else dataset.sizes["case"]
+    drawn = int(shown["of_case"].max()) + 1 if "of_case" in shown.coords else shown.sizes["case"]
     if name in OF_THE_DRIVE:
-        shown, drawn = dataset.isel(disc=0, crank=0), dataset.sizes["case"]
+        drawn = min(dataset.sizes["case"], MOST_CURVES)
+        shown = dataset.isel(disc=0, crank=0, case=slice(drawn))
     elif name in OF_SEVERAL_CRANKS:
         shown = dataset.isel(case=slice(drawn))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(7.2, 4.4))
+        figure = Figure(figsize=(7.2, 3.9))
         FIGURES[name](figure, shown)
         if drawn < dataset.sizes["case"]:
+            layout: Any = figure.get_layout_engine()
+            layout.set(rect=(0.0, 0.025, 1.0, 0.975))
             figure.text(0.005, 0.005, f"{drawn} of {dataset.sizes['case']} cases", fontsize=7.0)
     return figure
 
@@ -251,17 +327,5 @@ def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
     Path
         The PNG of each figure when both files are written.
     """
-    with mpl.rc_context(STYLE):
-        for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
-            figure = draw_figure(name, dataset)
-            # One layout serves both files: to find it takes as long as to draw.
-            layout = figure.get_layout_engine()
-            if layout is not None:
-                layout.execute(figure)
-            figure.set_layout_engine("none")
-            for suffix in (".svg", ".png"):
-                path = folder / f"{name}{suffix}"
-                metadata = {"Date": None} if suffix == ".svg" else None
-                with whole_file(path) as part:
-                    figure.savefig(part, dpi=130, metadata=metadata)
-            yield path
+    for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
+        yield save_figure(draw_figure(name, dataset), folder / name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -17,8 +16,9 @@ from ltca.commands.curves import _speed_words
 from ltca.commands.program import main
 from ltca.commands.show import _loads
 from ltca.drive.units.quantities import ARCSEC
-from ltca.figures import curve_figures, drive_picture
-from ltca.figures.drive_picture import draw_drive
+from ltca.figures import curve_figures
+from ltca.figures.drive_picture import drive_figure
+from ltca.figures.house_style import OTHERS
 from ltca.figures.run_figures import draw_figure, figure_names
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
@@ -74,21 +74,21 @@ def test_run_prints_what_each_crank_bears(tmp_path, capsys):
     assert printed["as a part of the largest bearing load"] == [f"{part:.1e}"]
 
 
-def curves(axes):
-    """Curves over positions or places; leaders to names have two points."""
-    return [line.get_ydata() for line in axes.lines if len(line.get_xdata()) > 2]
+def own(axes):
+    """Curves of a panel, without those of the others behind."""
+    return [line.get_ydata() for line in axes.lines if line.get_color() != OTHERS]
 
 
 def test_the_figure_of_cranks_has_torque_and_deflection_of_each(solved):
     """No figure had either."""
     data = solved[1]
-    upper, lower = draw_figure("cranks", data).axes
-    np.testing.assert_allclose(curves(upper), data["crank_torque"].values[0] / 1e3, rtol=1e-15)
-    moved = np.hypot(data["crank_deflection_radial"], data["crank_deflection_tangential"]).values[0]
-    np.testing.assert_allclose(
-        curves(lower), 1e3 * moved.reshape(6, -1), rtol=1e-15
-    )  # disc after disc, crank after crank
-    assert sorted(text.get_text() for text in upper.texts) == ["crank 0", "crank 1", "crank 2"]
+    axes = np.reshape(draw_figure("cranks", data).axes, (3, 2))
+    moved = np.hypot(data["crank_deflection_radial"], data["crank_deflection_tangential"]).isel(case=0)
+    for crank, (torque, deflection) in enumerate(axes):
+        np.testing.assert_allclose(own(torque), data["crank_torque"].values[:1, crank] / 1e3, rtol=1e-15)
+        discs = moved.isel(crank=crank).transpose("disc", "position").values
+        np.testing.assert_allclose(own(deflection), 1e3 * discs, rtol=1e-15)
+        assert torque.get_title(loc="left") == f"crank {crank}"
     assert set(figure_names(2, 8, 3)) - set(figure_names(2, 8)) == {"cranks"}
 
 
@@ -96,22 +96,19 @@ def test_cases_that_have_no_room_in_the_figure_of_cranks_are_counted(solved):
     data = build_dataset("rv", {f"case {number}": solved[0] for number in range(4)})
     figure = draw_figure("cranks", data)
     assert [text.get_text() for text in figure.texts if "cases" in text.get_text()] == ["2 of 4 cases"]
-    assert [len(curves(axes)) for axes in figure.axes] == [6, 12]
+    assert [len(own(axes)) for axes in figure.axes] == [1, 2] * 6
 
 
 def test_rollers_of_several_cranks_are_three_curves_in_their_ranges(solved):
     """Six hairy curves in three colours hid each other."""
     data = solved[1]
-    axes = draw_figure("fig34_roller_load", data).axes[0]
-    means, bands = curves(axes), [band.get_paths()[0].vertices[:, 1] for band in axes.collections]
-    assert (len(means), len(bands), sorted(text.get_text() for text in axes.texts)) == (
-        3,
-        3,
-        ["crank 0", "crank 1", "crank 2"],
-    )
-    for crank, (mean, band) in enumerate(zip(means, bands, strict=True)):
-        assert np.max(band) == np.max(data["roller_load"].isel(crank=crank).values)
-        assert 0.0 < np.max(mean) < np.max(band)
+    panels = draw_figure("fig34_roller_load", data).axes
+    assert [axes.get_title(loc="left") for axes in panels] == ["crank 0", "crank 1", "crank 2"]
+    for crank, axes in enumerate(panels):
+        ((mean,), (band,)) = own(axes), axes.collections
+        assert np.max(band.get_paths()[0].vertices[:, 1]) == np.max(data["roller_load"].isel(crank=crank).values)
+        assert 0.0 < np.max(mean) < np.max(data["roller_load"].isel(crank=crank).values)
+        assert axes.get_xlim() == (-180.0, 180.0)
 
 
 @pytest.mark.parametrize(
@@ -144,18 +141,15 @@ def test_a_crank_that_carries_nothing_is_said_to_carry_none(rv):
 
 
 @pytest.mark.slow
-def test_cranks_are_numbered_in_the_picture(rv, tmp_path, monkeypatch):
+def test_cranks_are_numbered_in_the_picture(rv):
     """Which crank is 2 had to be guessed from the angles."""
-    drawn = []
-    monkeypatch.setattr(drive_picture.Figure, "savefig", lambda figure, *words, **options: drawn.append(figure))
-    monkeypatch.setattr(drive_picture, "whole_file", lambda path: nullcontext(path))
-    draw_drive(rv, analyse(rv, np.array([0.7])), 0, tmp_path / "drive.png")
-    for axes in drawn[0].axes:
-        numbers = {text.get_text(): complex(*text.get_position()) for text in axes.texts if text.get_text().isdigit()}
-        assert sorted(numbers) == ["0", "1", "2"]
+    figure = drive_figure(rv, analyse(rv, np.array([0.7])), 0)
+    for axes in figure.axes:
+        places = {text.get_text(): complex(*text.get_position()) for text in axes.texts}
+        assert sum(name.startswith("crank") for name in places) == 3
         for crank, axis in enumerate(rv.crank.places):
             # inside the inner race of its own crank
-            assert abs(numbers[str(crank)] - axis) < rv.crank_bearing.inner_race_radius
+            assert abs(places[f"crank {crank}"] - axis) < rv.crank_bearing.inner_race_radius
 
 
 def test_numbers_of_orders_do_not_cover_each_other(tmp_path, monkeypatch):

@@ -9,11 +9,10 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from fem.pictures.flat_view import plain_text
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.figures.drive_picture import draw_drive
-from ltca.figures.labelled_curves import STYLE
+from ltca.figures.house_style import STYLE
 from ltca.figures.run_figures import draw_figure
 
 NAMES = ("a$x_{b$", "<!--<script>", 'it\'s "q" & <b>')
@@ -43,7 +42,3 @@ def test_figures_hold_the_names_as_they_are(figure, analysis, tmp_path):
 def test_picture_of_a_drive_holds_its_name(analysis, tmp_path):
     draw_drive(analysis.drive, analysis, 0, tmp_path / "drive.svg")
     assert any(NAMES[0] in text for text in texts(tmp_path / "drive.svg"))
-
-
-def test_vtk_takes_dollars_as_they_are():
-    assert plain_text("a$b$") == r"a\$b\$"

@@ -16,7 +16,7 @@ from ltca.compliance.coefficients import without_coupling
 from ltca.drive.fields import read_field
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DriveError
-from ltca.figures.labelled_curves import STYLE
+from ltca.figures.house_style import STYLE
 from ltca.figures.optimum_figures import _search
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields

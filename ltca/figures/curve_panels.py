@@ -1,0 +1,244 @@
+"""Curves in panels of their own, the others grey behind; discs and cranks as cases of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ltca.figures.house_style import COLOURS, INK, OTHERS, formula, shortened_name
+
+FloatArray = NDArray[np.float64]
+
+DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (8, 3)))
+"""Lines of disc after disc."""
+MOST_CURVES = 16
+"""Panels of one figure; more do not fit on a page."""
+FEW = 40
+"""Positions below which each is marked."""
+BESIDE = 4
+"""Panels from which on they stand in two columns."""
+ALONE = "nominal"
+"""Name of the case of a drive without cases: it tells nothing."""
+LETTERS = {1: 84, 2: 42}
+"""Letters above a panel of the width of the figure, and of half of it."""
+ROOM = 0.06
+"""Of the range of all curves, above and below them."""
+
+
+class Line(NamedTuple):
+    """How a curve is drawn.
+
+    Attributes
+    ----------
+    colour : str
+        Of the line.
+    dashes : str or tuple
+        A line style of matplotlib's.
+    """
+
+    colour: str
+    dashes: Any = "-"
+
+
+def plain_lines(count: int) -> list[Line]:
+    """Return lines of curves that differ in colour alone."""
+    return [Line(COLOURS[number % len(COLOURS)]) for number in range(count)]
+
+
+def lines_of(dataset: xr.Dataset) -> list[Line]:
+    """Lines of what `one_by_one` has put side by side."""
+    if "of_case" not in dataset.coords:
+        return plain_lines(dataset.sizes["case"])
+    discs = [int(disc) for disc in dataset["disc"].values]
+    colours: Any = dataset["of_case"].values
+    if len(set(colours)) == 1:  # by what differs: cranks before discs, which differ in their dashes
+        colours = discs if np.ptp(dataset["crank"].values) == 0 else dataset["crank"].values
+    return [
+        Line(COLOURS[int(colour) % len(COLOURS)], DASHES[disc % len(DASHES)])
+        for colour, disc in zip(colours, discs, strict=True)
+    ]
+
+
+def degrees(dataset: xr.Dataset) -> FloatArray:
+    """Return the crank angles of a dataset, degrees."""
+    return np.asarray(np.degrees(dataset["crank_angle"].values))
+
+
+def panel_grid(figure: Figure, count: int, *, columns: int | None = None, height: float = 1.25) -> Any:
+    """Return axes in columns that share both scales, and give the figure the height they need.
+
+    Parameters
+    ----------
+    figure : Figure
+        Where to.
+    count : int
+        How many panels.
+    columns : int, optional
+        One for few panels, else two.
+    height : float
+        Of a row, inches.
+
+    Returns
+    -------
+    array of Axes, shape (count,)
+        Row by row.
+    """
+    across = columns or (1 if count < BESIDE else 2)
+    rows = -(-count // across)
+    figure.set_figheight(3.9 if count == 1 else max(3.6, 0.8 + height * rows))
+    grid = figure.subplots(rows, across, sharex=True, sharey=True, squeeze=False)
+    for column, spare in enumerate(grid.ravel()[count:]):
+        spare.set_visible(False)
+        # The scale of x stands below the last panel of a column.
+        grid[-2, across - 1 - column].tick_params(labelbottom=True)
+    return grid.ravel()[:count]
+
+
+def draw_panels(
+    figure: Figure,
+    x: FloatArray,
+    curves: FloatArray,
+    names: Sequence[str],
+    x_label: str,
+    y_label: str,
+    *,
+    limits: tuple[float, float] | None = None,
+    lines: Sequence[Line] | None = None,
+    title: str = "",
+    columns: int | None = None,
+) -> Any:
+    """Draw each curve in a panel with its name above, all others grey behind it, to the same scales.
+
+    Parameters
+    ----------
+    figure : Figure
+        Where to.
+    x : array, shape (positions,)
+        In any order.
+    curves : array, shape (curves, positions)
+        One for each name.
+    names : sequence of str
+        Above the panels; of one curve none is written unless it tells something.
+    x_label, y_label : str
+        Of all panels, with units; formulas stand between dollar signs.
+    limits : tuple of two floats, optional
+        Of y; from zero where nothing is negative, with room where something is.
+    lines : sequence of Line, optional
+        Of the curves.
+    title : str
+        Above all.
+    columns : int, optional
+        Of panels.
+
+    Returns
+    -------
+    array of Axes, shape (curves,)
+    """
+    order = np.argsort(x, kind="stable")
+    lines = plain_lines(len(curves)) if lines is None else lines
+    panels = panel_grid(figure, len(curves), columns=columns)
+    marker = "o" if x.size < FEW else None
+    across = columns or (1 if len(curves) < BESIDE else 2)
+    for number, (axes, line) in enumerate(zip(panels, lines, strict=True)):
+        others = [curve for place, curve in enumerate(curves) if place != number]
+        # Own curves first: who reads a panel's lines finds what it is about.
+        axes.plot(
+            x[order], curves[number][order], color=line.colour, linestyle=line.dashes, marker=marker, markersize=3.0,
+            zorder=2.5,
+        )  # fmt: skip
+        for other in others:
+            axes.plot(x[order], other[order], color=OTHERS, linewidth=0.9, zorder=2.0)
+        name_panel(axes, names[number], across)
+    axes = panels[0]
+    axes.margins(x=0.0)
+    if limits is None:
+        least, most = float(np.nanmin(curves)), float(np.nanmax(curves))
+        room = ROOM * max(most - least, 1e-9 * abs(most), 1e-12)
+        limits = (0.0 if least >= 0.0 else least - room, most + room)
+    axes.set_ylim(*limits)
+    axes.yaxis.set_major_locator(mpl.ticker.MaxNLocator(5 if len(panels) == 1 else 3))
+    mark_a_turn(axes, x[order])
+    label_all(figure, panels, x_label, y_label)
+    if title:
+        figure.suptitle(title)
+    return panels
+
+
+def name_panel(axes: Any, name: str, across: int = 1) -> None:
+    """Write a name above a panel, at its left.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel.
+    name : str
+        Shortened in its middle where there is no room.
+    across : int
+        Panels beside each other.
+    """
+    if name != ALONE:
+        axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
+
+
+def label_all(figure: Figure, panels: Any, x_label: str, y_label: str) -> None:
+    """Label the axes of one panel at it, of several once for all.
+
+    Parameters
+    ----------
+    figure : Figure
+        Of the panels.
+    panels : array of Axes
+        All of them.
+    x_label, y_label : str
+        Formulas stand between dollar signs.
+    """
+    if len(panels) == 1:
+        formula(panels[0].set_xlabel(x_label)), formula(panels[0].set_ylabel(y_label))
+        return
+    formula(figure.supxlabel(x_label, fontsize=9.0))
+    formula(figure.supylabel(y_label, fontsize=9.0))
+
+
+def mark_a_turn(axes: Any, x: FloatArray) -> None:
+    """Give a whole turn its ticks at sixths."""
+    if x.size > 1 and np.isclose(x[0], 0.0) and x[-1] > 300.0:
+        axes.set_xlim(0.0, 360.0)
+        axes.set_xticks(np.arange(0.0, 361.0, 60.0))
+
+
+def case_names(dataset: xr.Dataset) -> list[str]:
+    """Return the names of the cases."""
+    return [str(name) for name in dataset["case"].values]
+
+
+def one_by_one(dataset: xr.Dataset, cranks: int) -> xr.Dataset:
+    """Return every disc of every case, on every crank, as a case of its own; of too many the cases that have room.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of `ltca.analysis.results.build_dataset`.
+    cranks : int
+        How many of the cranks are shown, the first of them.
+    """
+    discs = dataset.sizes["disc"]
+    if discs * cranks == 1:
+        return dataset.isel(disc=0, crank=0, case=slice(MOST_CURVES))
+    shown = range(min(dataset.sizes["case"], max(1, MOST_CURVES // (discs * cranks))))
+    curves = [(case, disc, crank) for case in shown for disc in range(discs) for crank in range(cranks)]
+    words = ("case", "disc", "crank")
+    index = {word: xr.DataArray([curve[place] for curve in curves], dims="case") for place, word in enumerate(words)}
+
+    def named(case: int, disc: int, crank: int) -> str:
+        told = [str(dataset["case"].values[case])] if dataset.sizes["case"] > 1 else []
+        told += [f"disc {disc}"] if discs > 1 else []
+        return ", ".join(told + ([f"crank {crank}"] if cranks > 1 else []))
+
+    of_case = ("case", [case for case, _, _ in curves])
+    return dataset.isel(index).assign_coords(case=[named(*curve) for curve in curves], of_case=of_case)

@@ -1,0 +1,98 @@
+"""One look for every picture: colours, maps, fonts, proper symbols, and files that are the same for the same input."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from ltca.output.files import whole_file
+
+# Okabe and Ito's palette, readable with every kind of colour vision; black first for the clearance-free case.
+COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A7A7A")
+OTHERS = "#cccccc"
+"""What stands behind for comparison."""
+MARK = "#7a7a7a"
+"""Lines of reference and their words."""
+INK = "#222222"
+"""Names: text in the colour of a light line would be hard to read."""
+COLOUR_MAP = "viridis"
+"""Perceptually even, told apart with every kind of colour vision."""
+DASHED = (0, (4, 2))
+DOTS_PER_INCH = 130
+STYLE: Any = {
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "figure.titlesize": 10.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.2,
+    "image.cmap": COLOUR_MAP,
+    # Names of drives and cases are the user's: a dollar sign in them starts no formula.
+    "text.parse_math": False,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "cyclo",
+    "figure.constrained_layout.use": True,
+}
+CRANK_ANGLE = r"$\varphi_\mathrm{C}$"
+"""The crank angle, as a formula: only texts of ours are set with `formula`."""
+CRANK = f"crank angle {CRANK_ANGLE} [°]"
+"""Label of the axis that most figures share."""
+
+
+def formula(text: Any) -> Any:
+    """Let a text of ours, without any name of a user's, be read as a formula, and return it.
+
+    Parameters
+    ----------
+    text : matplotlib.text.Text
+        What stands between dollar signs in it is one.
+    """
+    text.set_parse_math(True)
+    return text
+
+
+def shortened_name(name: str, letters: int) -> str:
+    """Return a name with its middle left out where it has more letters than there is room for."""
+    if len(name) <= letters:
+        return name
+    head = (letters - 1) // 2
+    return f"{name[:head]}…{name[len(name) - (letters - 1 - head) :]}"
+
+
+def save_figure(figure: Figure, stem: Path, suffixes: Sequence[str] = (".svg", ".png")) -> Path:
+    """Write a figure; same input, same bytes: no clock in it, and identifiers from a fixed salt.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn with `STYLE`.
+    stem : Path
+        Without suffix, whatever points are in its name.
+    suffixes : sequence of str
+        Of the files.
+
+    Returns
+    -------
+    Path
+        The last file.
+    """
+    with mpl.rc_context(STYLE):
+        # One layout serves all files: to find it takes as long as to draw.
+        layout = figure.get_layout_engine()
+        if layout is not None:
+            layout.execute(figure)
+        figure.set_layout_engine("none")
+        for suffix in suffixes:
+            path = stem.with_name(stem.name + suffix)
+            metadata = {"Date": None} if suffix == ".svg" else None
+            with whole_file(path) as part:
+                figure.savefig(part, dpi=DOTS_PER_INCH, metadata=metadata)
+    return path

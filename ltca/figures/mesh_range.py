@@ -1,0 +1,89 @@
+"""Which pin is shown over its mesh, and over which crank angles: one whose mesh is whole, and little beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.summary import LOADED_FRACTION
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+BESIDE_THE_MESH = 0.08
+"""Of its length, shown before and after it."""
+STEP = 5.0
+"""Windows begin and end at whole multiples, degrees."""
+
+
+def loaded_at(load: FloatArray) -> NDArray[np.bool_]:
+    """Return where loads are more than nothing, by the largest of all.
+
+    Parameters
+    ----------
+    load : array
+        N.
+    """
+    return np.asarray(load > LOADED_FRACTION * max(float(np.nanmax(load)), 1e-300))
+
+
+def elements_shown(crank_angle: FloatArray, load: FloatArray, discs: IntArray) -> IntArray:
+    """Return which pin of each disc to show: the first whose mesh the positions do not cut in two.
+
+    Parameters
+    ----------
+    crank_angle : array, shape (positions,)
+        Degrees.
+    load : array, shape (cases, positions, pins)
+        Of every disc of every case, N.
+    discs : array of int, shape (cases,)
+        Whose loads they are.
+
+    Returns
+    -------
+    array of int, shape (discs,)
+        Of other discs the pins that mesh about when that of the first does, so that all fit one axis.
+    """
+    order = np.argsort(crank_angle, kind="stable")
+    loaded = loaded_at(load)[:, order]
+    chosen: list[int] = []
+    middle = 0.0
+    for disc in range(int(discs.max()) + 1):
+        of_disc = loaded[discs == disc].any(axis=0)
+        places = np.arange(of_disc.shape[0])[:, None]
+        with np.errstate(invalid="ignore"):
+            centre = (of_disc * places).sum(axis=0) / of_disc.sum(axis=0)
+        whole = of_disc.any(axis=0) & ~of_disc[0] & ~of_disc[-1] & (np.diff(of_disc, axis=0).sum(axis=0) == 2)
+        pins = np.flatnonzero(whole)
+        if not pins.size:
+            chosen.append(0)
+        elif not chosen:
+            chosen.append(int(pins[0]))
+            middle = float(centre[pins[0]])
+        else:
+            chosen.append(int(pins[np.argmin(np.abs(centre[pins] - middle))]))
+    return np.array(chosen)
+
+
+def loaded_window(crank_angle: FloatArray, load: FloatArray) -> tuple[float, float] | None:
+    """Return the crank angles between which any of some curves is loaded, with a little room, degrees.
+
+    Parameters
+    ----------
+    crank_angle : array, shape (positions,)
+        Degrees.
+    load : array, shape (curves, positions)
+        N.
+
+    Returns
+    -------
+    tuple of two floats or None
+        None where nothing would be left out, or nothing is loaded.
+    """
+    at = crank_angle[loaded_at(load).any(axis=0)]
+    if at.size < 2:
+        return None
+    room = max(BESIDE_THE_MESH * float(np.ptp(at)), STEP)
+    low = max(STEP * np.floor((at.min() - room) / STEP), STEP * np.floor(crank_angle.min() / STEP))
+    high = min(STEP * np.ceil((at.max() + room) / STEP), STEP * np.ceil(crank_angle.max() / STEP))
+    return (float(low), float(high)) if high - low < 0.95 * np.ptp(crank_angle) else None
