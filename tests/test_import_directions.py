@@ -15,9 +15,9 @@ PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
     "ltca.errors", "ltca.frozen_arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
-    "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.testing", "ltca",
+    "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.export", "ltca.testing", "ltca",
     "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
-    "fem.referee", "fem.pictures", "fem.testing", "fem",
+    "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
@@ -26,6 +26,7 @@ UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": se
 # Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
 FEM_MAY_IMPORT = (
     "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
+    "ltca.export",
 )  # fmt: skip
 LIGHT_COMMANDS = {
     "contextlib",

@@ -1,7 +1,8 @@
-"""STEP files of parts: a product for each body, flanks as exact B-splines lobe by lobe; the same input, the same bytes.
+"""STEP files of parts: a product for each body, flanks as exact B-splines; the same input, the same bytes.
 
-Every lobe is a B-spline with the control points and knots of `ltca.export.flank_outline`: splines fitted by the kernel are
-microns away, and a single closed one gives a wrong volume.
+Every half of a lobe is a B-spline with the control points and knots of `ltca.export.flank_outline`: splines fitted by the
+kernel are microns away. It integrates volumes with a fixed rule for each face: one closed spline reads 7 % wrong, whole lobes
+up to 1e-4 (of `robot-joint`), half ones 2e-5.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _PRODUCT = re.compile(r"PRODUCT\('Open CASCADE STEP translator [0-9.]+ [0-9]+(?:
 _HEADER = re.compile(r"HEADER;.*?ENDSEC;", re.DOTALL)
 _SCHEMA = re.compile(r"FILE_SCHEMA\(.*?\);", re.DOTALL)
 _SOLID = re.compile(r"(MANIFOLD_SOLID_BREP|SHELL_BASED_SURFACE_MODEL)\(''")
-_OCCURRENCE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('([0-9]+)','[^']*'")
+_OCCURRENCE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[0-9]+','[^']*'")
 
 
 def write_solids(part: Part, path: Path) -> None:
@@ -77,22 +78,23 @@ def _add_loop(gmsh: ModuleType, curve: FlankSpline | Circle, height: float) -> i
     if isinstance(curve, Circle):
         lines = [occ.addCircle(curve.centre.real, curve.centre.imag, height, curve.radius)]
     else:
-        lobes = curve.lobes()
-        roots = [_add_point(gmsh, lobe.control_points[0], height) for lobe in lobes]
-        ends = [*roots[1:], roots[0]]
+        halves = curve.half_lobes()
+        starts = [_add_point(gmsh, half.control_points[0], height) for half in halves]
+        ends = [*starts[1:], starts[0]]
         lines = [
-            _add_lobe(gmsh, lobe, start, end, height) for lobe, start, end in zip(lobes, roots, ends, strict=True)
+            _add_half(gmsh, half, start, end, height) for half, start, end in zip(halves, starts, ends, strict=True)
         ]
     loop: int = occ.addCurveLoop(lines)
     return loop
 
 
-def _add_lobe(gmsh: ModuleType, lobe: ClampedSpline, start: int, end: int, height: float) -> int:
-    inner = [_add_point(gmsh, point, height) for point in lobe.control_points[1:-1].tolist()]
-    knots, counts = np.unique(lobe.knots, return_counts=True)
+def _add_half(gmsh: ModuleType, half: ClampedSpline, start: int, end: int, height: float) -> int:
+    inner = [_add_point(gmsh, point, height) for point in half.control_points[1:-1].tolist()]
+    knots, counts = np.unique(half.knots, return_counts=True)
     line: int = gmsh.model.occ.addBSpline(
         [start, *inner, end], degree=3, knots=knots.tolist(), multiplicities=counts.tolist()
     )
+    gmsh.model.occ.remove([(POINT, tag) for tag in inner])  # or they would be vertices in the file
     return line
 
 
@@ -131,9 +133,8 @@ def _named(text: str, part: Part, names: Sequence[str]) -> str:
     solids: Iterator[str] = iter(own)
     text = _PRODUCT.sub(product, text)
     text = _SOLID.sub(lambda found: f"{found[1]}('{next(solids)}'", text)
-    text = _OCCURRENCE.sub(
-        lambda found: f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{found[1]}','{own[int(found[1]) - 1]}'", text
-    )
+    occurrences = iter(enumerate(own, 1))  # the kernel counts on through all files of a process
+    text = _OCCURRENCE.sub(lambda _: "NEXT_ASSEMBLY_USAGE_OCCURRENCE('{}','{}'".format(*next(occurrences)), text)
     schema = _SCHEMA.search(text)
     remarks = ",".join(f"'{_quoted(remark)}'" for remark in part.remarks)
     header = (
@@ -146,10 +147,11 @@ def _named(text: str, part: Part, names: Sequence[str]) -> str:
 def _quoted(text: str) -> str:
     """A text as STEP writes it (ISO 10303-21): quotes and backslashes doubled, what is not ASCII by its code point."""
 
-    def sign(found: re.Match[str]) -> str:
-        return rf"\X4\{''.join(f'{ord(letter):08X}' for letter in found[0])}\X0" + "\\"
+    def signs(found: re.Match[str]) -> str:
+        code, digits = ("X4", 8) if max(found[0]) > "\uffff" else ("X2", 4)
+        return f"\\{code}\\{''.join(f'{ord(letter):0{digits}X}' for letter in found[0])}\\X0\\"
 
-    return re.sub(r"[^\x20-\x7e]+", sign, text.replace("\\", "\\\\").replace("'", "''"))
+    return re.sub(r"[^\x20-\x7e]+", signs, text.replace("\\", "\\\\").replace("'", "''"))
 
 
 @contextmanager

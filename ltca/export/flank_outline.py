@@ -82,7 +82,7 @@ class MadeFlank:
         deviation = self.profile.deviation
         waves = 0 if deviation is None else max(deviation.orders, default=0)
         most = max(POINTS_PER_LOBE * self.lobes, POINTS_PER_WAVE * waves)
-        each = int(np.ceil(most / self.lobes))
+        each = 2 * int(np.ceil(0.5 * most / self.lobes))  # even: roots and tips are points
         even = np.arange(each * self.lobes) / (each * self.lobes)
         return np.asarray(2.0 * np.pi * even)
 
@@ -155,12 +155,13 @@ class FlankSpline:
         """Return the whole turn as one B-spline, whose last control point is its first, to the last bit."""
         return self._between(0, self.parameter.size)
 
-    def lobes(self) -> tuple[ClampedSpline, ...]:
-        """Return the same curve lobe by lobe, from root to root; neighbours share their end points to the last bit."""
-        count = self.flank.lobes
-        roots = np.searchsorted(self.parameter, 2.0 * np.pi * (np.arange(count) - 1e-9) / count)
-        ends = [*roots[1:].tolist(), self.parameter.size]
-        return tuple(self._between(first, last) for first, last in zip(roots.tolist(), ends, strict=True))
+    def half_lobes(self) -> tuple[ClampedSpline, ...]:
+        """Return the same curve from root to tip and from tip to root; neighbours share their end points to the last bit."""
+        count = 2 * self.flank.lobes
+        ends = np.searchsorted(self.parameter, 2.0 * np.pi * (np.arange(count) - 1e-9) / count).tolist()
+        return tuple(
+            self._between(first, last) for first, last in zip(ends, [*ends[1:], self.parameter.size], strict=True)
+        )
 
     def _between(self, first: int, last: int) -> ClampedSpline:
         """The pieces from one to before another, by blossoming: control point i is the polar form at knots i + 1 … i + 3."""
