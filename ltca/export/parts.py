@@ -193,10 +193,9 @@ def make_parts(
 def _require_disc(drive: Drive, part: str, disc: int) -> None:
     if part != "disc":
         raise DriveError([f"--disc {disc}: is for --part disc, not for {part}"])
-    last = drive.disc.number_of_discs - 1
-    if disc > last:
-        told = f"counts from 0 to {last}" if last else "and counts from 0: disc 0 is the only one"
-        raise DriveError([f"--disc {disc}: there is no such disc; disc.number_of_discs = {last + 1} {told}"])
+    count = drive.disc.number_of_discs
+    if disc >= count:
+        raise DriveError([f"--disc {disc}: there is no such disc; disc.number_of_discs = {count}, counted from 0"])
 
 
 def _discs(drive: Drive, case: str, number: int, compensation: float) -> Part:
