@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline
@@ -23,15 +24,21 @@ from ltca.output.files import whole_file
 if TYPE_CHECKING:
     from types import ModuleType
 
+ComplexArray = NDArray[np.complex128]
+
 MISSING = "--format dxf: ezdxf is not installed; pip install 'cyclo-ltca[cad]' brings it"
 RELEASE = "R2010"
 PLANAR = 8
 """Flag of splines in one plane."""
 COLOURS = {
-    "flank": 7, "bore": 5, "hole": 3, "pin": 30, "slot": 8, "sleeve": 4, "sleeve-bore": 4, "shaft-pin": 1, "shaft-sleeve": 6,
-    "shaft-sleeve-bore": 6, "inner-race": 5, "roller": 140,
+    "flank": 7, "bore": 4, "hole": 3, "pin": 30, "slot": 8, "sleeve": 6, "sleeve-bore": 6, "shaft-pin": 1, "shaft-sleeve": 6,
+    "shaft-sleeve-bore": 6, "inner-race": 150, "roller": 140,
 }  # fmt: skip
 """AutoCAD colour index of each feature; 7 is black on white and white on black."""
+REMARKS = ("Part", "Lengths", "Frame", "Compensation")
+"""Properties of the drawing."""
+MARGIN = 1.1
+"""Height of the view by that of the part."""
 _options = threading.Lock()
 
 
@@ -71,13 +78,16 @@ def write_drawing(part: Part, path: Path) -> None:
     ezdxf = load_ezdxf()
     with _without_clock(ezdxf):
         document = ezdxf.new(RELEASE, units=ezdxf.units.MM)
-        for number, remark in enumerate(part.remarks):
-            document.header.custom_vars.append(f"cyclo {number}", remark)
+        for name, remark in zip(REMARKS, part.remarks, strict=False):
+            document.header.custom_vars.append(name, remark)
         space = document.modelspace()
         for body in part.bodies:
             _draw(document, space, body, part.name == "assembly")
         for wall in part.walls:
             _draw_circle(document, space, wall.circle, "")
+        _show_all(document, _corners(part))
+        for kind in sorted(document.entitydb.dxf_types_in_use()):  # written in the order of a set, unless known before
+            document.classes.add_class(kind)
         stream = io.StringIO()
         document.write(stream)
     # From R2007 on drawings are UTF-8.
@@ -111,6 +121,24 @@ def _layer(document: Any, feature: str, disc: str) -> str:
     if name not in document.layers:
         document.layers.add(name, color=COLOURS[feature])
     return name
+
+
+def _corners(part: Part) -> ComplexArray:
+    """Two opposite corners of what is drawn."""
+    points = [body.outer.points for body in part.bodies if isinstance(body.outer, FlankSpline)]
+    circles = [body.outer for body in part.bodies if isinstance(body.outer, Circle)] + [w.circle for w in part.walls]
+    for circle in circles:
+        points.append(np.array([circle.centre - circle.radius * (1 + 1j), circle.centre + circle.radius * (1 + 1j)]))
+    every = np.concatenate(points)
+    return np.array([every.real.min() + 1j * every.imag.min(), every.real.max() + 1j * every.imag.max()])
+
+
+def _show_all(document: Any, corners: ComplexArray) -> None:
+    """Let a program that opens the drawing show all of it."""
+    low, high = corners.tolist()
+    document.modelspace().reset_extents((low.real, low.imag, 0.0), (high.real, high.imag, 0.0))
+    middle = 0.5 * (low + high)
+    document.set_modelspace_vport(height=MARGIN * (high - low).imag, center=(middle.real, middle.imag))
 
 
 @contextmanager

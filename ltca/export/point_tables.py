@@ -73,7 +73,7 @@ def _flank_table(spline: FlankSpline) -> str:
         points.real.tolist(), points.imag.tolist(), normals.real.tolist(), normals.imag.tolist(), curvature.tolist(),
         theta.tolist(), strict=True,
     )  # fmt: skip
-    lines += [",".join(f"{value:.{LAST}f}" for value in row) + "\n" for row in rows]
+    lines += [",".join(f"{value:.{LAST}f}" for value in row[:-1]) + f",{row[-1]:.{LAST + 3}f}\n" for row in rows]
     return "".join(lines)
 
 
