@@ -15,7 +15,8 @@ PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
     "ltca.errors", "ltca.frozen_arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
-    "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.export", "ltca.testing", "ltca",
+    "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.export",
+    "ltca.testing", "ltca",
     "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
     "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",

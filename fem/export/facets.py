@@ -53,10 +53,8 @@ def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
     FaultError
         When the file cannot be written.
     """
-    corners = []
     with gmsh_model(part.name) as gmsh:
-        for body in part.bodies:
-            corners.append(body_facets(gmsh, body, chord))
+        corners = [body_facets(gmsh, body, chord) for body in part.bodies]
     every = np.concatenate(corners)
     facets = np.zeros(len(every), dtype=_FACET)
     facets["corners"] = every

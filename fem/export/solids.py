@@ -1,8 +1,8 @@
 """STEP files of parts: a product for each body, flanks as exact B-splines; the same input, the same bytes.
 
-Every half of a lobe is a B-spline with the control points and knots of `ltca.export.flank_outline`: splines fitted by the
-kernel are microns away. It integrates volumes with a fixed rule for each face: one closed spline reads 7 % wrong, whole lobes
-up to 1e-4 (of `robot-joint`), half ones 2e-5.
+Flanks are B-splines with the control points and knots of `ltca.export.flank_outline`: splines fitted by the kernel are microns
+away. It integrates volumes with a fixed rule for each face, so there are several for each lobe: one closed spline reads 7 %
+wrong, whole lobes of `robot-joint` 1e-4.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ltca.output.files import whole_file
 POINT, CURVE, SURFACE, VOLUME = 0, 1, 2, 3
 SAME_VOLUME = 1e-4
 """Relative difference between the volume of a solid and its exact section times its height at which it is refused: the kernel
-integrates to some 2e-5, a wrong loop is far beyond it."""
+integrates to some 1e-5, a wrong loop is far beyond it."""
 _PRODUCT = re.compile(r"PRODUCT\('Open CASCADE STEP translator [0-9.]+ [0-9]+(?:\.([0-9]+))?',\s*'[^']*'")
 _HEADER = re.compile(r"HEADER;.*?ENDSEC;", re.DOTALL)
 _SCHEMA = re.compile(r"FILE_SCHEMA\(.*?\);", re.DOTALL)
@@ -78,19 +78,17 @@ def _add_loop(gmsh: ModuleType, curve: FlankSpline | Circle, height: float) -> i
     if isinstance(curve, Circle):
         lines = [occ.addCircle(curve.centre.real, curve.centre.imag, height, curve.radius)]
     else:
-        halves = curve.half_lobes()
-        starts = [_add_point(gmsh, half.control_points[0], height) for half in halves]
+        arcs = curve.arcs()
+        starts = [_add_point(gmsh, arc.control_points[0], height) for arc in arcs]
         ends = [*starts[1:], starts[0]]
-        lines = [
-            _add_half(gmsh, half, start, end, height) for half, start, end in zip(halves, starts, ends, strict=True)
-        ]
+        lines = [_add_arc(gmsh, arc, start, end, height) for arc, start, end in zip(arcs, starts, ends, strict=True)]
     loop: int = occ.addCurveLoop(lines)
     return loop
 
 
-def _add_half(gmsh: ModuleType, half: ClampedSpline, start: int, end: int, height: float) -> int:
-    inner = [_add_point(gmsh, point, height) for point in half.control_points[1:-1].tolist()]
-    knots, counts = np.unique(half.knots, return_counts=True)
+def _add_arc(gmsh: ModuleType, arc: ClampedSpline, start: int, end: int, height: float) -> int:
+    inner = [_add_point(gmsh, point, height) for point in arc.control_points[1:-1].tolist()]
+    knots, counts = np.unique(arc.knots, return_counts=True)
     line: int = gmsh.model.occ.addBSpline(
         [start, *inner, end], degree=3, knots=knots.tolist(), multiplicities=counts.tolist()
     )
@@ -118,7 +116,9 @@ def _require_volumes(gmsh: ModuleType, bodies: Sequence[Body]) -> None:
     for (_, tag), body in zip(solids, bodies, strict=True):
         volume, exact = gmsh.model.occ.getMass(VOLUME, tag), body.section * (body.top - body.bottom)
         if abs(volume - exact) > SAME_VOLUME * exact:
-            raise MeshError(f"gmsh made {body.name} with {volume:.8g} mm³, its section times its height is {exact:.8g} mm³")
+            raise MeshError(
+                f"gmsh made {body.name} with {volume:.8g} mm³, its section times its height is {exact:.8g} mm³"
+            )
 
 
 def _named(text: str, part: Part, names: Sequence[str]) -> str:

@@ -127,9 +127,8 @@ def _corners(part: Part) -> ComplexArray:
     """Two opposite corners of what is drawn."""
     points = [body.outer.points for body in part.bodies if isinstance(body.outer, FlankSpline)]
     circles = [body.outer for body in part.bodies if isinstance(body.outer, Circle)] + [w.circle for w in part.walls]
-    for circle in circles:
-        points.append(np.array([circle.centre - circle.radius * (1 + 1j), circle.centre + circle.radius * (1 + 1j)]))
-    every = np.concatenate(points)
+    corners = [circle.centre + sign * circle.radius * (1 + 1j) for circle in circles for sign in (-1.0, 1.0)]
+    every = np.concatenate([*points, np.array(corners, dtype=complex)])
     return np.array([every.real.min() + 1j * every.imag.min(), every.real.max() + 1j * every.imag.max()])
 
 

@@ -8,6 +8,7 @@ own through points would be microns away.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,9 @@ CLOSE = 2e-4
 """Departure of the spline from the exact flank at which no more points are put in, mm; a micron is promised."""
 MOST_POINTS = 200_000
 """Points of one flank: beyond that no CAD system reads it in reasonable time."""
+MOST_SPANS = 16
+"""Of an arc of a flank in a solid: kernels integrate each face by a fixed rule. Volumes read 1e-6 wrong with them, 2e-4 wrong of
+sharp lobes with arcs from root to tip."""
 LOOKED_AT = np.array([0.25, 0.5, 0.75])
 """Places between two points of the spline where its departure is measured."""
 
@@ -155,13 +159,17 @@ class FlankSpline:
         """Return the whole turn as one B-spline, whose last control point is its first, to the last bit."""
         return self._between(0, self.parameter.size)
 
-    def half_lobes(self) -> tuple[ClampedSpline, ...]:
-        """Return the same curve from root to tip and from tip to root; neighbours share their end points to the last bit."""
+    def arcs(self) -> tuple[ClampedSpline, ...]:
+        """Return the same curve in arcs of at most `MOST_SPANS` spans, cut at roots and tips as well; neighbours share their
+        end points to the last bit.
+        """
         count = 2 * self.flank.lobes
-        ends = np.searchsorted(self.parameter, 2.0 * np.pi * (np.arange(count) - 1e-9) / count).tolist()
-        return tuple(
-            self._between(first, last) for first, last in zip(ends, [*ends[1:], self.parameter.size], strict=True)
-        )
+        halves = np.searchsorted(self.parameter, 2.0 * np.pi * (np.arange(count) - 1e-9) / count).tolist()
+        cuts: list[int] = []
+        for first, last in pairwise([*halves, self.parameter.size]):
+            parts = -(-(last - first) // MOST_SPANS)
+            cuts += [first + (last - first) * part // parts for part in range(parts)]
+        return tuple(self._between(first, last) for first, last in pairwise([*cuts, self.parameter.size]))
 
     def _between(self, first: int, last: int) -> ClampedSpline:
         """The pieces from one to before another, by blossoming: control point i is the polar form at knots i + 1 … i + 3."""

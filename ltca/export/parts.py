@@ -331,9 +331,7 @@ def _pins_of_shaft(drive: Drive, place: Placement) -> list[Body]:
     return bodies
 
 
-def _sleeve(
-    feature: str, number: int, radius: float, bore: float, centre: complex, stack: tuple[float, float]
-) -> Body:
+def _sleeve(feature: str, number: int, radius: float, bore: float, centre: complex, stack: tuple[float, float]) -> Body:
     name = f"{feature.replace('-', ' ')} {number}"
     return Body(
         name=name,
@@ -349,7 +347,9 @@ def _compensated(body: Body, by: float, lift: float) -> Body:
     assert isinstance(body.outer, Circle)
     outer, inner = _grown(body.outer, -by), tuple(_grown(circle, by) for circle in body.inner)
     if inner and inner[0].radius >= outer.radius:
-        raise DriveError([f"--compensate {by:g} mm: nothing is left of {body.name}, its wall is thinner than twice that"])
+        raise DriveError(
+            [f"--compensate {by:g} mm: nothing is left of {body.name}, its wall is thinner than twice that"]
+        )
     return replace(body, outer=outer, inner=inner, bottom=body.bottom + lift, top=body.top + lift)
 
 

@@ -19,7 +19,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.contradictions import explain_contradictions, find_cause
-from ltca.reading.measured.tables import MeasuredFiles, without_files
+from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
 from ltca.reading.toml_text import parse_toml, read_text
 
@@ -288,7 +288,7 @@ def _validate(table: dict[str, Any], problems: list[str], measured: MeasuredFile
     unnamed: list[str] = []
     table = with_named_materials(table, unnamed)
     problems += unnamed
-    named = {}
+    named: Named = {}
     if measured is not None:
         table, named = without_files(table)
     try:

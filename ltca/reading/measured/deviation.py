@@ -64,21 +64,23 @@ def measured_errors(single: Drive, measured: MeasuredPoints) -> ProfileErrors:
     return replace(errors, parameter=tuple(theta.tolist()), deviation=tuple(deviation.tolist()))
 
 
-def _feet(
-    profile: FlankProfile, lobes: int, measured: MeasuredPoints, bound: float
-) -> tuple[FloatArray, FloatArray]:
+def _feet(profile: FlankProfile, lobes: int, measured: MeasuredPoints, bound: float) -> tuple[FloatArray, FloatArray]:
     """θ in [0, 2π) and the deviation of every point."""
     from scipy.spatial import cKDTree  # 0.1 s to import
 
     table = np.linspace(0.0, 2.0 * pi, TABLE_PER_LOBE * lobes, endpoint=False)
     known, points = profile.flank(table), measured.points
-    away, nearest = cKDTree(np.column_stack([known.real, known.imag])).query(np.column_stack([points.real, points.imag]))
+    away, nearest = cKDTree(np.column_stack([known.real, known.imag])).query(
+        np.column_stack([points.real, points.imag])
+    )
     # Half a step of the table may lie between a point and its foot.
     _require_near(away - 0.6 * float(np.max(np.abs(np.diff(known)))), bound, known, measured)
     try:
         found = profile.nearest_parameter(points, table[nearest])
     except ConvergenceError as error:
-        raise DriveError(["points have no place on the flank: they lie beyond its centres of curvature"], measured.source) from error
+        raise DriveError(
+            ["points have no place on the flank: they lie beyond its centres of curvature"], measured.source
+        ) from error
     deviation = profile.distance(points, found)
     _require_near(np.abs(deviation), bound, known, measured)
     if measured.normals is not None:
@@ -93,7 +95,13 @@ def _require_near(away: FloatArray, bound: float, flank: NDArray[np.complex128],
     if away[worst] <= bound:
         return
     size = float(np.mean(np.abs(measured.points)) / np.mean(np.abs(flank)))
-    units = {1.0 / INCH: "inches", 1e-3: "metres", 1e3: "micrometres", 10.0: "tenths of a millimetre", 0.1: "centimetres"}
+    units = {
+        1.0 / INCH: "inches",
+        1e-3: "metres",
+        1e3: "micrometres",
+        10.0: "tenths of a millimetre",
+        0.1: "centimetres",
+    }
     like = [unit for ratio, unit in units.items() if abs(size / ratio - 1.0) < 0.05]
     hint = (
         f"they look like {like[0]}, mm are read"

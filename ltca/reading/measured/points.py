@@ -108,9 +108,7 @@ def _require_columns(names: list[str], line: int, source: str) -> None:
         raise DriveError([f"has a column {half[0]} and none {other}: give both or none"], source)
 
 
-def _row(
-    line: str, number: int, separator: str, columns: list[int], names: list[str], source: str
-) -> list[float]:
+def _row(line: str, number: int, separator: str, columns: list[int], names: list[str], source: str) -> list[float]:
     """The wanted numbers of a line."""
     cells = line.split(separator)
     found = []

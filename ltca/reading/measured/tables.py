@@ -91,8 +91,8 @@ class MeasuredFiles:
             raise DriveError([f"= {shortened(name)}: must be the name of a CSV file, relative to the drive file"])
         own = drive.disc.of[disc].profile_errors if disc is not None else drive.disc.profile_errors
         if own is not None and not (own.is_zero and not own.parameter):
-            errors = "disc.profile_errors" if disc is None else f"disc.of.{disc}.profile_errors"
-            raise DriveError([f"= {shortened(name)}: holds all of the deviation; leave out {errors}, or its numbers"])
+            beside = "disc.profile_errors" if disc is None else f"disc.of.{disc}.profile_errors"
+            raise DriveError([f"= {shortened(name)}: holds all of the deviation; leave out {beside}, or its numbers"])
         cold = replace(drive, temperature=None)
         single = single_discs(cold)[disc or 0]
         single = replace(single, disc=replace(single.disc, profile_errors=own or drive.disc.profile_errors))

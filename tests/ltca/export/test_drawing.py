@@ -74,9 +74,7 @@ def test_circles_layers_and_units(kinds_of_drives, tmp_path):
     assert [len(found) for found in by_layer.values()] == [1, 1, 8]
     assert len(space) == 10
     placement = Placement.of_drive(drive)
-    for hole, centre, radius in zip(
-        by_layer["HOLE"], placement.hole_centres, placement.hole_radii, strict=True
-    ):
+    for hole, centre, radius in zip(by_layer["HOLE"], placement.hole_centres, placement.hole_radii, strict=True):
         assert complex(hole.dxf.center.x, hole.dxf.center.y) == pytest.approx(centre, abs=1e-12)
         assert hole.dxf.radius == pytest.approx(radius + 0.1, abs=1e-12)
 

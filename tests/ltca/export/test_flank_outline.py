@@ -10,7 +10,7 @@ from scipy.interpolate import BSpline
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.export import flank_outline
-from ltca.export.flank_outline import CLOSE, MadeFlank, departures, follow_flank
+from ltca.export.flank_outline import CLOSE, MOST_SPANS, MadeFlank, departures, follow_flank
 from ltca.geometry.flank import FlankProfile
 
 MICRON = 1e-3
@@ -60,28 +60,30 @@ def test_sharp_roots_get_more_points(kinds_of_drives):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_spline_closes_and_its_halves_are_the_whole(kinds_of_drives, kind):
+def test_the_spline_closes_and_its_arcs_are_the_whole(kinds_of_drives, kind):
     spline = follow_flank(flank_of(kinds_of_drives[kind])).placed(1.0 - 2.0j)
-    whole, halves = spline.clamped(), spline.half_lobes()
+    whole, arcs = spline.clamped(), spline.arcs()
     assert whole.control_points[0] == whole.control_points[-1]
-    assert len(halves) == 2 * spline.flank.lobes
-    for here, after in zip(halves, [*halves[1:], halves[0]], strict=True):
+    assert all(arc.control_points.size <= MOST_SPANS + 3 for arc in arcs)
+    for here, after in zip(arcs, [*arcs[1:], arcs[0]], strict=True):
         assert here.control_points[-1] == after.control_points[0]
     # Twice continuously differentiable across the seam; round-off of second differences.
     curve = as_curve(whole)
     for order in range(3):
         ends = curve([whole.knots[0], whole.knots[-1]], nu=order)
         assert ends[0] == pytest.approx(ends[1], abs=1e-8)
-    for half in halves[:3]:
-        t = np.linspace(half.knots[0], half.knots[-1], 50)
-        assert as_curve(half)(t) == pytest.approx(curve(t), abs=1e-10)
+    for arc in arcs[:5]:
+        t = np.linspace(arc.knots[0], arc.knots[-1], 50)
+        assert as_curve(arc)(t) == pytest.approx(curve(t), abs=1e-10)
 
 
 def test_the_area_of_a_parallel_curve(kinds_of_drives):
     """Steiner: π(R² + u e²) of the trochoid less its length times the distance, plus π times its square."""
     drive = kinds_of_drives["paper"]
     radius, e, u, by = 88.09, 4.0, 14.0, 6.65 + 0.1
-    length = quad(lambda t: np.sqrt(radius**2 + (e * u) ** 2 - 2 * radius * e * u * np.cos((u - 1) * t)), 0, np.pi / 13)[0]
+    length = quad(
+        lambda t: np.sqrt(radius**2 + (e * u) ** 2 - 2 * radius * e * u * np.cos((u - 1) * t)), 0, np.pi / 13
+    )[0]
     area = np.pi * (radius**2 + u * e**2) - 26.0 * length * by + np.pi * by**2
     assert flank_of(drive, 0.1).area() == pytest.approx(area, rel=1e-12)
 

@@ -96,7 +96,7 @@ def test_the_assembly_meshes(kinds_of_drives, kind):
         assert (disc.bottom + disc.top) / 2 == pytest.approx(plane)
         gaps = [np.min(np.abs(disc.outer.points - pin.centre)) - pin.radius for pin in pins]
         # Roots are points of the spline: exact there. Everywhere else parts stay clear as well.
-        towards = int(round(phase / (2 * np.pi) * len(pins)))
+        towards = round(phase / (2 * np.pi) * len(pins))
         assert gaps[towards] == pytest.approx(drive.disc.equidistant_offset - drive.disc.shifting_offset, abs=1e-9)
         assert min(gaps) > 0.0
         # The disc's share of each hole stays clear of its pin.
@@ -154,9 +154,7 @@ def test_holes_that_compensation_lets_cut_into_each_other(kinds_of_drives):
     drive = kinds_of_drives["paper"]
     # On a circle of 40 mm neighbours stand 80 sin 22.5° = 30.615 mm apart: holes of 15.4 mm overlap by 0.185 mm.
     shaft = replace(drive.pin_shaft, pin_circle_radius=40.0, hole_radius=14.4)
-    wide = replace(
-        drive, pin_shaft=shaft, crank_bearing=replace(drive.crank_bearing, outer_race_radius=20.0)
-    )
+    wide = replace(drive, pin_shaft=shaft, crank_bearing=replace(drive.crank_bearing, outer_race_radius=20.0))
     assert make_parts(wide, "CS-1")
     with pytest.raises(DriveError, match=r"--compensate 1 mm: hole \d and hole \d cut into each other by 0.1853 mm"):
         make_parts(wide, "CS-1", compensation=1.0)
