@@ -83,7 +83,9 @@ def body_facets(gmsh: ModuleType, body: Body, chord: float) -> FloatArray:
     # What the file can hold is 32 bits: rounded before, so that corners of neighbours are equal.
     loops = [loop.astype(np.complex64).astype(complex) for loop in loops]
     points = np.concatenate(loops)
-    triangles = _fill(gmsh, body.name, loops)
+    triangles = _fill_round(body, loops)
+    if triangles is None:
+        triangles = _fill(gmsh, body.name, loops)
     top = np.dstack([points.real[triangles], points.imag[triangles], np.full(triangles.shape, body.top)])
     bottom = top[:, ::-1].copy()
     bottom[..., 2] = body.bottom
@@ -110,6 +112,20 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     count = int(np.ceil(needed[-1]))
     parameter = np.interp(np.arange(count) * needed[-1] / count, needed, fine)
     return np.asarray(flank.points(parameter) + curve.centre)
+
+
+def _fill_round(body: Body, loops: list[ComplexArray]) -> IntArray | None:
+    """Triangles of a circle or of a ring whose circles have equally many corners; None of other sections."""
+    count = loops[0].size
+    here = np.arange(count)
+    if isinstance(body.outer, FlankSpline) or len(loops) > 2 or any(loop.size != count for loop in loops):
+        return None
+    if len(loops) == 1:
+        return np.column_stack([np.zeros(count - 2, dtype=np.int64), here[1:-1], here[2:]])
+    there = np.roll(here, -1)
+    return np.concatenate(
+        [np.column_stack([here, there, count + there]), np.column_stack([here, count + there, count + here])]
+    )
 
 
 def _fill(gmsh: ModuleType, name: str, loops: list[ComplexArray]) -> IntArray:

@@ -90,6 +90,7 @@ def test_an_assembly_has_layers_for_each_disc(kinds_of_drives, tmp_path):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(paper_cases, tmp_path):
     """In another process, whose sets have another order, and at another time."""
     code = (
