@@ -28,6 +28,9 @@ LEAST_AROUND = 360
 """Edges of a circle at the least: its area is then 5e-5 off, however small it is."""
 LEAST_SHARE = 1.0 / 40
 """Of a lobe, longest edge of a flank by its length."""
+NO_STEP = 0.381966
+"""Of the step between corners of a circle, where the first one stands: bodies that touch (rollers and races) share no corner, or
+readers would take them for one that is not closed."""
 INITIAL_MESH_ONLY = 3
 TRIANGLE, LINE = 2, 1
 HEADER = 80
@@ -98,7 +101,7 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     if isinstance(curve, Circle):
         half = np.arccos(max(1.0 - chord / curve.radius, 0.0))
         count = max(LEAST_AROUND, int(np.ceil(np.pi / half)))
-        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * np.arange(count) / count))
+        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + NO_STEP) / count))
     # On a fine table: the chord of an edge of length s is κ s²/8.
     flank = curve.flank
     fine = np.linspace(0.0, 2.0 * np.pi, 16 * curve.parameter.size + 1)

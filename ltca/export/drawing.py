@@ -31,10 +31,12 @@ RELEASE = "R2010"
 PLANAR = 8
 """Flag of splines in one plane."""
 COLOURS = {
-    "flank": 7, "bore": 4, "hole": 3, "pin": 30, "slot": 8, "sleeve": 6, "sleeve-bore": 6, "shaft-pin": 1, "shaft-sleeve": 6,
+    "bore": 4, "hole": 3, "pin": 30, "slot": 8, "sleeve": 6, "sleeve-bore": 6, "shaft-pin": 1, "shaft-sleeve": 6,
     "shaft-sleeve-bore": 6, "inner-race": 150, "roller": 140,
 }  # fmt: skip
-"""AutoCAD colour index of each feature; 7 is black on white and white on black."""
+"""AutoCAD colour index of each feature."""
+FLANKS = (7, 2, 6, 4)
+"""Of the flanks of an assembly; 7 is black on white and white on black."""
 REMARKS = ("Part", "Lengths", "Frame", "Compensation")
 """Properties of the drawing."""
 MARGIN = 1.1
@@ -82,7 +84,7 @@ def write_drawing(part: Part, path: Path) -> None:
             document.header.custom_vars.append(name, remark)
         space = document.modelspace()
         for body in part.bodies:
-            _draw(document, space, body, part.name == "assembly")
+            _draw(document, space, body)
         for wall in part.walls:
             _draw_circle(document, space, wall.circle, "")
         _show_all(document, _corners(part))
@@ -95,8 +97,8 @@ def write_drawing(part: Part, path: Path) -> None:
         file.write_text(stream.getvalue(), encoding="utf-8", newline="\n")
 
 
-def _draw(document: Any, space: Any, body: Body, assembled: bool) -> None:
-    disc = f"{body.name.replace(' ', '_').upper()}_" if assembled and isinstance(body.outer, FlankSpline) else ""
+def _draw(document: Any, space: Any, body: Body) -> None:
+    disc = f"{body.of.replace(' ', '_').upper()}_" if body.of else ""
     if isinstance(body.outer, FlankSpline):
         curve = body.outer.clamped()
         points = np.column_stack([curve.control_points.real, curve.control_points.imag, np.zeros(curve.knots.size - 4)])
@@ -119,7 +121,8 @@ def _layer(document: Any, feature: str, disc: str) -> str:
     """Return the name of a feature's layer, made if it is not there."""
     name = f"{disc}{feature.replace('-', '_').upper()}"
     if name not in document.layers:
-        document.layers.add(name, color=COLOURS[feature])
+        flanks = sum(layer.dxf.name.endswith("FLANK") for layer in document.layers)
+        document.layers.add(name, color=FLANKS[flanks % len(FLANKS)] if feature == "flank" else COLOURS[feature])
     return name
 
 

@@ -66,6 +66,8 @@ class Body:
         Outline.
     inner : tuple of Circle
         Holes.
+    of : str
+        Disc of an assembly that it belongs to, ``disc 1``; empty for others.
     bottom, top : float
         z of its faces, mm.
     """
@@ -73,6 +75,7 @@ class Body:
     name: str
     outer: FlankSpline | Circle
     inner: tuple[Circle, ...] = ()
+    of: str = ""
     bottom: float
     top: float
 
@@ -420,18 +423,18 @@ def _disc_and_bearings(single: Drive, place: Placement, name: str) -> Iterator[B
     plane, bearing = single.disc.disc_planes[0], single.crank_bearing
     start = np.zeros(1)
     disc = _moved(_disc_body(single, name, 0.0), complex(place.race_centre(start)[0]))
-    yield replace(disc, bottom=plane - 0.5 * disc.top, top=plane + 0.5 * disc.top)
+    yield replace(disc, of=name, bottom=plane - 0.5 * disc.top, top=plane + 0.5 * disc.top)
     low, high = plane - 0.5 * bearing.roller_length, plane + 0.5 * bearing.roller_length
     races = place.race_centres(start)[0]
     for crank, centre in enumerate(races.tolist()):
         of = _numbered(f"inner race of {name}", crank, len(races))
         race = Circle(feature="inner-race", name=of, radius=bearing.inner_race_radius, centre=centre)
-        yield Body(name=of, outer=race, bottom=low, top=high)
+        yield Body(name=of, outer=race, of=name, bottom=low, top=high)
     radii = place.roller_radii
     centres = races[place.roller_cranks] + (bearing.inner_race_radius + radii) * place.roller_rays(start)[0]
     for number, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
         roller = Circle(feature="roller", name=f"roller {number} of {name}", radius=radius, centre=centre)
-        yield Body(name=roller.name, outer=roller, bottom=low, top=high)
+        yield Body(name=roller.name, outer=roller, of=name, bottom=low, top=high)
 
 
 def _shifted(circle: Circle, by: complex) -> Circle:
