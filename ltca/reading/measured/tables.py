@@ -20,6 +20,8 @@ from ltca.reading.physical_checks import find_contradictions
 
 FIELD = "measured_flank"
 
+FILTER = "the spline of a measured flank passes through every point: filter noise, or leave points out"
+
 Named = dict[int | None, Any]
 """What is named as file, by the disc; None for all discs."""
 
@@ -84,6 +86,11 @@ class MeasuredFiles:
             except DriveError as error:
                 where = f": {printable(error.source)}:" if error.source else ""
                 problems += [f"{path}{where} {problem}" for problem in error.problems]
+                continue
+            # What the points leave no flank of is told by their file.
+            for problem in find_contradictions(drive):
+                told = problem.partition(": ")[2] or problem
+                problems.append(f"{path}: {self._folder / name}: {told}; {FILTER}")
         return drive
 
     def _with_one(self, drive: Drive, disc: int | None, name: Any) -> Drive:
