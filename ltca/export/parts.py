@@ -154,8 +154,10 @@ class Part:
         lines = (f"cyclo {self.title}", "lengths in mm, at 20 °C", f"frame: {self.frame}")
         if not self.compensation:
             return lines
-        moved = f"compensation {self.compensation:g} mm: every face is moved into the material by so much"
-        return (*lines, f"{moved} (outlines shrink, bores and holes grow in radius)")
+        into = self.compensation > 0.0
+        whither, told = ("into", "shrink, bores and holes grow") if into else ("out of", "grow, bores and holes shrink")
+        moved = f"every face is moved {whither} the material by {abs(self.compensation):g} mm"
+        return (*lines, f"compensation {self.compensation:g} mm: {moved} (outlines {told} in radius)")
 
 
 def make_parts(

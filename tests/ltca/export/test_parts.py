@@ -118,7 +118,10 @@ def test_compensation_moves_faces_into_the_material(kinds_of_drives):
         assert after.radius - before.radius == pytest.approx(0.1)
         assert after.centre == before.centre
     assert moved.stem == "paper_CS-1_disc_compensated_0.1mm"
-    assert any("0.1 mm" in remark for remark in moved.remarks)
+    assert "moved into the material by 0.1 mm (outlines shrink, bores and holes grow" in moved.remarks[-1]
+    (grown,) = make_parts(drive, "CS-1", compensation=-0.1)
+    assert "moved out of the material by 0.1 mm (outlines grow, bores and holes shrink" in grown.remarks[-1]
+    assert grown.bodies[0].inner[0].radius == pytest.approx(29.4)
     (shaft,) = make_parts(kinds_of_drives["sleeved"], "nominal", "pin-shaft", compensation=0.05)
     radii = [circles(shaft, name)[0].radius for name in ("shaft-pin", "shaft-sleeve-bore", "shaft-sleeve")]
     assert radii == pytest.approx([4.45, 4.56, 5.95])
