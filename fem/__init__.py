@@ -14,6 +14,7 @@ reducer       All discs of a drive on one wheel, either member held, and the fil
 coefficients  Influence coefficients of the bodies: places, loads, derivation
 referee       The same problem given to another code
 pictures      Pictures of meshes and solutions
+export        Solids of parts: STEP and STL
 testing       Regenerates what the regression tests compare with
 commands      What the package adds to ``cyclo``
 ============  ============================================================

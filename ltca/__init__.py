@@ -25,6 +25,7 @@ analysis       An analysis of a drive and what is read from it
 studies        Studies at scale: tolerances, sweeps, optimiser
 figures        Pictures of results, by matplotlib and pyvista
 page           Pages of results that open offline
+export         Parts carried out: exact outlines, DXF drawings, tables of points (STEP and STL: ``fem.export``)
 testing        What serves checking alone, importable by tests of your own
 facade         The front door: `load_drive`, `analyse`, engines; what ``import ltca`` gives
 commands       The program ``cyclo``

@@ -22,7 +22,7 @@ import pytest
 
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.reading.drive_file import build_drive, load_drive, shipped_drive
+from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 
 
 @pytest.hookimpl(tryfirst=True, optionalhook=True)
@@ -67,6 +67,35 @@ def paper_table() -> Callable[..., dict[str, Any]]:
 def vary(paper_table: Callable[..., dict[str, Any]]) -> Callable[..., Drive]:
     """Return a function that builds the paper's drive with some fields replaced, fully checked."""
     return lambda **over: build_drive(paper_table(**over))
+
+
+@pytest.fixture(scope="session")
+def kinds_of_drives(vary: Callable[..., Drive]) -> dict[str, Drive]:
+    """The shipped drives, one with 99 sharp lobes, and a plastic one whose flank, holes and bore are not as designed."""
+    shipped = {
+        name: next(iter(parse_drive(shipped_drive(name), name).cases.values()))
+        for name in ("paper", "rv", "robot-joint", "sleeved")
+    }
+    sharp = {"number_of_pins": 100, "pin_radius": 1.3}
+    many = vary(
+        name="many",
+        crank={"eccentricity": 0.72},
+        pin_wheel=sharp,
+        pin_shaft={"hole_radius": 10.82},
+        disc={"number_of_teeth": 99, "equidistant_offset": 0.02, "shifting_offset": 0.01},
+    )
+    waves = {"orders": [2, 13, 60], "cosine": [0.004, -0.002, 0.0005], "sine": [0.001, 0.002, 0.0]}
+    plastic = vary(
+        name="plastic",
+        disc={
+            "profile_errors": waves,
+            "runout": {"amount": 0.01, "angle": 0.7},
+            "hole_errors": {"diameter": [0.02] * 8, "radial": [0.01, *[0.0] * 7]},
+        },
+        clearance={"bearing": 0.03, "pin_hole": 0.05},
+        materials={"disc": "PA12"},
+    )
+    return {**shipped, "many": many, "plastic": plastic}
 
 
 @pytest.fixture(scope="session")

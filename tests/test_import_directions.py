@@ -16,9 +16,10 @@ PACKAGES = ("ltca", "fem", "validation")
 FLOORS = (
     "ltca.errors", "ltca.frozen_arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
     "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.page",
+    "ltca.export",
     "ltca.testing", "ltca",
     "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
-    "fem.referee", "fem.pictures", "fem.testing", "fem",
+    "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
@@ -29,6 +30,7 @@ FEM_MAY_IMPORT = (
     "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
     "ltca.page.study_page", "ltca.page.tables", "ltca.page.verdict_tables",
     "ltca.figures.house_style",
+    "ltca.export",
 )  # fmt: skip
 LIGHT_COMMANDS = {
     "contextlib",

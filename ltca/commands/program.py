@@ -38,6 +38,7 @@ ORDER = (
     "fem",
     "derive",
     "validate",
+    "export",
 )
 USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)

@@ -8,6 +8,7 @@ arguments           Arguments that commands share: the same names, metavars, uni
 toml_text           TOML files as plain tables: whatever the file holds, it is read or refused in one sentence
 drive_file          Reading drive files: TOML to validated drives, one for each case, with every mistake reported at
                     once
+measured            Files of measured flanks, as deviations
 physical_checks     Physical checks of a drive: what its numbers, each fine on its own, cannot be together
 deviation_checks    Physical checks of deviations, counts and sizes, and of the flank they leave: it neither folds nor
                     traps its pins

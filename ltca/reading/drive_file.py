@@ -19,6 +19,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.contradictions import explain_contradictions, find_cause
+from ltca.reading.measured.tables import MeasuredFiles, Named, without_files
 from ltca.reading.physical_checks import find_contradictions
 from ltca.reading.toml_text import parse_toml, read_text
 
@@ -136,9 +137,10 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     scatter, bounds = table.pop("tolerances", {}), table.pop("limits", {})
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
+    measured = MeasuredFiles(Path(source).parent)
     # Mistakes of the common part come back in every case: the base is validated alone, first.
     base_problems: list[str] = []
-    base = _validate(table, base_problems)
+    base = _validate(table, base_problems, measured)
     tolerances = parse_tolerances(scatter, problems, base)
     named = _named_cases(cases, problems)
     limits = parse_limits(bounds, problems)
@@ -148,9 +150,11 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     drives: dict[str, Drive] = {}
     mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
-        # Parts that a case leaves alone are valid already.
+        # Parts that a case leaves alone are valid already; a measured flank deviates from that of each case for itself.
         changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
-        drive = _validate({**_parts(base), **changed}, mistakes.setdefault(name, []))
+        if without_files(table)[1]:
+            changed.setdefault("disc", table["disc"])
+        drive = _validate({**_parts(base), **changed}, mistakes.setdefault(name, []), measured)
         if drive is not None:
             drives[name] = drive
     problems += _once(mistakes, {})
@@ -280,13 +284,21 @@ def build_drive(table: dict[str, Any]) -> Drive:
     return drive
 
 
-def _validate(table: dict[str, Any], problems: list[str]) -> Drive | None:
+def _validate(table: dict[str, Any], problems: list[str], measured: MeasuredFiles | None = None) -> Drive | None:
     unnamed: list[str] = []
     table = with_named_materials(table, unnamed)
     problems += unnamed
+    named: Named = {}
+    if measured is not None:
+        table, named = without_files(table)
     try:
         drive = _ADAPTER.validate_python(table)
     except ValidationError as error:
         problems += describe_mistakes(error.errors())
         return None
+    if named and not unnamed and measured is not None:
+        wrong: list[str] = []
+        drive = measured.with_measured(drive, named, wrong)
+        problems += wrong
+        return None if wrong else drive
     return None if unnamed else drive

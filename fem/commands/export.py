@@ -1,0 +1,153 @@
+"""``cyclo export``: discs, pins and their assembly for CAD, printers, grinders and measuring machines."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ltca.reading.arguments import (
+    add_case_argument,
+    add_drive_argument,
+    add_out_argument,
+    count_argument,
+    default_folder,
+    quantity_argument,
+)
+
+if TYPE_CHECKING:
+    from ltca.export.parts import Part
+
+SUMMARY = "write parts of a drive for CAD, printers and measuring machines: DXF, STEP, STL or CSV"
+FORMATS = ("dxf", "step", "stl", "csv")
+PARTS = ("disc", "pin-wheel", "pin-shaft", "assembly")
+SOLID = ("step", "stl")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_drive_argument(parser)
+    add_case_argument(parser, "case; default the first", several=False)
+    add_out_argument(parser, "export", "folder for the files; what earlier exports wrote there stays")
+    parser.add_argument("--format", choices=FORMATS, required=True, help="of the files")
+    parser.add_argument("--part", choices=PARTS, default="disc", help="what to write; default disc")
+    parser.add_argument(
+        "--disc",
+        metavar="K",
+        type=count_argument("--disc", 0, 9),
+        help="of several discs this one, counted from 0; default all, a file each",
+    )
+    parser.add_argument(
+        "--compensate",
+        metavar="C",
+        type=quantity_argument("--compensate", "mm", ge=-1.0, le=1.0),
+        default=0.0,
+        help="for printers: move every face into the material by so much, mm: outlines shrink, bores and holes grow",
+    )
+    parser.add_argument(
+        "--chord",
+        metavar="H",
+        type=quantity_argument("--chord", "mm", gt=1e-6, le=1.0),
+        help="of STL: largest distance of a triangle from the exact surface, mm; default 0.001",
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write the files of a part.
+
+    Returns
+    -------
+    int
+        0.
+
+    Raises
+    ------
+    CycloError
+        For wrong input, what cannot be exported, or missing libraries.
+    """
+    from glob import escape
+
+    from ltca.errors import DriveError
+    from ltca.export.parts import make_parts
+    from ltca.output.run_folder import claimed_folder
+    from ltca.reading.drive_file import load_drive
+
+    if arguments.chord is not None and arguments.format != "stl":
+        raise DriveError([f"--chord {arguments.chord:g} mm: is for --format stl, {arguments.format} is exact"])
+    file = load_drive(arguments.drive)
+    case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    _require_libraries(arguments.format)
+    parts = make_parts(drive, case, arguments.part, disc=arguments.disc, compensation=arguments.compensate)
+    for part in parts:
+        _require_straight(part, arguments.format)
+    out = arguments.out or default_folder(file.name, "export")
+    writes = [escape(path.name) for part in parts for path in _paths(part, arguments.format, out)]
+    told = ", lengths at 20 °C" if drive.temperature is not None else ""
+    print(f"{file.name} {case}, {arguments.part}{told}", flush=True)
+    with claimed_folder(out, "export", writes=writes, adding=True):
+        for part in parts:
+            _write(part, arguments, out)
+    return 0
+
+
+def _require_libraries(kind: str) -> None:
+    """Fail before anything is made."""
+    from fem.mesh.gmsh_session import load_gmsh
+    from ltca.export.drawing import load_ezdxf
+
+    if kind == "dxf":
+        load_ezdxf()
+    elif kind in SOLID:
+        load_gmsh()
+
+
+def _require_straight(part: Part, kind: str) -> None:
+    """Refuse what straight bodies cannot say."""
+    from ltca.errors import DriveError
+
+    if kind in SOLID and part.profiled:
+        raise DriveError(
+            [
+                f"{field}: crown and relief along the length are not written to {kind.upper()}, whose pins and rollers are "
+                "straight; --format dxf and csv hold the section at mid-length, --part disc has none of them"
+                for field in part.profiled
+            ]
+        )
+
+
+def _paths(part: Part, kind: str, out: Path) -> list[Path]:
+    from ltca.export.point_tables import table_paths
+
+    if kind == "csv":
+        flanks, circles = table_paths(part, out)
+        return [*flanks, circles]
+    return [out / f"{part.stem}.{kind}"]
+
+
+def _write(part: Part, arguments: argparse.Namespace, out: Path) -> None:
+    """Write the files of one part, and say what is in them."""
+    kind, paths = arguments.format, _paths(part, arguments.format, out)
+    for remark in part.remarks[2:]:
+        print(f"  {part.name}: {remark}", flush=True)
+    if kind == "dxf":
+        from ltca.export.drawing import write_drawing
+
+        write_drawing(part, paths[0])
+    elif kind == "step":
+        from fem.export.solids import write_solids
+
+        write_solids(part, paths[0])
+    elif kind == "csv":
+        from ltca.export.point_tables import write_tables
+
+        write_tables(part, out)
+    else:
+        from fem.export.facets import DEFAULT_CHORD, write_facets
+
+        chord = DEFAULT_CHORD if arguments.chord is None else arguments.chord
+        count = write_facets(part, paths[0], chord)
+        print(f"  {count:,} triangles within {chord:g} mm of the exact surfaces")
+        if part.walls:
+            print(f"  {len(part.walls)} slots bound no body of the drive: they are in DXF, STEP and CSV, not in STL")
+    for path in paths:
+        print(f"  written: {path}")

@@ -1,0 +1,186 @@
+"""STL files of parts: closed surfaces of triangles whose corners lie on the exact curves, within a stated chord.
+
+Sections are divided here and filled by gmsh without any node inside; sides are two triangles for each edge. So every edge
+belongs to two triangles, and the surface closes to the last bit.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.errors import MeshError
+from fem.mesh.gmsh_session import gmsh_model
+from ltca.export.flank_outline import FlankSpline
+from ltca.export.parts import Body, Circle, Part
+from ltca.output.files import whole_file
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+IntArray = NDArray[np.int64]
+
+DEFAULT_CHORD = 1e-3
+"""mm."""
+LEAST_AROUND = 360
+"""Edges of a circle at the least: its area is then 5e-5 off, however small it is."""
+LEAST_SHARE = 1.0 / 40
+"""Of a lobe, longest edge of a flank by its length."""
+NO_STEP = 0.381966
+"""Of the step between corners of a circle, where the first one stands: bodies that touch (rollers and races) share no corner, or
+readers would take them for one that is not closed."""
+INITIAL_MESH_ONLY = 3
+TRIANGLE, LINE = 2, 1
+HEADER = 80
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
+    """Write a part as a binary STL file in mm and return how many triangles it has.
+
+    Parameters
+    ----------
+    part : Part
+        From `ltca.export.parts.make_parts`, of straight bodies; its walls are no bodies and left out.
+    path : Path
+        The file.
+    chord : float
+        Largest distance of a triangle from the exact surface, mm.
+
+    Raises
+    ------
+    MeshError
+        When gmsh cannot be loaded or fill a section.
+    FaultError
+        When the file cannot be written.
+    """
+    with gmsh_model(part.name) as gmsh:
+        corners = [body_facets(gmsh, body, chord) for body in part.bodies]
+    every = np.concatenate(corners)
+    facets = np.zeros(len(every), dtype=_FACET)
+    facets["corners"] = every
+    cross = np.cross(every[:, 1] - every[:, 0], every[:, 2] - every[:, 0])
+    facets["normal"] = cross / np.linalg.norm(cross, axis=1, keepdims=True)
+    # "solid" at the start would make readers take it for text.
+    told = f"cyclo {part.title}, mm, chord {chord:g} mm".encode("ascii", "replace")[:HEADER].ljust(HEADER)
+    with whole_file(path) as file:
+        file.write_bytes(told + np.uint32(len(facets)).astype("<u4").tobytes() + facets.tobytes())
+    return len(facets)
+
+
+def body_facets(gmsh: ModuleType, body: Body, chord: float) -> FloatArray:
+    """Return the triangles of a body, corners counter-clockwise seen from outside, shape (n, 3, 3).
+
+    Parameters
+    ----------
+    gmsh : module
+        With an open model.
+    body : Body
+        The body.
+    chord : float
+        mm.
+    """
+    loops = [divide(body.outer, chord), *(divide(circle, chord) for circle in body.inner)]
+    # What the file can hold is 32 bits: rounded before, so that corners of neighbours are equal.
+    loops = [loop.astype(np.complex64).astype(complex) for loop in loops]
+    points = np.concatenate(loops)
+    triangles = _fill_round(body, loops)
+    if triangles is None:
+        triangles = _fill(gmsh, body.name, loops)
+    top = np.dstack([points.real[triangles], points.imag[triangles], np.full(triangles.shape, body.top)])
+    bottom = top[:, ::-1].copy()
+    bottom[..., 2] = body.bottom
+    sides = [_sides(loop, body.bottom, body.top, inside=place > 0) for place, loop in enumerate(loops)]
+    return np.concatenate([top, bottom, *sides])
+
+
+def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
+    """Return corners on a closed curve, counter-clockwise, whose edges are no further from it than a chord, mm."""
+    if isinstance(curve, Circle):
+        half = np.arccos(max(1.0 - chord / curve.radius, 0.0))
+        count = max(LEAST_AROUND, int(np.ceil(np.pi / half)))
+        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + NO_STEP) / count))
+    # On a fine table: the chord of an edge of length s is κ s²/8.
+    flank = curve.flank
+    fine = np.linspace(0.0, 2.0 * np.pi, 16 * curve.parameter.size + 1)
+    points = flank.points(fine)
+    lengths = np.abs(np.diff(points))
+    middle = 0.5 * (fine[:-1] + fine[1:])
+    # A tenth less than allowed, for edges over which the curvature changes.
+    edges = np.sqrt(0.9 * chord * 8.0 / np.maximum(np.abs(flank.curvature(middle)), 1e-12))
+    edges = np.minimum(edges, LEAST_SHARE * lengths.sum() / flank.lobes)
+    needed = np.concatenate([[0.0], np.cumsum(lengths / edges)])
+    count = int(np.ceil(needed[-1]))
+    parameter = np.interp(np.arange(count) * needed[-1] / count, needed, fine)
+    return np.asarray(flank.points(parameter) + curve.centre)
+
+
+def _fill_round(body: Body, loops: list[ComplexArray]) -> IntArray | None:
+    """Triangles of a circle or of a ring whose circles have equally many corners; None of other sections."""
+    count = loops[0].size
+    here = np.arange(count)
+    if isinstance(body.outer, FlankSpline) or len(loops) > 2 or any(loop.size != count for loop in loops):
+        return None
+    if len(loops) == 1:
+        return np.column_stack([np.zeros(count - 2, dtype=np.int64), here[1:-1], here[2:]])
+    there = np.roll(here, -1)
+    return np.concatenate(
+        [np.column_stack([here, there, count + there]), np.column_stack([here, count + there, count + here])]
+    )
+
+
+def _fill(gmsh: ModuleType, name: str, loops: list[ComplexArray]) -> IntArray:
+    """Triangles of a section, counter-clockwise, by the numbers of its corners."""
+    gmsh.model.add(f"{name} section")
+    geometry = gmsh.model.geo
+    first, outlines = 1, []
+    for loop in loops:
+        tags = [geometry.addPoint(point.real, point.imag, 0.0) for point in loop.tolist()]
+        lines = [geometry.addLine(here, there) for here, there in zip(tags, [*tags[1:], tags[0]], strict=True)]
+        for line in lines:
+            geometry.mesh.setTransfiniteCurve(line, 2)
+        outlines.append(geometry.addCurveLoop(lines))
+        first += len(loop)
+    geometry.addPlaneSurface(outlines)
+    geometry.synchronize()
+    gmsh.option.setNumber("Mesh.Algorithm", INITIAL_MESH_ONLY)
+    gmsh.option.setNumber("Mesh.Renumber", 0)
+    try:
+        gmsh.model.mesh.generate(2)
+    except Exception as error:  # gmsh raises nothing more specific
+        raise MeshError(f"gmsh cannot fill the section of {name}: {error}") from error
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, corners = gmsh.model.mesh.getElementsByType(TRIANGLE)
+    gmsh.model.remove()
+    points = np.concatenate(loops)
+    places = np.asarray(coordinates).reshape(-1, 3)
+    number = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    number[np.asarray(tags, dtype=np.int64)] = _numbers_of(places[:, 0] + 1j * places[:, 1], points)
+    triangles = number[np.asarray(corners, dtype=np.int64)].reshape(-1, 3)
+    # A polygon of n corners with h holes has n + 2h − 2 triangles when no node lies inside.
+    if len(triangles) != len(points) + 2 * (len(loops) - 1) - 2 or triangles.min() < 0:
+        raise MeshError(f"gmsh filled the section of {name} with {len(triangles)} triangles of {len(points)} corners")
+    a, b, c = points[triangles.T]
+    clockwise = ((b - a).conjugate() * (c - a)).imag < 0.0
+    triangles[clockwise] = triangles[clockwise, ::-1]
+    return triangles
+
+
+def _numbers_of(found: ComplexArray, points: ComplexArray) -> IntArray:
+    """Which of the points stand where nodes were found."""
+    known = {point: number for number, point in enumerate(points.tolist())}
+    return np.array([known.get(place, -1) for place in found.tolist()], dtype=np.int64)
+
+
+def _sides(loop: ComplexArray, bottom: float, top: float, *, inside: bool) -> FloatArray:
+    """Two triangles for each edge of a counter-clockwise loop, looking out of it, or into it where it is a hole."""
+    here, there = loop, np.roll(loop, -1)
+
+    def at(points: ComplexArray, height: float) -> FloatArray:
+        return np.column_stack([points.real, points.imag, np.full(points.size, height)])
+
+    low, high = (at(here, bottom), at(there, bottom)), (at(here, top), at(there, top))
+    found = np.concatenate([np.stack([low[0], low[1], high[1]], axis=1), np.stack([low[0], high[1], high[0]], axis=1)])
+    return found[:, ::-1] if inside else found

@@ -1,0 +1,448 @@
+"""Which bodies a part has, in which frame, and how they are moved for a printer.
+
+A disc is written in its own frame: centre of its bore (of several, of the disc) at the origin, hole 0 on +x, its lower face at
+z = 0. The root θ = 0 of its flank would lie on +x, too; the phase ζ of the disc turns the flank by −Δz ζ/z_C against bores and
+holes, as it is made. Pins of the wheel stand about the wheel's axis and those of the shaft about the shaft's, number 0 on +x.
+The assembly is that of φ_C = 0 in the frame of the pin shaft: each disc on its eccentrics, z as in ``disc.planes``. What a
+drive does not say has no body: housing, flanges, crankshafts, cages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.errors import DriveError
+from ltca.export.flank_outline import FlankSpline, MadeFlank, follow_flank
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
+
+PARTS = ("disc", "pin-wheel", "pin-shaft", "assembly")
+"""What can be exported."""
+OWN_FRAME = {
+    "disc": "origin at the centre of the bore, hole 0 on +x, lower face at z = 0",
+    "cranked disc": "origin at the centre of the disc, about which the bores stand; lower face at z = 0",
+    "pin-wheel": "origin on the axis of the wheel, pin 0 on +x, lower ends at z = 0",
+    "pin-shaft": "origin on the axis of the pin shaft, pin 0 on +x, lower ends at z = 0",
+    "assembly": "frame of the pin shaft at crank angle 0, z of disc.planes",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Circle:
+    """A circle of a part.
+
+    Attributes
+    ----------
+    feature : str
+        What it is: ``bore``, ``hole``, ``pin``, ``slot``, …; drawings have a layer for each.
+    name : str
+        With its number, ``hole 3``.
+    radius : float
+        mm.
+    centre : complex
+        mm.
+    """
+
+    feature: str
+    name: str
+    radius: float
+    centre: complex = 0j
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """A straight body: a plane outline with holes between two heights.
+
+    Attributes
+    ----------
+    name : str
+        Of the product.
+    outer : FlankSpline or Circle
+        Outline.
+    inner : tuple of Circle
+        Holes.
+    of : str
+        Disc of an assembly that it belongs to, ``disc 1``; empty for others.
+    bottom, top : float
+        z of its faces, mm.
+    """
+
+    name: str
+    outer: FlankSpline | Circle
+    inner: tuple[Circle, ...] = ()
+    of: str = ""
+    bottom: float
+    top: float
+
+    @property
+    def section(self) -> float:
+        """Area of the exact section, mm²."""
+        outside = self.outer.flank.area() if isinstance(self.outer, FlankSpline) else np.pi * self.outer.radius**2
+        return float(outside - np.pi * sum(circle.radius**2 for circle in self.inner))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wall:
+    """A round wall of a member of which the drive says nothing more: a slot of the housing.
+
+    Attributes
+    ----------
+    circle : Circle
+        Its section.
+    bottom, top : float
+        z of its ends, mm.
+    """
+
+    circle: Circle
+    bottom: float
+    top: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """What one file holds.
+
+    Attributes
+    ----------
+    name : str
+        ``disc``, ``disc_1``, ``pin-wheel``, ``pin-shaft``, ``assembly``.
+    drive, case : str
+        Whose.
+    frame : str
+        Where its origin is.
+    compensation : float
+        By how much every face is moved into the material, mm.
+    bodies : tuple of Body
+        Solids.
+    walls : tuple of Wall
+        What is no solid.
+    profiled : tuple of str
+        Fields of profiles along the length that its straight bodies do not have.
+    """
+
+    name: str
+    drive: str
+    case: str
+    frame: str
+    compensation: float = 0.0
+    bodies: tuple[Body, ...]
+    walls: tuple[Wall, ...] = ()
+    profiled: tuple[str, ...] = ()
+
+    @property
+    def title(self) -> str:
+        """Drive, case, part and compensation in one line."""
+        moved = f", compensated {self.compensation:g} mm" if self.compensation else ""
+        return f"{self.drive} {self.case} {self.name.replace('_', ' ')}{moved}"
+
+    @property
+    def stem(self) -> str:
+        """Of the names of its files."""
+        moved = f"_compensated_{self.compensation:g}mm" if self.compensation else ""
+        head = f"{self.drive}_{self.case}"
+        # Names of drives and cases have up to 120 bytes each, those of files 255.
+        return f"{head if len(head.encode()) < 180 else self.case}_{self.name}{moved}"
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the file should know, line by line."""
+        lines = (f"cyclo {self.title}", "lengths in mm, at 20 °C", f"frame: {self.frame}")
+        if not self.compensation:
+            return lines
+        into = self.compensation > 0.0
+        whither, told = ("into", "shrink, bores and holes grow") if into else ("out of", "grow, bores and holes shrink")
+        moved = f"every face is moved {whither} the material by {abs(self.compensation):g} mm"
+        return (*lines, f"compensation {self.compensation:g} mm: {moved} (outlines {told} in radius)")
+
+
+def make_parts(
+    drive: Drive, case: str, part: str = "disc", *, disc: int | None = None, compensation: float = 0.0
+) -> tuple[Part, ...]:
+    """Return what the files of a part hold: one for each disc, one for any other part.
+
+    Parameters
+    ----------
+    drive : Drive
+        In one case; its lengths are those at 20 °C, temperatures change nothing.
+    case : str
+        Its name.
+    part : str
+        One of `PARTS`.
+    disc : int, optional
+        Of the discs this one alone.
+    compensation : float
+        By how much every face is moved into the material, mm; negative ones out of it.
+
+    Raises
+    ------
+    DriveError
+        When the drive has no such part, or nothing would be left of it.
+    """
+    drive = replace(drive, temperature=None)
+    if disc is not None:
+        _require_disc(drive, part, disc)
+    makers = {"disc": _discs, "pin-wheel": _pin_wheel, "pin-shaft": _pin_shaft, "assembly": _assembly}
+    if part == "assembly" and compensation:
+        raise DriveError(["--compensate: is for parts that are made one by one, not for --part assembly"])
+    if part == "disc":
+        numbers = range(drive.disc.number_of_discs) if disc is None else [disc]
+        return tuple(_discs(drive, case, number, compensation) for number in numbers)
+    return (makers[part](drive, case, 0, compensation),)
+
+
+def _require_disc(drive: Drive, part: str, disc: int) -> None:
+    if part != "disc":
+        raise DriveError([f"--disc {disc}: is for --part disc, not for {part}"])
+    count = drive.disc.number_of_discs
+    if disc >= count:
+        raise DriveError([f"--disc {disc}: there is no such disc; disc.number_of_discs = {count}, counted from 0"])
+
+
+def _discs(drive: Drive, case: str, number: int, compensation: float) -> Part:
+    several = drive.disc.number_of_discs > 1
+    body = _disc_body(single_discs(drive)[number], "disc", compensation)
+    frame = OWN_FRAME["disc" if drive.crank.number == 1 else "cranked disc"]
+    phase = drive.disc.disc_phases[number]
+    if phase:
+        turn = -drive.tooth_number_difference * phase / drive.disc.number_of_teeth
+        frame += f"; flank turned by {turn:.9g} rad against bores and holes (phase {phase:.9g} rad)"
+    name = f"disc_{number}" if several else "disc"
+    return Part(
+        name=name,
+        drive=drive.name,
+        case=case,
+        frame=frame,
+        compensation=compensation,
+        bodies=(replace(body, name=name.replace("_", " ")),),
+    )
+
+
+def _disc_body(single: Drive, name: str, compensation: float) -> Body:
+    """The disc of a drive of one disc, its lower face at z = 0."""
+    placement = Placement.of_drive(single)
+    flank = MadeFlank(profile=FlankProfile.of_drive(single), inward=compensation)
+    _require_flank(flank)
+    bores = placement.bore_centres.tolist()
+    inner = [
+        Circle(feature="bore", name=_numbered("bore", c, len(bores)), radius=single.bore_radius, centre=centre)
+        for c, centre in enumerate(bores)
+    ]
+    holes = zip(placement.hole_centres.tolist(), placement.hole_radii.tolist(), strict=True)
+    inner += [
+        Circle(feature="hole", name=f"hole {k}", radius=radius, centre=centre)
+        for k, (centre, radius) in enumerate(holes)
+    ]
+    grown = tuple(_grown(circle, compensation) for circle in inner)
+    spline = follow_flank(flank)
+    _require_walls(spline, grown, compensation)
+    return Body(name=name, outer=spline, inner=grown, bottom=0.0, top=single.disc.thickness)
+
+
+def _numbered(name: str, number: int, count: int) -> str:
+    return name if count == 1 else f"{name} {number}"
+
+
+def _grown(circle: Circle, by: float) -> Circle:
+    """A circle with another radius; what is left of it must be a circle."""
+    if circle.radius + by <= 0.0:
+        raise DriveError(
+            [f"--compensate {abs(by):g} mm: must be less than {circle.radius:g} mm, the radius of {circle.name}"]
+        )
+    return replace(circle, radius=circle.radius + by) if by else circle
+
+
+def _require_flank(flank: MadeFlank) -> None:
+    """A flank that is moved by more than its sharpest radius would fold."""
+    if not flank.inward:
+        return
+    # By four times the points of a spline; by half of what would fold it the flank is no use to anybody.
+    curvature = flank.profile.curvature(np.linspace(0.0, 2.0 * np.pi, 4 * flank.start().size, endpoint=False))
+    sharpest = float(np.max(curvature if flank.inward > 0.0 else -curvature))
+    if abs(flank.inward) * sharpest >= 0.5:
+        told = "convex" if flank.inward > 0.0 else "concave"
+        raise DriveError(
+            [
+                f"--compensate {flank.inward:g} mm: must be less than {0.5 / sharpest:.4g} mm in size, half of the smallest "
+                f"{told} radius of the flank"
+            ]
+        )
+
+
+def _require_walls(spline: FlankSpline, circles: Sequence[Circle], compensation: float) -> None:
+    """Bores and holes that cut into each other or through the flank leave no part."""
+    walls = [
+        (float(np.min(np.abs(spline.points - circle.centre))) - circle.radius, f"{circle.name} and the flank")
+        for circle in circles
+    ]
+    walls += [
+        (abs(one.centre - other.centre) - one.radius - other.radius, f"{other.name} and {one.name}")
+        for place, one in enumerate(circles)
+        for other in circles[:place]
+    ]
+    narrowest, between = min(walls)
+    if narrowest <= 0.0:
+        why = f"--compensate {compensation:g} mm" if compensation else "--part disc"
+        raise DriveError([f"{why}: {between} cut into each other by {-narrowest:.4g} mm, no disc is left"])
+
+
+def _stack(drive: Drive) -> tuple[float, float]:
+    """From the lowest to the highest face of the discs, on the axis of their planes, mm."""
+    half = 0.5 * drive.disc.thickness
+    return min(drive.disc.disc_planes) - half, max(drive.disc.disc_planes) + half
+
+
+def _pins_of_wheel(drive: Drive, place: Placement) -> tuple[list[Body], list[Wall]]:
+    """Pins, sleeves and slots, on the axis of the discs' planes."""
+    wheel, stack = drive.pin_wheel, _stack(drive)
+    seat = wheel.seat
+    low, high = stack if wheel.beam is None else (-0.5 * wheel.beam.span, 0.5 * wheel.beam.span)
+    bodies, walls = [], []
+    for number, (centre, radius) in enumerate(
+        zip(place.wheel_pin_centres.tolist(), place.wheel_pin_radii.tolist(), strict=True)
+    ):
+        held = seat.pin_radius if seat.kind == "sleeve" else radius
+        pin = Circle(feature="pin", name=f"pin {number}", radius=held or radius, centre=centre)
+        bodies.append(Body(name=pin.name, outer=pin, bottom=low, top=high))
+        if seat.kind == "sleeve":
+            bodies.append(_sleeve("sleeve", number, radius, seat.bore_radius or 0.0, centre, stack))
+        if seat.kind == "slot":
+            slot = Circle(feature="slot", name=f"slot {number}", radius=seat.radius or 0.0, centre=centre)
+            walls.append(Wall(circle=slot, bottom=low, top=high))
+    return bodies, walls
+
+
+def _pins_of_shaft(drive: Drive, place: Placement) -> list[Body]:
+    """Pins and sleeves of the pin shaft, on the axis of the discs' planes."""
+    shaft, stack = drive.pin_shaft, _stack(drive)
+    if shaft is None:
+        return []
+    low, high = stack if shaft.beam is None else (-0.5 * shaft.beam.span, 0.5 * shaft.beam.span)
+    bodies = []
+    for number, (centre, radius) in enumerate(
+        zip(place.shaft_pin_centres.tolist(), place.shaft_pin_radii.tolist(), strict=True)
+    ):
+        sleeved = shaft.seat.kind == "sleeve"
+        held = shaft.seat.pin_radius if sleeved else radius
+        pin = Circle(feature="shaft-pin", name=f"shaft pin {number}", radius=held or radius, centre=centre)
+        bodies.append(Body(name=pin.name, outer=pin, bottom=low, top=high))
+        if sleeved:
+            bore = shaft.seat.bore_radius or 0.0
+            bodies.append(_sleeve("shaft-sleeve", number, radius, bore, centre, stack))
+    return bodies
+
+
+def _sleeve(feature: str, number: int, radius: float, bore: float, centre: complex, stack: tuple[float, float]) -> Body:
+    name = f"{feature.replace('-', ' ')} {number}"
+    return Body(
+        name=name,
+        outer=Circle(feature=feature, name=name, radius=radius, centre=centre),
+        inner=(Circle(feature=f"{feature}-bore", name=f"bore of {name}", radius=bore, centre=centre),),
+        bottom=stack[0],
+        top=stack[1],
+    )
+
+
+def _compensated(body: Body, by: float, lift: float) -> Body:
+    """A round body for a printer, moved along z."""
+    assert isinstance(body.outer, Circle)
+    outer, inner = _grown(body.outer, -by), tuple(_grown(circle, by) for circle in body.inner)
+    if inner and inner[0].radius >= outer.radius:
+        raise DriveError(
+            [f"--compensate {by:g} mm: nothing is left of {body.name}, its wall is thinner than twice that"]
+        )
+    return replace(body, outer=outer, inner=inner, bottom=body.bottom + lift, top=body.top + lift)
+
+
+def _pin_wheel(drive: Drive, case: str, _: int, compensation: float) -> Part:
+    bodies, walls = _pins_of_wheel(drive, Placement.of_drive(single_discs(drive)[0]))
+    lift = -min(body.bottom for body in bodies)
+    return Part(
+        name="pin-wheel",
+        drive=drive.name,
+        case=case,
+        frame=OWN_FRAME["pin-wheel"],
+        compensation=compensation,
+        bodies=tuple(_compensated(body, compensation, lift) for body in bodies),
+        walls=tuple(
+            Wall(circle=_grown(wall.circle, compensation), bottom=wall.bottom + lift, top=wall.top + lift)
+            for wall in walls
+        ),
+        profiled=_profiled(drive, rollers=False),
+    )
+
+
+def _pin_shaft(drive: Drive, case: str, _: int, compensation: float) -> Part:
+    bodies = _pins_of_shaft(drive, Placement.of_drive(single_discs(drive)[0]))
+    if not bodies:
+        raise DriveError(["--part pin-shaft: there is no pin_shaft in this drive"])
+    lift = -min(body.bottom for body in bodies)
+    return Part(
+        name="pin-shaft",
+        drive=drive.name,
+        case=case,
+        frame=OWN_FRAME["pin-shaft"],
+        compensation=compensation,
+        bodies=tuple(_compensated(body, compensation, lift) for body in bodies),
+    )
+
+
+def _profiled(drive: Drive, *, rollers: bool) -> tuple[str, ...]:
+    """Fields of profiles along the length, which no straight body has."""
+    fields = [] if drive.pin_wheel.pin_profile.is_cylinder else ["pin_wheel.pin_profile"]
+    return (*fields, *(["crank_bearing.roller_profile"] if rollers and _are_profiled(drive) else []))
+
+
+def _are_profiled(drive: Drive) -> bool:
+    return not drive.crank_bearing.roller_profile.is_cylinder
+
+
+def _assembly(drive: Drive, case: str, _: int, __: float) -> Part:
+    singles = single_discs(drive)
+    places = [Placement.of_drive(single) for single in singles]
+    wheel, walls = _pins_of_wheel(drive, places[0])
+    axis = complex(places[0].wheel_axis)
+    bodies = [_moved(body, axis) for body in wheel] + _pins_of_shaft(drive, places[0])
+    for number, (single, place) in enumerate(zip(singles, places, strict=True)):
+        bodies += _disc_and_bearings(single, place, _numbered("disc", number, len(singles)))
+    return Part(
+        name="assembly",
+        drive=drive.name,
+        case=case,
+        frame=OWN_FRAME["assembly"],
+        bodies=tuple(bodies),
+        walls=tuple(replace(wall, circle=_shifted(wall.circle, axis)) for wall in walls),
+        profiled=_profiled(drive, rollers=True),
+    )
+
+
+def _disc_and_bearings(single: Drive, place: Placement, name: str) -> Iterator[Body]:
+    """A disc on its eccentrics at φ_C = 0, the rollers on their inner races."""
+    plane, bearing = single.disc.disc_planes[0], single.crank_bearing
+    start = np.zeros(1)
+    disc = _moved(_disc_body(single, name, 0.0), complex(place.race_centre(start)[0]))
+    yield replace(disc, of=name, bottom=plane - 0.5 * disc.top, top=plane + 0.5 * disc.top)
+    low, high = plane - 0.5 * bearing.roller_length, plane + 0.5 * bearing.roller_length
+    races = place.race_centres(start)[0]
+    for crank, centre in enumerate(races.tolist()):
+        of = _numbered(f"inner race of {name}", crank, len(races))
+        race = Circle(feature="inner-race", name=of, radius=bearing.inner_race_radius, centre=centre)
+        yield Body(name=of, outer=race, of=name, bottom=low, top=high)
+    radii = place.roller_radii
+    centres = races[place.roller_cranks] + (bearing.inner_race_radius + radii) * place.roller_rays(start)[0]
+    for number, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
+        roller = Circle(feature="roller", name=f"roller {number} of {name}", radius=radius, centre=centre)
+        yield Body(name=roller.name, outer=roller, of=name, bottom=low, top=high)
+
+
+def _shifted(circle: Circle, by: complex) -> Circle:
+    return replace(circle, centre=circle.centre + by)
+
+
+def _moved(body: Body, by: complex) -> Body:
+    outer = body.outer.placed(by) if isinstance(body.outer, FlankSpline) else _shifted(body.outer, by)
+    return replace(body, outer=outer, inner=tuple(_shifted(circle, by) for circle in body.inner))
