@@ -3,8 +3,9 @@
     python benchmarks/numbers.py v0.1.0            # against the tree as it is
     python benchmarks/numbers.py v0.1.0 v0.2.0
 
-Each version is installed apart, with what it depends on (``pip install --target``), and runs the drives that it ships and the other one reads; a line
-for every scalar of ``summary.json`` that moved by more than ``--beyond`` (a part of itself), as Markdown.
+Each version is installed apart, with what it depends on (``pip install --target``), and runs the drives that it ships and
+the other one reads; a line for every scalar of ``summary.json`` that moved by more than ``--beyond`` (a part of itself), as
+Markdown.
 """
 
 from __future__ import annotations
@@ -87,7 +88,9 @@ def main() -> None:
             for side, site in zip(("before", "after"), sites, strict=True):
                 shipped = site / "ltca" / "drives" / f"{drive}.toml"
                 found.append(
-                    summaries(site, shipped if shipped.exists() else own, arguments.positions, folder / f"{side}{number}")
+                    summaries(
+                        site, shipped if shipped.exists() else own, arguments.positions, folder / f"{side}{number}"
+                    )
                 )
             print(f"\n#### `{drive}`\n")
             if found[0] is None or found[1] is None:

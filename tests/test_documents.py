@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
-WRITTEN = ("reference/generated/", "gallery/")  # when the pages are built (docs/generated_pages.py, sphinx-gallery)
+WRITTEN = ("generated/", "gallery/")  # when the pages are built (docs/generated_pages.py, sphinx-gallery)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)|src=\"([^\"]+)\"")
 START, END = "# sphinx_gallery_start_ignore", "# sphinx_gallery_end_ignore"
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from ltca.export.parts import Part
 
 SUMMARY = "write parts of a drive for CAD, printers and measuring machines: DXF, STEP, STL or CSV"
+EXAMPLES = (
+    ("cyclo export my.toml --format step", "the discs as solids, in their own frame"),
+    ("cyclo export my.toml --format dxf --part assembly", "everything at φ_C = 0, a layer a part"),
+    ("cyclo export my.toml --format stl --compensate 0.1", "for a printer whose walls grow by 0.1 mm"),
+)
 FORMATS = ("dxf", "step", "stl", "csv")
 PARTS = ("disc", "pin-wheel", "pin-shaft", "assembly")
 SOLID = ("step", "stl")

@@ -158,13 +158,8 @@ def execute(arguments: argparse.Namespace) -> int:
     require_folder(out)
     from ltca.analysis.memory_need import require_room_for
 
-    limits = Limits(
-        pressure=arguments.pressure_limit,
-        load_rating=arguments.load_rating,
-        speed=arguments.speed,
-        lost_motion=arguments.lost_motion,
-    )
-    engine = compliance_of(arguments)
+    asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
+    limits, engine = Limits(*asked), compliance_of(arguments)
     for drive in cases.values():
         if drive.duty and limits.speed is not None:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])

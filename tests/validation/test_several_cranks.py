@@ -17,6 +17,7 @@ from ltca.compliance.stress_coefficients import StressCoefficients
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.geometry.boundary_stations import Boundary
+from ltca.page.scene import drive_scene
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from validation.compare.compared_positions import _AnsweredDisc, _station_distances
@@ -40,7 +41,7 @@ from validation.levels.flexible_disc import (
 from validation.levels.model_laws import _uncoupled
 from validation.levels.positions import _body_rows, _contact_rows, _faint
 from validation.report.page import write_report
-from validation.report.scene import drive_scene, position_scene
+from validation.report.scene import position_scene
 from validation.rows import failed_rows
 from validation.study import plan_study
 
