@@ -31,6 +31,7 @@ ORDER = (
     "tolerance",
     "sweep",
     "optimise",
+    "design",
     "mesh",
     "fem",
     "derive",

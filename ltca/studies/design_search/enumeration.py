@@ -72,6 +72,7 @@ def enumerate_candidates(
     demands: Sequence[Demand],
     relaxed: Collection[str] = (),
     most: int = 6,
+    torque: float | None = None,
 ) -> Enumeration:
     """Return the best candidates by closed forms.
 
@@ -85,13 +86,15 @@ def enumerate_candidates(
         Names of demands that may be broken.
     most : int
         Candidates wanted.
+    torque : float, optional
+        On the output, N·mm; that asked for by default.
     """
     setting = Setting.of(requirements)
     found: list[Sizes] = []
     scores: list[FloatArray] = []
     broken: list[FloatArray] = []
     combinations = 0
-    for flank, values, looked in _flanks(requirements, setting, demands, relaxed):
+    for flank, values, looked in _flanks(requirements, setting, demands, relaxed, torque or requirements.asked.torque):
         combinations += looked
         for sizes, known in _inner(flank, values, requirements):
             combinations += sizes.count
@@ -187,7 +190,7 @@ def teeth(requirements: Requirements) -> list[tuple[int, float, int, int]]:
 
 
 def _flanks(
-    requirements: Requirements, setting: Setting, demands: Sequence[Demand], relaxed: Collection[str]
+    requirements: Requirements, setting: Setting, demands: Sequence[Demand], relaxed: Collection[str], torque: float
 ) -> Iterator[tuple[Sizes, dict[str, FloatArray], int]]:
     """Flanks with their pins that closed forms leave a chance, by number of discs and pins."""
     asked, shop, stock = requirements.asked, requirements.asked.shop, requirements.stock
@@ -212,7 +215,7 @@ def _flanks(
             sizes = Sizes(
                 discs=discs * ones, pins=pins * ones, stage=stage * ones, sun=sun * ones, planet=planet * ones,
                 eccentricity=e, pin_circle=circle, pin_radius=pin, thickness=t, bore=ones, roller_radius=ones,
-                roller_length=ones, rollers=ones, holes=ones, hole_circle=ones, hole_pin=ones, torque=asked.torque * ones,
+                roller_length=ones, rollers=ones, holes=ones, hole_circle=ones, hole_pin=ones, torque=torque * ones,
             )  # fmt: skip
             looked = sizes.count
             K1 = e * pins / np.maximum(circle, 1e-9)
@@ -234,7 +237,7 @@ def _different(
     """Of each pin circle and thickness the least pressed flanks of some eccentricities."""
     judged = [one for one in demands if one.quantity == "pin_pressure_mid"]
     each = margins(judged, values).min(axis=1) if judged else -np.log(values["pin_pressure_mid"])
-    if judged and not any(one.name in relaxed for one in judged) and "torque" not in relaxed:
+    if judged and not any(one.name in relaxed for one in judged):
         allowed = each >= -OTHER_SLACK
     else:
         allowed = np.ones(sizes.count, dtype=bool)
