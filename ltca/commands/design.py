@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from ltca.studies.design_search.refinement import Refined
     from ltca.studies.design_search.search import Found
 
-SUMMARY = "find drives for requirements: ratio, torque, room, life, backlash; or say which requirement stands in the way"
+SUMMARY = (
+    "find drives for requirements: ratio, torque, room, life, backlash; or say which requirement stands in the way"
+)
 BEST = 3
 NOTHING_FITS = 1
 
@@ -25,10 +27,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="requirement file (TOML): docs/design.md, examples/requirements",
     )  # fmt: skip
     parser.add_argument(
-        "--best", metavar="N", type=count_argument("--best", 1, 20), default=BEST, help=f"designs to write; default {BEST}"
+        "--best",
+        metavar="N",
+        type=count_argument("--best", 1, 20),
+        default=BEST,
+        help=f"designs to write; default {BEST}",
     )
     parser.add_argument(
-        "--workers", metavar="W", type=count_argument("--workers", 1, 1024), default=1, help="local processes; default 1"
+        "--workers",
+        metavar="W",
+        type=count_argument("--workers", 1, 1024),
+        default=1,
+        help="local processes; default 1",
     )
     parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
     add_out_argument(parser, "design")
@@ -115,8 +125,8 @@ def _write(found: Found, best: int, out: Path) -> None:
 def _print(found: Found, rows: list[list[str]], out: Path) -> None:
     asked = found.requirements.asked
     print(
-        f"{asked.name}, 1:{asked.ratio:g}, {asked.torque / 1000.0:g} N·m at {asked.speed:g} rpm: {found.combinations} combinations by "
-        f"closed forms, {found.solved} loaded drives"
+        f"{asked.name}, 1:{asked.ratio:g}, {asked.torque / 1000.0:g} N·m at {asked.speed:g} rpm: {found.combinations} "
+        f"combinations by closed forms, {found.solved} loaded drives"
     )
     if not found.designs:
         print("nothing fits. What stands in the way, each with all others held:")

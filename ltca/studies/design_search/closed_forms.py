@@ -195,7 +195,9 @@ def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     }
 
 
-def _shared(lever: FloatArray, gap: FloatArray, stiffness: FloatArray, torque: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _shared(
+    lever: FloatArray, gap: FloatArray, stiffness: FloatArray, torque: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Loads of the pins, and the stiffness of all of them in rotation."""
     closed = np.ones(lever.shape, dtype=bool)
     for _ in range(SWEEPS):
@@ -271,7 +273,7 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     found["bearing_load"], found["roller_load"] = most, roller
     found["roller_pressure_mid_outer"] = np.sqrt(line * setting.outer * (1.0 / sizes.roller_radius - 1.0 / bore))
     found["roller_pressure_mid_inner"] = np.sqrt(line * setting.inner * (1.0 / sizes.roller_radius + 1.0 / inner))
-    found |= _lives(sizes, setting, most, mean)
+    found |= lives_by_loads(sizes, setting, most, mean)
     seat = bearings * np.pi * setting.outer * sizes.roller_length / SLENDER * sizes.rollers / 8.0
     compliance = 1.0 / flank["wheel_stiffness"] + 1.0 / (seat * reach**2) + turning_compliance
     leverage = wheel_torque(sizes, setting) / sizes.torque
@@ -294,8 +296,18 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     return found
 
 
-def _lives(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:
-    """Life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive)."""
+def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:
+    """Return life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive).
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of the candidates.
+    setting : Setting
+        What they share.
+    most, mean : array, shape (candidates,)
+        Largest force of a crank bearing, and the mean one by the power 10/3, N.
+    """
     asked = setting.requirements.asked
     diameter, pitch = 2.0 * sizes.roller_radius, 2.0 * (sizes.bore - sizes.roller_radius)
     g = diameter / pitch
@@ -303,7 +315,9 @@ def _lives(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -
     shape = g ** (2.0 / 9.0) * (1.0 - g) ** (29.0 / 27.0) / (1.0 + g) ** 0.25
     # As lives are told by ISO/TS 16281: what allows for edges is taken out, where edges are reckoned.
     factor = 207.9 * shape * (1.0 + races**4.5) ** (-2.0 / 9.0)
-    rating = BEARING_STEEL * factor * sizes.roller_length ** (7.0 / 9.0) * sizes.rollers**0.75 * diameter ** (29.0 / 27.0)
+    rating = (
+        BEARING_STEEL * factor * sizes.roller_length ** (7.0 / 9.0) * sizes.rollers**0.75 * diameter ** (29.0 / 27.0)
+    )
     life = (rating / mean) ** (10.0 / 3.0)
     turns = asked.speed * sizes.pins
     return {

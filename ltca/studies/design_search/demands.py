@@ -205,7 +205,14 @@ def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
     values = [Value(quantity=name, value=1.0) for name in OF_MATERIALS if _is_of(name, requirements)]
     for check in judge(drive, values, written_limits(requirements), DEMANDED):
         if check.limit is not None and check.value.value is not None:
-            add(check.value.quantity, check.value.quantity, check.limit.sense, check.limit.value, "material", check.limit.source)
+            add(
+                check.value.quantity,
+                check.value.quantity,
+                check.limit.sense,
+                check.limit.value,
+                "material",
+                check.limit.source,
+            )
     least = {"pin_gap": shop.least_pin_gap, "wall": shop.least_wall, "race": shop.least_race}
     for name in OF_SHAPE:
         add(name, name, "min", least.get(name, 0.0), "shape", f"shop.least_{name}" if name in least else "geometry")
@@ -221,7 +228,7 @@ def _is_of(quantity: str, requirements: Requirements) -> bool:
 
 def prototype(requirements: Requirements) -> Drive:
     """Return a drive whose sizes mean nothing, for what depends on materials alone."""
-    row = {name: 1.0 for name in Sizes.__dataclass_fields__} | {
+    row = dict.fromkeys(Sizes.__dataclass_fields__, 1.0) | {
         "pins": 20.0, "discs": float(requirements.asked.discs[0]), "rollers": 10.0, "holes": 8.0, "bore": 9.0,
         "torque": requirements.asked.torque,
     }  # fmt: skip
@@ -240,6 +247,9 @@ def margins(demands: Sequence[Demand], values: Mapping[str, FloatArray]) -> Floa
     """
     count = len(next(iter(values.values())))
     return np.stack(
-        [demand.margin(values[demand.quantity]) if demand.quantity in values else np.full(count, np.nan) for demand in demands],
+        [
+            demand.margin(values[demand.quantity]) if demand.quantity in values else np.full(count, np.nan)
+            for demand in demands
+        ],
         axis=1,
     )

@@ -137,7 +137,13 @@ def relaxation_content(relaxation: Relaxation, file: str | None) -> dict[str, An
     """
     return {
         "requirements": [
-            {"name": one.name, "quantity": one.quantity, "asked": one.value, "would_do": relaxation.would_do(one), "unit": one.unit}
+            {
+                "name": one.name,
+                "quantity": one.quantity,
+                "asked": one.value,
+                "would_do": relaxation.would_do(one),
+                "unit": one.unit,
+            }
             for one in relaxation.demands
         ],
         "words": relaxation.words,

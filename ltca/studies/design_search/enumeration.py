@@ -40,7 +40,12 @@ FARTHEST = 3.0
 KEPT_ECCENTRICITIES = 5
 """Candidates that are kept of each number of discs and pins, pin circle and thickness: of different eccentricities."""
 LEAST_ROLLERS = 6
-SLACK = {"bearing_life_hours": 1.8, "bearing_life_million_turns": 1.8, "shaft_pin_bending_stress": 0.8, "shaft_pin_shear_stress": 0.8}
+SLACK = {
+    "bearing_life_hours": 1.8,
+    "bearing_life_million_turns": 1.8,
+    "shaft_pin_bending_stress": 0.8,
+    "shaft_pin_shear_stress": 0.8,
+}
 OTHER_SLACK = 0.4
 """By how much closed forms may say that a demand is broken (ln) before a candidate is left out: they are as wrong as that."""
 PENALTY = 2.0
@@ -116,9 +121,11 @@ def enumerate_candidates(
     chosen: list[int] = []
     seen: set[tuple[float, ...]] = set()
     for place in np.argsort(score, kind="stable"):
-        key = tuple(float(getattr(together, name)[place]) for name in ("discs", "eccentricity", "pin_radius", "roller_radius"))
+        key = tuple(
+            float(getattr(together, name)[place]) for name in ("discs", "eccentricity", "pin_radius", "roller_radius")
+        )
         near = sum(one[:2] == key[:2] for one in seen)
-        if key not in seen and near < 2:
+        if key not in seen and near < 3:
             seen.add(key)
             chosen.append(int(place))
         if len(chosen) == most:
@@ -136,10 +143,8 @@ def _scores(
     slack = np.array([SLACK.get(one.quantity, OTHER_SLACK) for one in judged])
     fits = np.all((each >= -slack) | free, axis=1)
     breaks = np.where(free, 0.0, np.maximum(-each, 0.0)).sum(axis=1)
-    if relaxed:
-        aim = np.where(free, np.maximum(-each, 0.0), 0.0).max(axis=1)
-    else:
-        aim = size_of(reached, requirements.asked.smallest)
+    given = np.where(free, np.maximum(-each, 0.0), 0.0).max(axis=1)
+    aim = given if relaxed else size_of(reached, requirements.asked.smallest)
     return aim + PENALTY * breaks, breaks, np.asarray(fits & np.isfinite(breaks))
 
 
@@ -205,8 +210,7 @@ def _flanks(
         for pins, stage, sun, planet in teeth(requirements):
             diameters, eccentricities = np.array(stock.wheel_pins), np.array(stock.eccentricities)
             part, e, pin, t = (
-                one.ravel()
-                for one in np.meshgrid(circles, eccentricities, 0.5 * diameters, thicknesses, indexing="ij")
+                one.ravel() for one in np.meshgrid(circles, eccentricities, 0.5 * diameters, thicknesses, indexing="ij")
             )
             circle = part * (0.5 * asked.outer_diameter - shop.housing_wall - 0.5 * diameters.min())
             if wider == 1.0:
@@ -218,8 +222,9 @@ def _flanks(
                 roller_length=ones, rollers=ones, holes=ones, hole_circle=ones, hole_pin=ones, torque=torque * ones,
             )  # fmt: skip
             looked = sizes.count
-            K1 = e * pins / np.maximum(circle, 1e-9)
-            sizes = sizes.take((circle > 0.0) & (K1 >= SHORTENING[0]) & (K1 <= SHORTENING[1]))
+            shortening = e * pins / np.maximum(circle, 1e-9)
+            usual = (shortening >= SHORTENING[0]) & (shortening <= SHORTENING[1])
+            sizes = sizes.take(usual & (circle > 0.0))
             shape = flank_shape(sizes, setting)
             sound = [one for one in demands if one.kind == "shape" and one.quantity in shape]
             sizes = sizes.take(margins(sound, shape).min(axis=1) >= 0.0) if sizes.count else sizes

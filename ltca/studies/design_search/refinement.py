@@ -103,10 +103,12 @@ def refine(task: Task) -> Refined:
         The candidate.
     """
     row, best, last, solved = dict(task.row), None, None, 0
+    life: float | None = None
     row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
     for _ in range(ROUNDS):
         row = _rounded(row, task)
-        solution, solved = solve_coarsely(row, task.requirements, task.demands), solved + 1
+        solution, solved = solve_coarsely(row, task.requirements, task.demands, life), solved + 1
+        life = solution.life_factor or life
         if not solution.values:
             last = last or (row, solution)
             if best is None:
@@ -115,7 +117,9 @@ def refine(task: Task) -> Refined:
             continue
         last = (row, solution)
         each = _actual(solution, task)
-        if _keeps(each, task) and (best is None or _aim(solution, each, task) < _aim(best[1], _actual(best[1], task), task)):
+        if _keeps(each, task) and (
+            best is None or _aim(solution, each, task) < _aim(best[1], _actual(best[1], task), task)
+        ):
             best = row, solution
         moved = _improve(row, each, task)
         if max(abs(np.log(moved[name] / row[name])) for name in _varied(task)) < STILL:
@@ -183,11 +187,11 @@ def _varied(task: Task) -> tuple[str, ...]:
 def _actual(solution: Solution, task: Task) -> FloatArray:
     """Margins by the solution; of what it does not say, none."""
     values = {name: np.array([value]) for name, value in solution.values.items()}
-    return margins(task.demands, values)[0]
+    return np.asarray(margins(task.demands, values)[0])
 
 
 def _held(task: Task) -> NDArray[np.bool_]:
-    return np.array([one.name not in task.relaxed for one in task.demands])
+    return np.asarray([one.name not in task.relaxed for one in task.demands])
 
 
 def _keeps(each: FloatArray, task: Task) -> bool:
@@ -202,7 +206,9 @@ def _given(each: FloatArray, task: Task) -> float:
 def _aim(solution: Solution, each: FloatArray, task: Task) -> float:
     if task.relaxed:
         return _given(each, task)
-    return float(size_of({name: np.array(value) for name, value in solution.values.items()}, task.requirements.asked.smallest))
+    return float(
+        size_of({name: np.array(value) for name, value in solution.values.items()}, task.requirements.asked.smallest)
+    )
 
 
 def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
@@ -211,7 +217,9 @@ def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
     asked, shop = task.requirements.asked, task.requirements.asked.shop
     if "outer_diameter" not in task.relaxed:
         most = 0.5 * asked.outer_diameter - shop.housing_wall - row["pin_radius"]
-        found["pin_circle"] = min(found["pin_circle"], most) if found["pin_circle"] - most < TOUCH else found["pin_circle"]
+        found["pin_circle"] = (
+            min(found["pin_circle"], most) if found["pin_circle"] - most < TOUCH else found["pin_circle"]
+        )
     if "length" not in task.relaxed:
         most = (asked.length - shop.flanges - (row["discs"] - 1.0) * shop.disc_gap) / row["discs"]
         found["thickness"] = min(found["thickness"], most) if found["thickness"] - most < TOUCH else found["thickness"]
@@ -257,9 +265,8 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
         if key not in cache:
             each, size = forms(np.vstack([place, place + DIFFERENCE * np.eye(count)]))
             cache.clear()
-            cache[key] = (
-                each[0] + shift - target, ((each[1:] - each[0]) / DIFFERENCE).T, float(size[0]), (size[1:] - size[0]) / DIFFERENCE,
-            )  # fmt: skip
+            slopes, grows = ((each[1:] - each[0]) / DIFFERENCE).T, (size[1:] - size[0]) / DIFFERENCE
+            cache[key] = each[0] + shift - target, slopes, float(size[0]), grows
         return cache[key]
 
     # Beside the sizes: how much of what is relaxed is given, and how much of the rest is broken.
@@ -267,20 +274,23 @@ def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str,
 
     def objective(full: FloatArray) -> float:
         _, _, size, _ = known(full)
-        return (full[count] + 1e-3 * size if relaxes else size) + HARD * full[count + 1]
+        return float((full[count] + 1e-3 * size if relaxes else size) + HARD * full[count + 1])
 
     def slope(full: FloatArray) -> FloatArray:
         _, _, _, size = known(full)
         return np.concatenate([(1e-3 if relaxes else 1.0) * size, [1.0 if relaxes else 0.0, HARD]])
 
     def kept(full: FloatArray) -> FloatArray:
-        return known(full)[0] + np.where(held, full[count + 1], full[count])
+        return np.asarray(known(full)[0] + np.where(held, full[count + 1], full[count]))
 
     def kept_slope(full: FloatArray) -> FloatArray:
         return np.hstack([known(full)[1], np.where(held, 0.0, 1.0)[:, None], np.where(held, 1.0, 0.0)[:, None]])
 
     first = known(np.concatenate([start, [0.0, 0.0]]))[0]
-    given, broken = max(0.0, float(np.max(-first[~held], initial=0.0))), max(0.0, float(np.max(-first[held], initial=0.0)))
+    given, broken = (
+        max(0.0, float(np.max(-first[~held], initial=0.0))),
+        max(0.0, float(np.max(-first[held], initial=0.0))),
+    )
     bounds = [(place - STEP, place + STEP) for place in start] + [(0.0, given + 3.0), (0.0, broken + 1.0)]
     if "torque" in names:
         at = names.index("torque")
@@ -311,4 +321,3 @@ def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *,
         row=row, solution=solution, fits=fits, given=_given(np.nan_to_num(each), task), broken=broken, relaxed=task.relaxed,
         solved=solved,
     )  # fmt: skip
-

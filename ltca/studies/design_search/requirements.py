@@ -225,10 +225,10 @@ def parse_requirements(
     try:
         asked = TypeAdapter(Asked).validate_python(table)
     except ValidationError as error:
-        known = _known(error)
-        for detail in error.errors():
-            path = tuple(map(str, detail["loc"][:-1]))
-            problems += describe_mistakes([detail], (), known.get(path, tuple(Asked.__dataclass_fields__)))
+        for place, known in FIELDS.items():
+            # A missing field and its misspelling are told as one where they are of one table.
+            own = [detail for detail in error.errors() if _table_of(detail["loc"]) == place]
+            problems += describe_mistakes(own, (), known)
     if asked is not None and materials is not None:
         problems += _contradictions(asked, materials, limits)
     if problems or asked is None or stock is None or materials is None:
@@ -238,15 +238,18 @@ def parse_requirements(
     )
 
 
-def _known(error: ValidationError) -> dict[tuple[str, ...], tuple[str, ...]]:
-    """Names of fields, by table."""
-    return {
-        (): (*Asked.__dataclass_fields__, "materials", "limits"),
-        ("shop",): (*Shop.__dataclass_fields__, *STOCK, "stock"),
-        ("friction",): tuple(Friction.__dataclass_fields__),
-        ("temperature",): tuple(Temperature.__dataclass_fields__),
-        ("lubricant",): tuple(Lubricant.__dataclass_fields__),
-    }
+FIELDS: dict[str, tuple[str, ...]] = {
+    "": (*Asked.__dataclass_fields__, "materials", "limits"),
+    "shop": (*Shop.__dataclass_fields__, *STOCK, "stock"),
+    "friction": tuple(Friction.__dataclass_fields__),
+    "temperature": tuple(Temperature.__dataclass_fields__),
+    "lubricant": tuple(Lubricant.__dataclass_fields__),
+}
+"""Names of fields, by table."""
+
+
+def _table_of(place: tuple[int | str, ...]) -> str:
+    return str(place[0]) if len(place) > 1 and place[0] in FIELDS else ""
 
 
 def _materials(table: Any, problems: list[str]) -> Materials | None:
@@ -254,9 +257,11 @@ def _materials(table: Any, problems: list[str]) -> Materials | None:
         problems.append(f"materials = {shortened(table)}: must be a table")
         return None
     before = len(problems)
-    for part in table:
-        if part not in PARTS:
-            problems.append(f"materials.{shortened(part)[1:-1]}: is not a part{did_you_mean(str(part), PARTS)}")
+    problems += [
+        f"materials.{shortened(part)[1:-1]}: is not a part{did_you_mean(str(part), PARTS)}"
+        for part in table
+        if part not in PARTS
+    ]
     resolved = with_named_materials({"materials": table}, problems)["materials"]
     if len(problems) > before:
         return None
@@ -295,7 +300,9 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits) -> list[
 
     found = []
     if asked.efficiency is not None and asked.friction is None:
-        found.append(f"efficiency = {asked.efficiency:g}: nothing rubs; give [friction] its coefficients, or leave it out")
+        found.append(
+            f"efficiency = {asked.efficiency:g}: nothing rubs; give [friction] its coefficients, or leave it out"
+        )
     if asked.kind == "discs" and abs(asked.ratio - round(asked.ratio)) > asked.ratio * asked.ratio_tolerance + 1e-9:
         found.append(
             f'ratio = {asked.ratio:g}: must be a whole number with kind = "discs", or within ratio_tolerance of one '

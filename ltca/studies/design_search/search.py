@@ -13,7 +13,7 @@ from itertools import combinations as pairs_of
 from math import ceil, exp, floor, log10
 
 from ltca.studies.design_search.demands import Demand, find_demands
-from ltca.studies.design_search.enumeration import enumerate_candidates, size_of
+from ltca.studies.design_search.enumeration import FARTHEST, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, refine
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes
@@ -74,7 +74,9 @@ class Relaxation:
         """The same as a sentence."""
         asked = " and ".join(f"{one.name.replace('_', ' ')} {one.words()}" for one in self.demands)
         if self.refined is None:
-            return f"{asked}: not enough alone" if len(self.demands) == 1 else f"{asked}: not enough together"
+            alone = "alone" if len(self.demands) == 1 else "together"
+            room = any(one.name in ("outer_diameter", "length") for one in self.demands)
+            return f"{asked}: not enough {alone}{f' (tried to × {FARTHEST:g})' if room else ''}"
         found = " with ".join(one.words(self.would_do(one)) for one in self.demands)
         return f"{asked}: {found} would do"
 
@@ -217,10 +219,10 @@ def _refine_all(
     told: Callable[[str], None],
 ) -> list[Refined]:
     """In the order of the rows, whoever is done first."""
-    futures = {
-        executor.submit(refine, Task(requirements=requirements, demands=demands, row=row)): number
-        for number, row in enumerate(rows)
-    }
+    futures = {}
+    for number, row in enumerate(rows):
+        told(f"candidate {number + 1} of {len(rows)}")
+        futures[executor.submit(refine, Task(requirements=requirements, demands=demands, row=row))] = number
     done: dict[int, Refined] = {}
     for future in as_completed(futures):
         done[futures[future]] = future.result()
@@ -241,8 +243,10 @@ def _stand_in_the_way(
         return sorted(single, key=_least)
     # Pairs: of what closed forms and candidates broke least or most there is no telling, so room and torque go first.
     broken = {name for one in tried for name in one.broken}
-    order = sorted(asked, key=lambda one: (one.name not in broken, one.name not in ("outer_diameter", "length", "torque")))
-    names = [(first.name, second.name) for first, second in pairs_of(order, 2)][:PAIRS]
+    order = sorted(
+        asked, key=lambda one: (one.name not in broken, one.name not in ("outer_diameter", "length", "torque"))
+    )
+    names = [tuple(one.name for one in pair) for pair in pairs_of(order, 2)][:PAIRS]
     return sorted(_relax_all(requirements, demands, names, executor, told), key=_least) + single
 
 
@@ -253,7 +257,10 @@ def _relax_all(
     executor: Executor,
     told: Callable[[str], None],
 ) -> list[Relaxation]:
-    futures = {executor.submit(relax, requirements, demands, own): number for number, own in enumerate(names)}
+    futures = {}
+    for number, own in enumerate(names):
+        told(f"what stands in the way: {number + 1} of {len(names)}")
+        futures[executor.submit(relax, requirements, demands, own)] = number
     done: dict[int, Relaxation] = {}
     for future in as_completed(futures):
         done[futures[future]] = future.result()

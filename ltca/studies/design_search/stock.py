@@ -1,4 +1,4 @@
-"""Diameters and lengths that pins and rollers come in, eccentricities that grinders offer; typical ones are data of the package."""
+"""Diameters and lengths that pins and rollers come in, eccentricities that grinders offer; typical ones are data."""
 
 from __future__ import annotations
 
