@@ -46,7 +46,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Search, write and print what was found; exit status 1 when nothing fits."""
-    from ltca.errors import DriveError
+    from concurrent.futures.process import BrokenProcessPool
+
+    from ltca.errors import DriveError, FaultError
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.studies.design_search.requirements import load_requirements
 
@@ -56,14 +58,17 @@ def execute(arguments: argparse.Namespace) -> int:
     out = arguments.out or default_folder(requirements.asked.name, "design")
     require_folder(out)
     from ltca.output.progress import steps
-    from ltca.studies.design_search.search import CANDIDATES, find_designs
+    from ltca.studies.design_search.search import find_designs
     from ltca.studies.execution.workers import Workers
 
     writes = ["design.json", "designs.csv", "report.html", "design-[0-9]*.toml", "relaxed-*.toml"]
     with claimed_folder(out, "design", writes=writes):
         workers = Workers(processes=arguments.workers, scheduler=arguments.scheduler)
-        with steps("design") as told, workers.executor() as (executor, _):
-            found = find_designs(requirements, executor, told, max(CANDIDATES, 2 * arguments.best))
+        try:
+            with steps("design") as told, workers.executor() as (executor, _):
+                found = find_designs(requirements, executor, told, arguments.best)
+        except BrokenProcessPool as error:
+            raise FaultError("workers died (killed, or out of memory); start the search again") from error
         _write(found, arguments.best, out)
     return 0 if found.designs else NOTHING_FITS
 

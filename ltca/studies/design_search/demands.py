@@ -31,7 +31,7 @@ Kind = Literal["requirement", "limit", "material", "shape"]
 ROLLERS = "ISO 76:2006, roller bearings at their static load rating"
 ROLLER_PRESSURE = 4000.0
 """What hardened rollers and races bear without a lasting mark, MPa."""
-SAFETY = 0.01
+SAFETY = 0.02
 """By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
 OF_MATERIALS = (
     "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "disc_shear",
@@ -66,6 +66,8 @@ class Demand:
         Where it comes from.
     source : str
         The same in words.
+    scale : float
+        What spare lengths of the shape are measured by, mm.
     """
 
     name: str

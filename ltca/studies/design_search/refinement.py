@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 
 ROUNDS = 6
 """Solutions of a candidate over few positions."""
-FINE_ROUNDS = 3
+FINE_ROUNDS = 2
 """Solutions over those of a check."""
 STEP = 0.2
 """By how much a size may change between two solutions (ln)."""
@@ -72,7 +72,7 @@ class Refined:
     row : dict of str to float
         Its sizes.
     solution : Solution
-        Fine where it keeps all that is not relaxed; else the last coarse one.
+        Of `refine` a coarse one, of `finish` a fine one.
     fits : bool
         Whether it does.
     given : float
@@ -95,7 +95,7 @@ class Refined:
 
 
 def refine(task: Task) -> Refined:
-    """Return a candidate with its best continuous sizes.
+    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits.
 
     Parameters
     ----------
@@ -128,12 +128,20 @@ def refine(task: Task) -> Refined:
     if best is None:
         row, solution = last or (row, Solution(values={}))
         return _told(row, solution, task, solved, fits=False)
-    return _finished(best[0], task, solved)
+    return _told(*best, task, solved, fits=True)
 
 
-def _finished(row: dict[str, float], task: Task, solved: int) -> Refined:
-    """Solve finely; where that finds more, a step back by what it found."""
-    solution = Solution(values={})
+def finish(task: Task, solved: int = 0) -> Refined:
+    """Return a refined candidate solved finely; where that finds more, a step back by what it found.
+
+    Parameters
+    ----------
+    task : Task
+        With the refined sizes.
+    solved : int
+        Solutions so far.
+    """
+    row, solution = dict(task.row), Solution(values={})
     for _ in range(FINE_ROUNDS):
         try:
             drive = drive_of(row, task.requirements)
@@ -141,7 +149,10 @@ def _finished(row: dict[str, float], task: Task, solved: int) -> Refined:
             solution = Solution(values={}, message=" ".join(str(error).split()))
             break
         limits = relaxed_limits(written_limits(task.requirements), task)
-        solution, solved = solve_finely(row, drive, limits, task.requirements, task.demands), solved + 1
+        solution, solved = (
+            solve_finely(row, drive, limits, task.requirements, task.demands, lives=not task.relaxed),
+            solved + 1,
+        )
         if not solution.values:
             break
         each = _actual(solution, task)

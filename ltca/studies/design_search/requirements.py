@@ -20,7 +20,7 @@ from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, check_count, quantity
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.toml_text import parse_toml, read_text
-from ltca.studies.design_search.stock import Stock, build_stock, stock_table
+from ltca.studies.design_search.stock import Stock, build_stock, first_mistakes, stock_table
 
 NO_FILE = "no such file; docs/design.md says what a requirement file holds, examples/requirements has ten"
 STOCK = ("eccentricities", "wheel_pins", "shaft_pins", "rollers")
@@ -227,7 +227,7 @@ def parse_requirements(
     except ValidationError as error:
         for place, known in FIELDS.items():
             # A missing field and its misspelling are told as one where they are of one table.
-            own = [detail for detail in error.errors() if _table_of(detail["loc"]) == place]
+            own = [detail for detail in first_mistakes(error) if _table_of(detail["loc"]) == place]
             problems += describe_mistakes(own, (), known)
     if asked is not None and materials is not None:
         problems += _contradictions(asked, materials, limits)

@@ -12,9 +12,11 @@ from dataclasses import dataclass
 from itertools import combinations as pairs_of
 from math import ceil, exp, floor, log10
 
+import numpy as np
+
 from ltca.studies.design_search.demands import Demand, find_demands
 from ltca.studies.design_search.enumeration import FARTHEST, enumerate_candidates, size_of
-from ltca.studies.design_search.refinement import Refined, Task, refine
+from ltca.studies.design_search.refinement import Refined, Task, finish, refine
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes
 
@@ -154,13 +156,14 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
         if found.broken.size and found.broken.min() < CHANCE:
             break
     giving = tuple(one for one in demands if one.name in names)
+    rows = [] if found.sizes is None else [found.sizes.take([place]).row() for place in range(found.sizes.count)]
+    refined = [refine(Task(requirements=requirements, demands=demands, row=row, relaxed=names)) for row in rows]
     best: Refined | None = None
-    for row in [] if found.sizes is None else range(found.sizes.count):
-        assert found.sizes is not None
-        task = Task(requirements=requirements, demands=demands, row=found.sizes.take([row]).row(), relaxed=names)
-        refined = refine(task)
-        if refined.fits and (best is None or refined.given < best.given):
-            best = refined
+    for one in sorted((one for one in refined if one.fits), key=lambda one: one.given):
+        fine = finish(Task(requirements=requirements, demands=demands, row=one.row, relaxed=names), one.solved)
+        if fine.fits:
+            best = fine
+            break
     broken = float(found.broken.min()) if found.broken.size else None
     return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken)
 
@@ -169,7 +172,7 @@ def find_designs(
     requirements: Requirements,
     executor: Executor,
     told: Callable[[str], None] = lambda step: None,
-    candidates: int = CANDIDATES,
+    best: int = 3,
 ) -> Found:
     """Return the designs that fit, or what stands in the way.
 
@@ -181,34 +184,48 @@ def find_designs(
         That refines candidates.
     told : callable
         Told of every step.
-    candidates : int
-        To refine.
+    best : int
+        Designs wanted.
     """
     demands = find_demands(requirements)
     told("combinations")
-    found = enumerate_candidates(requirements, demands, (), candidates)
+    found = enumerate_candidates(requirements, demands, (), max(CANDIDATES, 2 * best))
     rows = [] if found.sizes is None else [found.sizes.take([place]).row() for place in range(found.sizes.count)]
     refined = _refine_all(requirements, demands, rows, executor, told)
     looked, solved = found.combinations, sum(one.solved for one in refined)
-    designs = [one for one in refined if one.fits]
+    smallest = requirements.asked.smallest
+    coarse = _once(sorted((one for one in refined if one.fits), key=lambda one: _size(one, smallest)))
+    designs: list[Refined] = []
+    missed = [one for one in refined if not one.fits]
+    while coarse and len(designs) < best:
+        told(f"designs solved finely: {len(designs)} of {min(best, len(designs) + len(coarse))}")
+        now, coarse = coarse[: best - len(designs)], coarse[best - len(designs) :]
+        tasks = [Task(requirements=requirements, demands=demands, row=one.row) for one in now]
+        done = [future.result() for future in [executor.submit(finish, task) for task in tasks]]
+        solved += sum(one.solved for one in done)
+        designs += [one for one in done if one.fits]
+        missed += [one for one in done if not one.fits]
     relaxations: list[Relaxation] = []
     if not designs:
-        relaxations = _stand_in_the_way(requirements, demands, refined, executor, told)
+        relaxations = _stand_in_the_way(requirements, demands, missed, executor, told)
         looked += sum(one.combinations for one in relaxations)
         solved += sum(one.refined.solved for one in relaxations if one.refined is not None)
         # What has nothing to give after all fits as it is.
         designs = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
-    smallest = requirements.asked.smallest
-    designs.sort(key=lambda one: float(size_of(one.solution.values, smallest)))  # type: ignore[arg-type]
+    designs.sort(key=lambda one: _size(one, smallest))
     return Found(
         requirements=requirements,
         demands=demands,
         designs=tuple(_once(designs)),
-        tried=tuple(one for one in refined if not one.fits),
+        tried=tuple(missed),
         relaxations=() if designs else tuple(relaxations),
         combinations=looked,
         solved=solved,
     )
+
+
+def _size(refined: Refined, smallest: str) -> float:
+    return float(size_of({name: np.array(value) for name, value in refined.solution.values.items()}, smallest))
 
 
 def _refine_all(

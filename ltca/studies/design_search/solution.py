@@ -85,7 +85,8 @@ def solve_coarsely(
     """
     try:
         drive = drive_of(row, requirements)
-        analysis = analyse(drive, position_angles(COARSE_POSITIONS) + BESIDE)
+        positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
+        analysis = analyse(drive, position_angles(positions) + BESIDE)
         by_forces = _lives_by_forces(row, analysis, requirements)
         asked = [one for one in demands if one.quantity in LIVES]
         # ISO 281 with the mean force falls short of the slices by a factor of two or so: what it finds enough is.
@@ -156,7 +157,13 @@ def check_positions(drive: Drive) -> int:
 
 
 def solve_finely(
-    row: dict[str, float], drive: Drive, limits: Limits, requirements: Requirements, demands: tuple[Demand, ...]
+    row: dict[str, float],
+    drive: Drive,
+    limits: Limits,
+    requirements: Requirements,
+    demands: tuple[Demand, ...],
+    *,
+    lives: bool = True,
 ) -> Solution:
     """Return what a drive reaches, with the checks of `cyclo check`.
 
@@ -172,11 +179,13 @@ def solve_finely(
         What is asked.
     demands : tuple of Demand
         For what has to be known beside the checks.
+    lives : bool
+        Whether lives are wanted where no limit asks for them.
     """
     positions = check_positions(drive)
     try:
         analysis = analyse(drive, position_angles(positions))
-        checks = judge_analysis(analysis, summarise(analysis), limits)
+        checks = judge_analysis(analysis, summarise(analysis), limits, lives=lives)
         found = {check.value.quantity: check.value.value for check in checks if check.value.value is not None}
         found |= own_values(row, drive, requirements, demands)
         return Solution(values=found, checks=tuple(checks), positions=positions)

@@ -76,4 +76,21 @@ def build_stock(table: dict[str, Any], source: str = "shop") -> Stock:
         return TypeAdapter(Stock).validate_python(table)
     except ValidationError as error:
         known = tuple(Stock.__dataclass_fields__)
-        raise DriveError(describe_mistakes(error.errors(), (source,), known)) from error
+        raise DriveError(describe_mistakes(first_mistakes(error), (source,), known)) from error
+
+
+def first_mistakes(error: ValidationError) -> list[Any]:
+    """Return the mistakes of an error, without arrays that are too short because an entry is wrong.
+
+    Parameters
+    ----------
+    error : ValidationError
+        Of pydantic.
+    """
+    found = error.errors()
+    places = [detail["loc"] for detail in found]
+
+    def inner(place: tuple[int | str, ...]) -> bool:
+        return any(len(other) > len(place) and other[: len(place)] == place for other in places)
+
+    return [detail for detail in found if detail["type"] != "too_short" or not inner(detail["loc"])]
