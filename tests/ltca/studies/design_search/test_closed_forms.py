@@ -50,13 +50,13 @@ def forms(text=PAPER + STEEL, **changed):
 
 @pytest.mark.parametrize(("changed"), [{}, {"eccentricity": 5.0}, {"pin_radius": 9.0, "bore": 25.0}])
 def test_shapes_are_those_of_the_verdict(changed):
-    """The verdict takes curvatures of the flank itself from 2001 places, closed forms from 33: they differ by a thousandth of them."""
+    """The verdict takes curvatures of the flank itself from 2001 places, closed forms from 33: a thousandth apart."""
     drive = drive_of(ROW | changed, parse_requirements(PAPER + STEEL))
     told = forms(**changed)
     assert told["undercut_margin"] == pytest.approx(undercut_margin(drive), rel=5e-3)
     assert told["pin_hollow_margin"] == pytest.approx(pin_hollow_margin(drive), rel=2e-2)
     assert told["roller_gap"] == pytest.approx(roller_gap(drive), rel=1e-12)
-    named = {name: wall for name, wall in walls(drive)}
+    named = dict(walls(drive))
     assert told["pin_gap"] == pytest.approx(named.pop("between neighbouring wheel pins"), rel=1e-12)
     # The paper's rollers leave nothing of the bore's own wall to judge here.
     assert told["wall"] == pytest.approx(min(wall for name, wall in named.items() if "hole" in name), rel=1e-9)
