@@ -48,7 +48,8 @@ SLACK = {
 }
 OTHER_SLACK = 0.4
 """By how much closed forms may say that a demand is broken (ln) before a candidate is left out: they are as wrong as that."""
-PENALTY = 2.0
+PENALTY, RELAXED_PENALTY = 2.0, 10.0
+"""Weight of what is broken against size, and against what is given where something gives: lives go with high powers of loads."""
 ROWS = 100_000
 """Rows that are looked at in one go, for memory."""
 
@@ -145,7 +146,8 @@ def _scores(
     breaks = np.where(free, 0.0, np.maximum(-each, 0.0)).sum(axis=1)
     given = np.where(free, np.maximum(-each, 0.0), 0.0).max(axis=1)
     aim = given if relaxed else size_of(reached, requirements.asked.smallest)
-    return aim + PENALTY * breaks, breaks, np.asarray(fits & np.isfinite(breaks))
+    penalty = RELAXED_PENALTY if relaxed else PENALTY
+    return aim + penalty * breaks, breaks, np.asarray(fits & np.isfinite(breaks))
 
 
 def size_of(reached: dict[str, FloatArray], smallest: str) -> FloatArray:

@@ -33,6 +33,12 @@ STEP = 0.2
 """By how much a size may change between two solutions (ln)."""
 DIFFERENCE = 1e-5
 STILL = 2e-3
+ENOUGH = 5e-3
+"""What another solution has to gain in what is to be small (ln)."""
+SLOW = 0.7
+"""Part of what was broken before that may still be: of candidates that come on slower nothing is hoped for."""
+NEARLY = 0.03
+"""What is broken by so little (ln) the next step may mend."""
 HARD = 30.0
 """Weight of what is broken against what is to be small."""
 DECIMALS = 3
@@ -104,6 +110,7 @@ def refine(task: Task) -> Refined:
     """
     row, best, last, solved = dict(task.row), None, None, 0
     life: float | None = None
+    broken = np.inf
     row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
     for _ in range(ROUNDS):
         row = _rounded(row, task)
@@ -117,10 +124,16 @@ def refine(task: Task) -> Refined:
             continue
         last = (row, solution)
         each = _actual(solution, task)
-        if _keeps(each, task) and (
-            best is None or _aim(solution, each, task) < _aim(best[1], _actual(best[1], task), task)
-        ):
-            best = row, solution
+        worse, broken = broken, float(np.maximum(-each[_held(task)], 0.0).sum())
+        if _keeps(each, task):
+            aim = _aim(solution, each, task)
+            gained = np.inf if best is None else _aim(best[1], _actual(best[1], task), task) - aim
+            if gained > 0.0:
+                best = row, solution
+            if gained < ENOUGH:
+                break
+        elif broken > max(SLOW * worse, NEARLY) and best is None:
+            break
         moved = _improve(row, each, task)
         if max(abs(np.log(moved[name] / row[name])) for name in _varied(task)) < STILL:
             break
