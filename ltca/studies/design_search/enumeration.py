@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import pi, sin
@@ -79,6 +79,7 @@ def enumerate_candidates(
     relaxed: Collection[str] = (),
     most: int = 6,
     torque: float | None = None,
+    shifts: Mapping[str, float] | None = None,
 ) -> Enumeration:
     """Return the best candidates by closed forms.
 
@@ -94,6 +95,8 @@ def enumerate_candidates(
         Candidates wanted.
     torque : float, optional
         On the output, N·mm; that asked for by default.
+    shifts : mapping of str to float, optional
+        By how much margins of loaded drives were above those of closed forms, by name.
     """
     setting = Setting.of(requirements)
     found: list[Sizes] = []
@@ -110,7 +113,7 @@ def enumerate_candidates(
                 continue
             sizes, known = sizes.take(held), {name: value[held] for name, value in known.items()}
             reached = {name: value[held] for name, value in shape.items()} | known | inner_values(sizes, setting, known)
-            score, breaks, kept = _scores(reached, demands, relaxed, requirements)
+            score, breaks, kept = _scores(reached, demands, relaxed, requirements, shifts or {})
             if kept.any():
                 best = np.flatnonzero(kept)[np.argsort(score[kept])[: 4 * most]]
                 found.append(sizes.take(best))
@@ -135,11 +138,15 @@ def enumerate_candidates(
 
 
 def _scores(
-    reached: dict[str, FloatArray], demands: Sequence[Demand], relaxed: Collection[str], requirements: Requirements
+    reached: dict[str, FloatArray],
+    demands: Sequence[Demand],
+    relaxed: Collection[str],
+    requirements: Requirements,
+    shifts: Mapping[str, float],
 ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
     """Number to make small, sum of what is broken, and whether closed forms leave a chance."""
     judged = [one for one in demands if one.kind != "shape" and one.quantity in reached]
-    each = margins(judged, reached)
+    each = margins(judged, reached) + np.array([shifts.get(one.name, 0.0) for one in judged])
     free = np.array([one.name in relaxed for one in judged])
     slack = np.array([SLACK.get(one.quantity, OTHER_SLACK) for one in judged])
     fits = np.all((each >= -slack) | free, axis=1)

@@ -89,6 +89,8 @@ class Refined:
         As asked.
     solved : int
         Solutions.
+    shifts : dict of str to float
+        By how much margins of the solution are above those of closed forms, by name.
     """
 
     row: dict[str, float]
@@ -98,6 +100,7 @@ class Refined:
     broken: dict[str, float]
     relaxed: tuple[str, ...]
     solved: int
+    shifts: dict[str, float]
 
 
 def refine(task: Task) -> Refined:
@@ -341,7 +344,11 @@ def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *,
         for one, margin in zip(task.demands, each, strict=True)
         if one.name not in task.relaxed and margin < -1e-9
     }
+    closed = margins(task.demands, closed_forms(Sizes.of_rows([row]), Setting.of(task.requirements)))[0]
+    moved = zip(task.demands, each - closed, strict=True)
+    shifts = {one.name: float(shift) for one, shift in moved if one.kind != "shape" and np.isfinite(shift)}
     return Refined(
         row=row, solution=solution, fits=fits, given=_given(np.nan_to_num(each), task), broken=broken, relaxed=task.relaxed,
         solved=solved,
+        shifts=shifts,
     )  # fmt: skip

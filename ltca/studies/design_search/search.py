@@ -15,7 +15,7 @@ from math import ceil, exp, floor, log10
 import numpy as np
 
 from ltca.studies.design_search.demands import Demand, find_demands
-from ltca.studies.design_search.enumeration import FARTHEST, enumerate_candidates, size_of
+from ltca.studies.design_search.enumeration import FARTHEST, Enumeration, enumerate_candidates, size_of
 from ltca.studies.design_search.refinement import Refined, Task, finish, refine
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes
@@ -25,6 +25,8 @@ CANDIDATES = 6
 RELAXED_CANDIDATES = 3
 TORQUES = 0.85, 0.7, 0.55, 0.4, 0.28, 0.2, 0.14, 0.1
 """Parts of the torque that are tried where it stands in the way."""
+PASSES = 2
+"""Enumerations: the second with closed forms moved by what loaded drives said, where the first found nothing."""
 CHANCE = 0.1
 """What a candidate may break by closed forms (ln) to be taken for one."""
 PAIRS = 6
@@ -147,22 +149,26 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
     names : tuple of str
         Of the demands that give.
     """
-    combinations = 0
-    # Less torque changes what goes into a drive: the first part of it that closed forms leave a chance is where to start.
-    for part in TORQUES if "torque" in names else (1.0,):
-        torque = part * requirements.asked.torque
-        found = enumerate_candidates(requirements, demands, names, RELAXED_CANDIDATES, torque)
-        combinations += found.combinations
-        if found.broken.size and found.broken.min() < CHANCE:
-            break
+    combinations, best = 0, None
+    shifts: dict[str, float] = {}
     giving = tuple(one for one in demands if one.name in names)
-    rows = [] if found.sizes is None else [found.sizes.take([place]).row() for place in range(found.sizes.count)]
-    refined = [refine(Task(requirements=requirements, demands=demands, row=row, relaxed=names)) for row in rows]
-    best: Refined | None = None
-    for one in sorted((one for one in refined if one.fits), key=lambda one: one.given):
-        fine = finish(Task(requirements=requirements, demands=demands, row=one.row, relaxed=names), one.solved)
-        if fine.fits:
-            best = fine
+    for _ in range(PASSES):
+        # Less torque changes what goes into a drive: the first part of it that closed forms leave a chance is where to start.
+        for part in TORQUES if "torque" in names else (1.0,):
+            torque = part * requirements.asked.torque
+            found = enumerate_candidates(requirements, demands, names, RELAXED_CANDIDATES, torque, shifts)
+            combinations += found.combinations
+            if found.broken.size and found.broken.min() < CHANCE:
+                break
+        tasks = [Task(requirements=requirements, demands=demands, row=row, relaxed=names) for row in _rows(found)]
+        refined = [refine(task) for task in tasks]
+        for one in sorted((one for one in refined if one.fits), key=lambda one: one.given):
+            fine = finish(Task(requirements=requirements, demands=demands, row=one.row, relaxed=names), one.solved)
+            if fine.fits:
+                best = fine
+                break
+        shifts = mean_shifts(refined)
+        if best is not None or not shifts:
             break
     broken = float(found.broken.min()) if found.broken.size else None
     return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken)
@@ -189,10 +195,16 @@ def find_designs(
     """
     demands = find_demands(requirements)
     told("combinations")
-    found = enumerate_candidates(requirements, demands, (), max(CANDIDATES, 2 * best))
-    rows = [] if found.sizes is None else [found.sizes.take([place]).row() for place in range(found.sizes.count)]
-    refined = _refine_all(requirements, demands, rows, executor, told)
-    looked, solved = found.combinations, sum(one.solved for one in refined)
+    most = max(CANDIDATES, 2 * best)
+    found = enumerate_candidates(requirements, demands, (), most)
+    refined = _refine_all(requirements, demands, _rows(found), executor, told)
+    looked = found.combinations
+    if not any(one.fits for one in refined) and (shifts := mean_shifts(refined)):
+        # Closed forms that are wrong on one side pick the wrong candidates: once more with what loaded drives said.
+        found = enumerate_candidates(requirements, demands, (), most, shifts=shifts)
+        refined += _refine_all(requirements, demands, _rows(found), executor, told)
+        looked += found.combinations
+    solved = sum(one.solved for one in refined)
     smallest = requirements.asked.smallest
     coarse = _once(sorted((one for one in refined if one.fits), key=lambda one: _size(one, smallest)))
     designs: list[Refined] = []
@@ -222,6 +234,23 @@ def find_designs(
         combinations=looked,
         solved=solved,
     )
+
+
+def _rows(found: Enumeration) -> list[dict[str, float]]:
+    return [] if found.sizes is None else [found.sizes.take([place]).row() for place in range(found.sizes.count)]
+
+
+def mean_shifts(refined: list[Refined]) -> dict[str, float]:
+    """Return by how much margins of loaded drives are above those of closed forms, by name: the mean of all.
+
+    Parameters
+    ----------
+    refined : list of Refined
+        What was solved.
+    """
+    each = [one.shifts for one in refined if one.shifts]
+    names = set().union(*each) if each else set()
+    return {name: float(np.mean([one[name] for one in each if name in one])) for name in sorted(names)}
 
 
 def _size(refined: Refined, smallest: str) -> float:
