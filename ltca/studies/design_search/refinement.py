@@ -14,6 +14,7 @@ from math import asin, floor, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.analysis.verdict.values import LIVES
 from ltca.drive.members.limits import Limits
 from ltca.errors import CycloError
 from ltca.studies.design_search.closed_forms import Setting, closed_forms
@@ -158,6 +159,8 @@ def finish(task: Task, solved: int = 0) -> Refined:
         Solutions so far.
     """
     row, solution = dict(task.row), Solution(values={})
+    # A life that gives way has no limit in the file any more, and has to be known all the same.
+    lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
     for _ in range(FINE_ROUNDS):
         try:
             drive = drive_of(row, task.requirements)
@@ -166,7 +169,7 @@ def finish(task: Task, solved: int = 0) -> Refined:
             break
         limits = relaxed_limits(written_limits(task.requirements), task)
         solution, solved = (
-            solve_finely(row, drive, limits, task.requirements, task.demands, lives=not task.relaxed),
+            solve_finely(row, drive, limits, task.requirements, task.demands, lives=lives),
             solved + 1,
         )
         if not solution.values:
@@ -226,7 +229,8 @@ def _keeps(each: FloatArray, task: Task) -> bool:
 
 
 def _given(each: FloatArray, task: Task) -> float:
-    free = each[~_held(task)]
+    # What is not known has given everything.
+    free = np.nan_to_num(each[~_held(task)], nan=-np.inf)
     return float(np.max(-free, initial=0.0))
 
 
@@ -348,7 +352,7 @@ def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *,
     moved = zip(task.demands, each - closed, strict=True)
     shifts = {one.name: float(shift) for one, shift in moved if one.kind != "shape" and np.isfinite(shift)}
     return Refined(
-        row=row, solution=solution, fits=fits, given=_given(np.nan_to_num(each), task), broken=broken, relaxed=task.relaxed,
+        row=row, solution=solution, fits=fits, given=_given(each, task), broken=broken, relaxed=task.relaxed,
         solved=solved,
         shifts=shifts,
     )  # fmt: skip

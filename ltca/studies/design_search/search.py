@@ -222,8 +222,10 @@ def find_designs(
         relaxations = _stand_in_the_way(requirements, demands, missed, executor, told)
         looked += sum(one.combinations for one in relaxations)
         solved += sum(one.refined.solved for one in relaxations if one.refined is not None)
-        # What has nothing to give after all fits as it is.
-        designs = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
+        # What has nothing to give after all fits as it is, if a solution with every limit in its place says so.
+        whole = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
+        fine = [finish(Task(requirements=requirements, demands=demands, row=one.row)) for one in whole]
+        designs = [one for one in fine if one.fits]
     designs.sort(key=lambda one: _size(one, smallest))
     return Found(
         requirements=requirements,

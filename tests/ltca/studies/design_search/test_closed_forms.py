@@ -135,3 +135,14 @@ def test_a_wider_part_is_no_smaller_load():
     small, large = forms(), forms(pin_radius=8.0)
     assert large["pin_load"] == pytest.approx(small["pin_load"], rel=1e-3)
     assert large["pin_pressure_mid"] < small["pin_pressure_mid"]
+
+
+def test_a_life_that_gives_way_is_known_all_the_same():
+    """A design was told to fit whose life nobody had asked: what is not known has given everything, never nothing."""
+    from ltca.studies.design_search.refinement import Task, finish
+
+    requirements = parse_requirements(PAPER.replace("[shop]", "life = 1.0e9\n[shop]") + STEEL)
+    demands = find_demands(requirements)
+    found = finish(Task(requirements=requirements, demands=demands, row=ROW | {"pin_circle": 88.4}, relaxed=("life",)))
+    assert found.solution.values["bearing_life_hours"] > 0.0
+    assert found.given == pytest.approx(np.log(1e9 / found.solution.values["bearing_life_hours"]), rel=1e-9)
