@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength, SignedLength
-from ltca.drive.materials import PARTS, Materials
+from ltca.drive.materials import PARTS, STEEL, Materials
 from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.members.named_materials import with_named_materials
 from ltca.drive.members.operation import Friction, Lubricant, Temperature
@@ -296,8 +296,6 @@ def _stock(table: dict[str, Any], folder: Path, problems: list[str]) -> Stock | 
 
 
 def _contradictions(asked: Asked, materials: Materials, limits: Limits) -> list[str]:
-    from ltca.analysis.life.ratings import STEEL
-
     found = []
     if asked.efficiency is not None and asked.friction is None:
         found.append(
