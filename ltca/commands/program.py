@@ -34,6 +34,7 @@ ORDER = (
     "tolerance",
     "sweep",
     "optimise",
+    "design",
     "mesh",
     "fem",
     "derive",

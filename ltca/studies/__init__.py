@@ -19,5 +19,6 @@ sensitivity      Which tolerances matter: standardised regression over random sa
 optimiser        Best fields of a drive under limits: scipy's differential evolution on the batch solver, Pareto front of two
                  aims
 fine_solution    The quantities of one drive solved finely: many positions for means, extremes searched between them
+design_search    From requirements to drives: enumeration by closed forms, refinement, what stands in the way
 ===============  ============================================================
 """

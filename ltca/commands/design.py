@@ -1,0 +1,150 @@
+"""``cyclo design``: from requirements to drive files, or what stands in the way."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ltca.reading.arguments import add_out_argument, count_argument, default_folder, path_argument
+
+if TYPE_CHECKING:
+    from ltca.studies.design_search.refinement import Refined
+    from ltca.studies.design_search.search import Found
+
+SUMMARY = (
+    "find drives for requirements: ratio, torque, room, life, backlash; or say which requirement stands in the way"
+)
+BEST = 3
+NOTHING_FITS = 1
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        "requirements", metavar="REQUIREMENTS", type=path_argument("REQUIREMENTS"),
+        help="requirement file (TOML): docs/design.md, examples/requirements",
+    )  # fmt: skip
+    parser.add_argument(
+        "--best",
+        metavar="N",
+        type=count_argument("--best", 1, 20),
+        default=BEST,
+        help=f"designs to write; default {BEST}",
+    )
+    parser.add_argument(
+        "--workers",
+        metavar="W",
+        type=count_argument("--workers", 1, 1024),
+        default=1,
+        help="local processes; default 1",
+    )
+    parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
+    add_out_argument(parser, "design")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Search, write and print what was found; exit status 1 when nothing fits."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    from ltca.errors import DriveError, FaultError
+    from ltca.output.run_folder import claimed_folder, require_folder
+    from ltca.studies.design_search.requirements import load_requirements
+
+    if arguments.scheduler and arguments.workers > 1:
+        raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
+    requirements = load_requirements(arguments.requirements)
+    out = arguments.out or default_folder(requirements.asked.name, "design")
+    require_folder(out)
+    from ltca.output.progress import steps
+    from ltca.studies.design_search.search import find_designs
+    from ltca.studies.execution.workers import Workers
+
+    writes = ["design.json", "designs.csv", "report.html", "design-[0-9]*.toml", "relaxed-*.toml"]
+    with claimed_folder(out, "design", writes=writes):
+        workers = Workers(processes=arguments.workers, scheduler=arguments.scheduler)
+        try:
+            with steps("design") as told, workers.executor() as (executor, _):
+                found = find_designs(requirements, executor, told, arguments.best)
+        except BrokenProcessPool as error:
+            raise FaultError("workers died (killed, or out of memory); start the search again") from error
+        _write(found, arguments.best, out)
+    return 0 if found.designs else NOTHING_FITS
+
+
+def _write(found: Found, best: int, out: Path) -> None:
+    from ltca.figures.design_page import write_design_page
+    from ltca.output.files import whole_file, write_json
+    from ltca.output.provenance import code_hash, code_version
+    from ltca.studies.design_search.designs import (
+        comparison,
+        csv_text,
+        design_content,
+        design_text,
+        relaxation_content,
+    )
+
+    asked = found.requirements.asked
+    shown: list[tuple[str, Refined]] = []
+    contents: list[dict[str, Any]] = []
+
+    def written(stem: str, refined: Refined) -> str:
+        with whole_file(out / f"{stem}.toml") as part:
+            part.write_text(design_text(refined, found, f"{asked.name}-{stem}"), encoding="utf-8")
+        shown.append((stem, refined))
+        contents.append(design_content(refined, found, f"{stem}.toml"))
+        return f"{stem}.toml"
+
+    for number, refined in enumerate(found.designs[:best], 1):
+        written(f"design-{number}", refined)
+    relaxations = []
+    for one in found.relaxations:
+        stem = f"relaxed-{one.name}".replace(".", "-")
+        file = None if one.refined is None else written(stem, one.refined)
+        relaxations.append(relaxation_content(one, file))
+    rows = comparison(found, shown)
+    with whole_file(out / "designs.csv") as part:
+        part.write_text(csv_text(rows), encoding="utf-8")
+    tried = [{"broken": one.broken, "message": one.solution.message} for one in found.tried]
+    write_json(
+        out / "design.json",
+        {
+            "name": asked.name,
+            "version": code_version(),
+            "code_hash": code_hash("ltca"),
+            "verdict": "fits" if found.designs else "nothing fits",
+            "combinations": found.combinations,
+            "solved": found.solved,
+            "designs": [content for content in contents if content["file"].startswith("design-")],
+            "in_the_way": relaxations,
+            "relaxed_designs": [content for content in contents if content["file"].startswith("relaxed-")],
+            "tried": tried,
+            "requirements": found.requirements.text,
+        },
+    )
+    write_design_page(found, shown, rows, out / "report.html")
+    _print(found, rows, out)
+
+
+def _print(found: Found, rows: list[list[str]], out: Path) -> None:
+    asked = found.requirements.asked
+    print(
+        f"{asked.name}, 1:{asked.ratio:g}, {asked.torque / 1000.0:g} N·m at {asked.speed:g} rpm: {found.combinations} "
+        f"combinations by closed forms, {found.solved} loaded drives"
+    )
+    if not found.designs:
+        print("nothing fits. What stands in the way, each with all others held:")
+        for one in found.relaxations:
+            print(f"  {one.words}")
+        if not found.relaxations:
+            print("  no requirement that could give")
+    wide = max((len(row[0]) for row in rows), default=0)
+    columns = [max(len(row[column]) for row in rows) for column in range(1, len(rows[0]))]
+    if len(rows[0]) > 2:
+        for row in rows:
+            cells = "  ".join(f"{cell:>{width}}" for cell, width in zip(row[1:], columns, strict=True))
+            print(f"{row[0]:<{wide}}  {cells}")
+    sys.stdout.flush()
+    files = "report.html, design.json, designs.csv"
+    print(f"results: {out} ({files}{', drive files' if len(rows[0]) > 2 else ''})")

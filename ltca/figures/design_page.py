@@ -1,0 +1,88 @@
+"""The page of ``cyclo design``: designs beside each other, the outline of each, what stands in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.geometry.flank import FlankProfile
+from ltca.output.files import whole_file
+from ltca.studies.design_search.designs import named_design
+from ltca.studies.design_search.refinement import Refined
+from ltca.studies.design_search.search import Found
+
+POINTS = 24
+"""Of the outline of a lobe."""
+
+
+def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: list[list[str]], path: Path) -> Path:
+    """Write the page: one file, opens offline.
+
+    Parameters
+    ----------
+    found : Found
+        What a search found.
+    shown : sequence of (str, Refined)
+        Names and designs that are compared.
+    rows : list of list of str
+        The table that compares them.
+    path : Path
+        Where to.
+    """
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("ltca.figures"), autoescape=True, trim_blocks=True, lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )  # fmt: skip
+    requirements = found.requirements
+    text = environment.get_template("design.html").render(
+        asked=requirements.asked,
+        fits=bool(found.designs),
+        rows=rows,
+        in_the_way=[one.words for one in found.relaxations],
+        outlines=[(name, outline(named_design(one, requirements, "outline"))) for name, one in shown],
+        requirements=requirements.text,
+        combinations=found.combinations,
+        solved=found.solved,
+    )
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
+    return path
+
+
+def outline(drive: Drive) -> dict[str, object]:
+    """Return the first disc with pins, holes and bores as shapes of an SVG, mm, y downwards.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    single = single_discs(replace(drive, temperature=None))[0]
+    wheel, shaft, e = single.pin_wheel, single.pin_shaft, single.crank.eccentricity
+    count = POINTS * single.disc.number_of_teeth
+    # A turn of the disc takes the parameter once around the pins of the wheel.
+    parameter = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    flank = FlankProfile.of_drive(single).flank(parameter) + e
+    path = " ".join(f"{point.real:.3f},{-point.imag:.3f}" for point in flank)
+    pins = wheel.pin_circle_radius * _circle(wheel.number_of_pins)
+    circles = [(pin.real, -pin.imag, wheel.pin_radius, "pin") for pin in pins]
+    if shaft is not None:
+        for place in shaft.pin_circle_radius * _circle(shaft.number_of_pins):
+            circles.append((place.real + e, -place.imag, single.hole_radius, "hole"))
+            circles.append((place.real, -place.imag, shaft.pin_radius, "pin"))
+    for place in single.crank.places:
+        circles.append((place.real + e, -place.imag, single.bore_radius, "hole"))
+        circles.append((place.real + e, -place.imag, single.crank_bearing.inner_race_radius, "race"))
+    return {"path": path, "circles": circles, "half": wheel.pin_circle_radius + wheel.pin_radius + 1.0}
+
+
+def _circle(count: int) -> NDArray[np.complex128]:
+    return np.asarray(np.exp(2j * np.pi * np.arange(count) / count))

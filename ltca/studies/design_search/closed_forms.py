@@ -1,0 +1,347 @@
+"""What candidates reach by closed forms: rigid bodies on linear contacts, Hertz, ISO 281; all candidates at once.
+
+The crank is held, disc and wheel touch where their common normals pass through the pitch point (distance e z_P from the axis
+of the wheel). A pin at φ has the lever l = e z_P R_C sin φ/d about that axis, d its distance from the pitch point, and the
+gap Δr_P − ΔR_C (R_C − e z_P cos φ)/d of the offset flank; every contact yields in proportion to its load. Curvatures are
+those of the trochoid, 1/ρ = (1 + z_P K1² − K1 (1 + z_P) cos φ)/(R_C S³) with S² = 1 + K1² − 2 K1 cos φ (convex positive).
+What this leaves out is taken in by what `ltca.studies.design_search.solution` says of the loaded drive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.life.ratings import BEARING_STEEL, STATIC
+from ltca.analysis.torque_curve import LOST_MOTION
+from ltca.drive.parts import contact_modulus
+from ltca.drive.units.quantities import ARCMIN
+from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.sizes import Sizes, stack_length
+
+FloatArray = NDArray[np.float64]
+
+PLACES = 4
+"""Places of the pins in a pitch at which loads are looked at."""
+CURVES = 33
+"""Places on half a lobe at which its curvature is looked at."""
+SLENDER = 10.0
+"""π E* L/F times the approach of a line contact: Palmgren's 3.84e-5 F^0.9/L^0.8 gives 8 to 12 for steel."""
+SWEEPS = 8
+"""Newton's steps for the wind-up: convex and piecewise linear, so from the far side they only come nearer."""
+TURN = 12
+"""Places of a turn over which the loads of several cranks are averaged."""
+TIGHT = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """What all candidates share.
+
+    Attributes
+    ----------
+    flank, outer, inner, hole : float
+        Contact moduli of flank, bore, inner race and holes, MPa.
+    pin_modulus : float
+        E of shaft pins, MPa.
+    softer : float
+        The lesser E of disc and wheel pins, MPa.
+    requirements : Requirements
+        What is asked.
+    """
+
+    flank: float
+    outer: float
+    inner: float
+    hole: float
+    pin_modulus: float
+    softer: float
+    requirements: Requirements
+
+    @classmethod
+    def of(cls, requirements: Requirements) -> Setting:
+        """Return that of requirements."""
+        parts = requirements.materials
+        return cls(
+            flank=contact_modulus(parts.disc, parts.wheel_pin),
+            outer=contact_modulus(parts.disc, parts.roller),
+            inner=contact_modulus(parts.inner_race, parts.roller),
+            hole=contact_modulus(parts.disc, parts.shaft_pin),
+            pin_modulus=parts.shaft_pin.youngs_modulus,
+            softer=min(parts.disc.youngs_modulus, parts.wheel_pin.youngs_modulus),
+            requirements=requirements,
+        )
+
+
+def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
+    """Return room and margins of the shape by name, mm: exact but for the places at which curvatures are looked at.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of the candidates.
+    setting : Setting
+        What they share.
+    """
+    asked, shop = setting.requirements.asked, setting.requirements.asked.shop
+    found = flank_shape(sizes, setting)
+    inner = sizes.bore - 2.0 * sizes.roller_radius
+    bore = sizes.bore + 0.5 * shop.bearing_clearance
+    root = sizes.pin_circle + shop.shifting_offset - sizes.eccentricity - sizes.pin_radius - shop.equidistant_offset
+    speed_up = asked.ratio / (sizes.stage * asked.cranks if asked.kind == "rv" else 1.0)
+    shaft = 0.5 * (16.0 * sizes.torque / speed_up / (np.pi * shop.crankshaft_shear)) ** (1.0 / 3.0)
+    pitch = inner + sizes.roller_radius
+    chord = pitch * np.sin(np.pi / sizes.rollers) - sizes.roller_radius
+    found |= {
+        "torque": sizes.torque,
+        "roller_gap": 2.0 * chord,
+        "cage_room": 2.0 * chord - 2.0 * shop.cage_gap * sizes.roller_radius,
+        "race": inner - sizes.eccentricity - shaft,
+        "roller_room": sizes.thickness - sizes.roller_length,
+    }
+    if asked.kind == "rv":
+        circle = sizes.hole_circle
+        between = 2.0 * (circle * np.sin(np.pi / asked.cranks) - bore)
+        found["wall"] = np.minimum(np.minimum(root - circle - bore, between), circle - bore)
+        return found
+    hole = sizes.hole_pin + sizes.eccentricity + shop.pin_hole_clearance
+    walls = (
+        root - sizes.hole_circle - hole,
+        sizes.hole_circle - hole - bore,
+        2.0 * (sizes.hole_circle * np.sin(np.pi / sizes.holes) - hole),
+    )
+    return found | {"wall": np.minimum.reduce(walls)}
+
+
+def flank_shape(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
+    """Return what the flank and its pins alone give of `shape_values`."""
+    shop = setting.requirements.asked.shop
+    generating = sizes.pin_radius + shop.equidistant_offset
+    convex, hollow = _locus(sizes, np.cos(np.linspace(0.0, np.pi, CURVES)))
+    return {
+        "outer_diameter": 2.0 * (sizes.pin_circle + sizes.pin_radius + shop.housing_wall),
+        "length": stack_length(sizes, shop.disc_gap) + shop.flanges,
+        "undercut_margin": 1.0 / np.maximum(convex, TIGHT) - generating,
+        # A hollow of the path of the centres is rounder by the pin on the flank, so the pin always fits by the offset.
+        "pin_hollow_margin": 1.0 / np.maximum(-hollow, TIGHT) + shop.equidistant_offset,
+        "pin_gap": 2.0 * (sizes.pin_circle * np.sin(np.pi / sizes.pins) - sizes.pin_radius),
+    }
+
+
+def _locus(sizes: Sizes, cosine: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Largest and least curvature of the path of the pins' centres over the disc, 1/mm."""
+    each = _locus_curvature(sizes, cosine)
+    return each.max(axis=1), each.min(axis=1)
+
+
+def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
+    K1 = (sizes.eccentricity * sizes.pins / sizes.pin_circle)[:, None]
+    z, R = sizes.pins[:, None], sizes.pin_circle[:, None]
+    S = np.sqrt(np.maximum(1.0 + K1**2 - 2.0 * K1 * cosine, TIGHT))
+    return np.asarray((1.0 + z * K1**2 - K1 * (1.0 + z) * cosine) / (R * S**3))
+
+
+def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
+    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of candidates of one number of pins.
+    setting : Setting
+        What they share.
+    """
+    asked, shop = setting.requirements.asked, setting.requirements.asked.shop
+    pins = int(sizes.pins[0])
+    angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PLACES) / PLACES) / pins
+    sine, cosine = np.sin(angle).ravel(), np.cos(angle).ravel()
+    upper = sine > TIGHT
+    sine, cosine, phase = sine[upper], cosine[upper], np.tile(np.arange(PLACES), pins)[upper]
+    R, reach = sizes.pin_circle[:, None], (sizes.eccentricity * sizes.pins)[:, None]
+    distance = np.sqrt(np.maximum(R**2 + reach**2 - 2.0 * R * reach * cosine, TIGHT))
+    lever = reach * R * sine / distance
+    gap = shop.equidistant_offset - shop.shifting_offset * (R - reach * cosine) / distance
+    stiffness = (np.pi * setting.flank * sizes.thickness / SLENDER)[:, None]
+    torque = wheel_torque(sizes, setting) / sizes.discs
+    generating = (sizes.pin_radius + shop.equidistant_offset)[:, None]
+    locus = _locus_curvature(sizes, cosine)
+    curvature = locus / np.where(np.abs(1.0 - locus * generating) < TIGHT, TIGHT, 1.0 - locus * generating)
+    relative = np.maximum(1.0 / sizes.pin_radius[:, None] + curvature, TIGHT)
+    pressure, largest = np.zeros((2, sizes.count))
+    radial, slope, rubbed, loaded = np.zeros((4, sizes.count))
+    for place in range(PLACES):
+        here = phase == place
+        load, stiff = _shared(lever[:, here], gap[:, here], stiffness, torque)
+        pressure = np.maximum(
+            pressure, np.sqrt(load * setting.flank * relative[:, here] / (np.pi * sizes.thickness[:, None])).max(axis=1)
+        )
+        largest = np.maximum(largest, load.max(axis=1))
+        radial += (load * (reach - R * cosine[here]) / distance[:, here]).sum(axis=1) / PLACES
+        slope += stiff / PLACES
+        rubbed += (load * np.abs(distance[:, here] - sizes.pin_radius[:, None])).sum(axis=1) / PLACES
+        loaded += (load > 0.0).sum(axis=1) / PLACES
+    clearance = np.maximum((gap / lever).min(axis=1), 0.0)
+    rubbing = 0.0 if asked.friction is None else asked.friction.pin
+    return {
+        "pin_pressure_mid": pressure,
+        "pin_load": largest,
+        "mean_loaded_pins": loaded,
+        "radial": radial,
+        "wheel_stiffness": slope,
+        "play": 2.0 * clearance,
+        "flank_loss": rubbing * rubbed / sizes.pins,
+    }
+
+
+def _shared(
+    lever: FloatArray, gap: FloatArray, stiffness: FloatArray, torque: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Loads of the pins, and the stiffness of all of them in rotation."""
+    closed = np.ones(lever.shape, dtype=bool)
+    for _ in range(SWEEPS):
+        square = (stiffness * closed * lever**2).sum(axis=1)
+        wind_up = (torque + (stiffness * closed * lever * gap).sum(axis=1)) / np.maximum(square, TIGHT)
+        closed = wind_up[:, None] * lever > gap
+        closed[~closed.any(axis=1)] = True
+    load = stiffness * np.maximum(wind_up[:, None] * lever - gap, 0.0)
+    return load, (stiffness * closed * lever**2).sum(axis=1)
+
+
+def wheel_torque(sizes: Sizes, setting: Setting) -> FloatArray:
+    """Return the moment on the wheel, all discs together, N·mm."""
+    asked = setting.requirements.asked
+    if asked.held == "pin-shaft":
+        return sizes.torque
+    if asked.kind == "rv":
+        return np.asarray(sizes.torque * sizes.stage * sizes.pins / (1.0 + sizes.stage * sizes.pins))
+    return np.asarray(sizes.torque * sizes.pins / (sizes.pins - 1.0))
+
+
+def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return what crank bearings, holes and the whole drive reach.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of the candidates.
+    setting : Setting
+        What they share.
+    flank : dict of str to array
+        Of `flank_values`.
+    """
+    asked, shop = setting.requirements.asked, setting.requirements.asked.shop
+    several, friction = asked.kind == "rv", asked.friction
+    torque = wheel_torque(sizes, setting) / sizes.discs
+    reach = sizes.eccentricity * sizes.pins
+    across, on_disc = torque / reach, torque * (sizes.pins - 1.0) / sizes.pins
+    found: dict[str, FloatArray] = {}
+    holes = np.zeros(sizes.count)
+    if several:
+        radial, count = flank["radial"], asked.cranks
+        turning = np.exp(2j * np.pi * np.arange(TURN) / TURN)
+        push = (across * 1j - radial)[:, None] / count + (on_disc / (count * sizes.hole_circle))[:, None] * turning
+        force = np.abs(push)
+        most, mean = force.max(axis=1), (force ** (10.0 / 3.0)).mean(axis=1) ** 0.3
+        whirl = (np.pi * setting.outer * sizes.roller_length / SLENDER) * sizes.rollers / 8.0
+        turning_compliance = (1.0 - 1.0 / sizes.pins) ** 2 / (whirl * count * sizes.hole_circle**2)
+        bearings = float(count)
+    else:
+        bearings = 1.0
+        holes = 4.0 * on_disc / (np.pi * sizes.hole_circle)
+        most = mean = np.hypot(across, holes - flank["radial"])
+        load = 4.0 * on_disc / (sizes.holes * sizes.hole_circle)
+        closer = 1.0 / sizes.hole_pin - 1.0 / (sizes.hole_pin + sizes.eccentricity)
+        found["pin_shaft_load"] = load
+        found["pin_shaft_pressure_mid"] = np.sqrt(load * setting.hole * closer / (np.pi * sizes.thickness))
+        spring = np.pi * setting.hole * sizes.thickness / SLENDER
+        if shop.shaft_pin_stiffness is None:
+            span = stack_length(sizes, shop.disc_gap) + 2.0 * shop.disc_gap
+            diameter = 2.0 * sizes.hole_pin
+            found["shaft_pin_bending_stress"] = 4.0 * load * sizes.discs * span / (np.pi * diameter**3)
+            found["shaft_pin_shear_stress"] = 8.0 * load * sizes.discs / (3.0 * np.pi * diameter**2)
+            beam = 192.0 * setting.pin_modulus * np.pi * diameter**4 / 64.0 / span**3
+            spring = 1.0 / (1.0 / spring + sizes.discs / beam)
+        else:
+            spring = np.full(sizes.count, shop.shaft_pin_stiffness)
+        turning_compliance = (1.0 - 1.0 / sizes.pins) ** 2 / (0.25 * sizes.holes * spring * sizes.hole_circle**2)
+    roller = 4.0 * most / sizes.rollers
+    inner = sizes.bore - 2.0 * sizes.roller_radius
+    bore = sizes.bore + 0.5 * shop.bearing_clearance
+    line = roller / (np.pi * sizes.roller_length)
+    found["bearing_load"], found["roller_load"] = most, roller
+    found["roller_pressure_mid_outer"] = np.sqrt(line * setting.outer * (1.0 / sizes.roller_radius - 1.0 / bore))
+    found["roller_pressure_mid_inner"] = np.sqrt(line * setting.inner * (1.0 / sizes.roller_radius + 1.0 / inner))
+    found |= lives_by_loads(sizes, setting, most, mean)
+    seat = bearings * np.pi * setting.outer * sizes.roller_length / SLENDER * sizes.rollers / 8.0
+    compliance = 1.0 / flank["wheel_stiffness"] + 1.0 / (seat * reach**2) + turning_compliance
+    leverage = wheel_torque(sizes, setting) / sizes.torque
+    found["stiffness"] = sizes.discs / (compliance * leverage**2)
+    found["backlash_output"] = flank["play"] * leverage * ARCMIN
+    play = shop.bearing_clearance / reach + shop.pin_hole_clearance * (0.0 if several else 2.0) / sizes.hole_circle
+    elastic = 2.0 * LOST_MOTION * sizes.torque / found["stiffness"]
+    found["lost_motion"] = ((flank["play"] + play) * leverage + elastic) * ARCMIN
+    if friction is not None:
+        rolling = friction.roller * bearings * mean * (inner + sizes.roller_radius)
+        lost = flank["flank_loss"] + friction.hole * sizes.eccentricity * holes + rolling
+        lost = lost + friction.support_bearing * friction.support_bearing_radius * across
+        lost = lost + friction.no_load_torque / sizes.discs * asked.ratio / sizes.pins
+        found["mean_efficiency"] = 1.0 - lost / (torque / sizes.pins + lost)
+    worst = np.maximum(flank["pin_pressure_mid"], found["roller_pressure_mid_outer"])
+    worst = np.maximum(worst, found.get("pin_shaft_pressure_mid", worst))
+    found["disc_shear"], found["contact_strain"] = 0.3 * worst, flank["pin_pressure_mid"] / setting.softer
+    # b = 2 p ρ/E* with ρ below the pin's radius: what half-spaces allow is a part of that radius.
+    found["half_width_ratio"] = 2.0 * flank["pin_pressure_mid"] / setting.flank
+    return found
+
+
+def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:
+    """Return life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive).
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of the candidates.
+    setting : Setting
+        What they share.
+    most, mean : array, shape (candidates,)
+        Largest force of a crank bearing, and the mean one by the power 10/3, N.
+    """
+    asked = setting.requirements.asked
+    diameter, pitch = 2.0 * sizes.roller_radius, 2.0 * (sizes.bore - sizes.roller_radius)
+    g = diameter / pitch
+    races = 1.04 * ((1.0 - g) / (1.0 + g)) ** (143.0 / 108.0)
+    shape = g ** (2.0 / 9.0) * (1.0 - g) ** (29.0 / 27.0) / (1.0 + g) ** 0.25
+    # As lives are told by ISO/TS 16281: what allows for edges is taken out, where edges are reckoned.
+    factor = 207.9 * shape * (1.0 + races**4.5) ** (-2.0 / 9.0)
+    rating = (
+        BEARING_STEEL * factor * sizes.roller_length ** (7.0 / 9.0) * sizes.rollers**0.75 * diameter ** (29.0 / 27.0)
+    )
+    life = (rating / mean) ** (10.0 / 3.0)
+    turns = asked.speed * sizes.pins
+    return {
+        "bearing_life_million_turns": life,
+        "bearing_life_hours": life * 1e6 / (60.0 * turns),
+        "static_safety_S0": STATIC * (1.0 - g) * sizes.rollers * sizes.roller_length * diameter / most,
+    }
+
+
+def closed_forms(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
+    """Return everything that closed forms say of candidates of one number of pins.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of the candidates.
+    setting : Setting
+        What they share.
+
+    Returns
+    -------
+    dict of str to array
+        By the names of `ltca.drive.members.limits.LIMITED` where there is one; mm, N, MPa, h, arcmin,
+        N·mm/rad.
+    """
+    flank = flank_values(sizes, setting)
+    return shape_values(sizes, setting) | flank | inner_values(sizes, setting, flank)

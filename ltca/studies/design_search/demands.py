@@ -1,0 +1,257 @@
+"""What is demanded of a candidate, each as a margin: by the requirements, by the parts, by limits and materials.
+
+A margin is the logarithm of limit by value (value by limit where more is wanted), of losses for efficiencies, and what is to
+spare in a size of the drive for walls and gaps. A candidate that keeps all of them has none below zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter
+
+from ltca.analysis.life.ratings import not_rated
+from ltca.analysis.verdict.values import DEMANDED
+from ltca.drive.members.judgement import TITLES, Value, judge
+from ltca.drive.members.limits import LIMITED, Limit, Limits
+from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCMIN
+from ltca.drive.units.table import label
+from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.sizes import Sizes, drive_table
+
+FloatArray = NDArray[np.float64]
+Kind = Literal["requirement", "limit", "material", "shape"]
+
+ROLLERS = "ISO 76:2006, roller bearings at their static load rating"
+ROLLER_PRESSURE = 4000.0
+"""What hardened rollers and races bear without a lasting mark, MPa."""
+SAFETY = 0.02
+"""By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
+OF_MATERIALS = (
+    "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "disc_shear",
+    "shaft_pin_bending_stress", "shaft_pin_shear_stress", "contact_strain", "half_width_ratio",
+)  # fmt: skip
+OWN_TITLES = {
+    "outer_diameter": ("outer diameter", "mm"),
+    "length": ("length", "mm"),
+    "torque": ("output torque", "N*mm"),
+    "stiffness": ("torsional stiffness", "N*mm/rad"),
+    "lost_motion": ("lost motion", "arcmin"),
+}
+"""What a drive file has no limit for: title and unit."""
+OF_SHAPE = ("undercut_margin", "pin_hollow_margin", "pin_gap", "wall", "cage_room", "race", "roller_room")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Demand:
+    """One demand.
+
+    Attributes
+    ----------
+    name : str
+        Key of the requirement file, or of its ``[limits]``; the quantity for others.
+    quantity : str
+        Of `closed_forms`, or of `ltca.drive.members.limits.LIMITED`.
+    sense : {"max", "min"}
+        Whether the value is to be at most or at least the limit.
+    value : float
+        Of the limit, in the unit of the quantity.
+    kind : str
+        Where it comes from.
+    source : str
+        The same in words.
+    scale : float
+        What spare lengths of the shape are measured by, mm.
+    """
+
+    name: str
+    quantity: str
+    sense: str
+    value: float
+    kind: Kind
+    source: str
+    scale: float = 1.0
+
+    @property
+    def title(self) -> str:
+        """What is looked at, in words."""
+        return OWN_TITLES[self.quantity][0] if self.quantity in OWN_TITLES else TITLES.get(self.quantity, self.quantity)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return OWN_TITLES[self.quantity][1] if self.quantity in OWN_TITLES else LIMITED.get(self.quantity, "mm")
+
+    def margin(self, reached: FloatArray | float) -> FloatArray:
+        """Return how far values keep it, negative where they break it.
+
+        Parameters
+        ----------
+        reached : array
+            In the unit of the quantity.
+        """
+        value = np.asarray(reached, dtype=float)
+        if self.kind == "shape":
+            return np.asarray((value - self.value) / self.scale)
+        if self.quantity == "mean_efficiency":
+            return np.asarray(log(1.0 - self.value) - np.log(np.maximum(1.0 - value, 1e-12)))
+        if self.value <= 0.0:
+            spare = value - self.value
+            return np.asarray(spare if self.sense == "min" else -spare)
+        ratio = np.log(np.maximum(value, 1e-12) / self.value)
+        return np.asarray(ratio if self.sense == "min" else -ratio)
+
+    def words(self, value: float | None = None) -> str:
+        """Return limit, or a value beside it, with sign and unit.
+
+        Parameters
+        ----------
+        value : float, optional
+            Shown in the place of the limit.
+        """
+        if value is not None:
+            return shown(value, self.unit)
+        return f"{'≤' if self.sense == 'max' else '≥'} {shown(self.value, self.unit)}"
+
+
+def shown(value: float, unit: str) -> str:
+    """Return a value in the unit that people use: N·m, N·m/arcmin, per cent where a unit has one.
+
+    Parameters
+    ----------
+    value : float
+        In its unit.
+    unit : str
+        Of the value.
+
+    Examples
+    --------
+    >>> shown(412_000.0, "N*mm")
+    '412 N·m'
+    """
+    if unit == "N*mm":
+        return f"{value / 1000.0:.4g} N·m"
+    if unit == "N*mm/rad":
+        return f"{value / 1000.0 / ARCMIN:.4g} N·m/arcmin"
+    return f"{value:.4g} {label(unit)}".rstrip() if unit != "1" else f"{value:.4g}"
+
+
+def written_limits(requirements: Requirements) -> Limits:
+    """Return what the ``[limits]`` of a drive file hold: those of the requirement file, and what else `cyclo check` knows.
+
+    Parameters
+    ----------
+    requirements : Requirements
+        What is asked.
+    """
+    asked, shop, found = requirements.asked, requirements.asked.shop, {}
+
+    def add(sense: str, quantity: str, value: float | None, source: str) -> None:
+        if value is not None:
+            limit = Limit(quantity=quantity, sense=sense, value=value, source=source)
+            found[limit.key] = limit
+
+    if not not_rated(prototype(requirements)):
+        add("max", "roller_pressure_mid", ROLLER_PRESSURE, ROLLERS)
+    add("min", "bearing_life_hours", asked.life, "requirement: life")
+    add("min", "mean_efficiency", asked.efficiency, "requirement: efficiency")
+    add("max", "backlash_output", None if asked.backlash is None else asked.backlash * ARCMIN, "requirement: backlash")
+    add("min", "wall", min(shop.least_wall, shop.least_pin_gap), "requirement: shop.least_wall, shop.least_pin_gap")
+    return {**found, **requirements.limits}
+
+
+def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
+    """Return every demand on candidates.
+
+    Parameters
+    ----------
+    requirements : Requirements
+        What is asked.
+    """
+    asked, shop = requirements.asked, requirements.asked.shop
+    found: dict[tuple[str, str], Demand] = {}
+
+    def add(name: str, quantity: str, sense: str, value: float | None, kind: Kind, source: str = "") -> None:
+        if value is None or (kind == "material" and (quantity, sense) in found):
+            return
+        scale = asked.outer_diameter / 50.0
+        told = source or "requirement"
+        # Of two limits the harder one counts; the requirement's name stands before that of its limit.
+        here = Demand(name=name, quantity=quantity, sense=sense, value=value, kind=kind, source=told, scale=scale)
+        before = found.get((quantity, sense))
+        harder = before is not None and (value - before.value) * (1.0 if sense == "min" else -1.0) > 0.0
+        if before is None or harder:
+            found[quantity, sense] = here
+
+    add("outer_diameter", "outer_diameter", "max", asked.outer_diameter, "requirement")
+    add("length", "length", "max", asked.length, "requirement")
+    add("torque", "torque", "min", asked.torque, "requirement")
+    add("life", "bearing_life_hours", "min", asked.life, "requirement")
+    add("stiffness", "stiffness", "min", asked.stiffness, "requirement")
+    backlash = None if asked.backlash is None else asked.backlash * ARCMIN
+    add("backlash", "backlash_output", "max", backlash, "requirement")
+    lost = None if asked.lost_motion is None else asked.lost_motion * ARCMIN
+    add("lost_motion", "lost_motion", "max", lost, "requirement")
+    add("efficiency", "mean_efficiency", "min", asked.efficiency, "requirement")
+    for limit in requirements.limits.values():
+        if limit.quantity == "roller_pressure_mid":
+            continue  # judged for each race below
+        add(f"limits.{limit.key}", limit.quantity, limit.sense, limit.value, "limit", limit.source)
+    drive = prototype(requirements)
+    values = [Value(quantity=name, value=1.0) for name in OF_MATERIALS if _is_of(name, requirements)]
+    for check in judge(drive, values, written_limits(requirements), DEMANDED):
+        if check.limit is not None and check.value.value is not None:
+            add(
+                check.value.quantity,
+                check.value.quantity,
+                check.limit.sense,
+                check.limit.value,
+                "material",
+                check.limit.source,
+            )
+    least = {"pin_gap": shop.least_pin_gap, "wall": shop.least_wall, "race": shop.least_race}
+    for name in OF_SHAPE:
+        add(name, name, "min", least.get(name, 0.0), "shape", f"shop.least_{name}" if name in least else "geometry")
+    return tuple(found.values())
+
+
+def _is_of(quantity: str, requirements: Requirements) -> bool:
+    asked = requirements.asked
+    if quantity.startswith("shaft_pin_"):
+        return asked.kind == "discs" and asked.shop.shaft_pin_stiffness is None
+    return quantity != "pin_shaft_pressure_mid" or asked.kind == "discs"
+
+
+def prototype(requirements: Requirements) -> Drive:
+    """Return a drive whose sizes mean nothing, for what depends on materials alone."""
+    row = dict.fromkeys(Sizes.__dataclass_fields__, 1.0) | {
+        "pins": 20.0, "discs": float(requirements.asked.discs[0]), "rollers": 10.0, "holes": 8.0, "bore": 9.0,
+        "torque": requirements.asked.torque,
+    }  # fmt: skip
+    return TypeAdapter(Drive).validate_python(drive_table(row, requirements, "prototype"))
+
+
+def margins(demands: Sequence[Demand], values: Mapping[str, FloatArray]) -> FloatArray:
+    """Return all margins, shape (candidates, demands); not a number where a value is not known.
+
+    Parameters
+    ----------
+    demands : sequence of Demand
+        What is demanded.
+    values : mapping of str to array
+        What candidates reach, shape (candidates,) each.
+    """
+    count = len(next(iter(values.values())))
+    return np.stack(
+        [
+            demand.margin(values[demand.quantity]) if demand.quantity in values else np.full(count, np.nan)
+            for demand in demands
+        ],
+        axis=1,
+    )

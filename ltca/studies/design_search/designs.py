@@ -1,0 +1,193 @@
+"""What is told of the designs found: drive files, and a table that compares them."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+from ltca.drive.members.limits import Limits
+from ltca.drive.parts import Drive
+from ltca.reading.writing import drive_text
+from ltca.studies.design_search.demands import Demand, shown, written_limits
+from ltca.studies.design_search.refinement import Refined, Task, relaxed_limits
+from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.search import Found, Relaxation, factor_words
+from ltca.studies.design_search.sizes import drive_of
+from ltca.studies.design_search.solution import CHECK_POSITIONS
+
+SIZES = {
+    "discs": "number of discs",
+    "pins": "wheel pins",
+    "sun": "teeth of the sun",
+    "planet": "teeth of the planets",
+    "eccentricity": "eccentricity, mm",
+    "pin_circle": "pin circle radius, mm",
+    "pin_radius": "wheel-pin radius, mm",
+    "thickness": "thickness of a disc, mm",
+    "bore": "bore radius, mm",
+    "rollers": "rollers of a crank bearing",
+    "roller_radius": "roller radius, mm",
+    "roller_length": "roller length, mm",
+    "holes": "shaft pins",
+    "hole_circle": "circle of shaft pins or cranks, mm",
+    "hole_pin": "shaft-pin radius, mm",
+}
+"""Sizes as they are told."""
+REACHED = (
+    "outer_diameter", "length", "torque", "bearing_life_hours", "bearing_life_million_turns", "static_safety_S0", "stiffness",
+    "backlash_output", "lost_motion", "mean_efficiency", "pin_pressure_mid", "pin_shaft_pressure_mid",
+    "roller_pressure_mid_outer", "roller_pressure_mid_inner", "ptp_transmission_error",
+)  # fmt: skip
+"""What is told of each design, where it is known."""
+
+
+def named_design(refined: Refined, requirements: Requirements, name: str) -> Drive:
+    """Return the drive of a design.
+
+    Parameters
+    ----------
+    refined : Refined
+        The design.
+    requirements : Requirements
+        What is asked.
+    name : str
+        Of the drive.
+    """
+    return drive_of(refined.row, requirements, name)
+
+
+def design_text(refined: Refined, found: Found, name: str) -> str:
+    """Return a design as the text of a drive file with its limits; `cyclo check` passes it.
+
+    Parameters
+    ----------
+    refined : Refined
+        The design.
+    found : Found
+        With what was asked.
+    name : str
+        Of the drive.
+    """
+    values, positions = refined.solution.values, refined.solution.positions
+    at = "" if positions == CHECK_POSITIONS else f" --positions {positions}"
+    lines = [f"# Written by cyclo design; `cyclo check{at}` passes it. Reached, by a fine solution on half-spaces:"]
+    for demand in found.demands:
+        if demand.kind in ("requirement", "limit") and demand.quantity in values:
+            given = ", which gives way" if demand.name in refined.relaxed else ""
+            told = demand.words(values[demand.quantity])
+            lines.append(f"#   {demand.title}: {told} (asked: {demand.words()}{given})")
+    if refined.row["sun"]:
+        lines.append(f"#   first stage: {refined.row['sun']:.0f} teeth on {refined.row['planet']:.0f}")
+    requirements = found.requirements
+    task = Task(requirements=requirements, demands=found.demands, row=refined.row, relaxed=refined.relaxed)
+    limits = relaxed_limits(written_limits(requirements), task)
+    return "\n".join(lines) + "\n\n" + drive_text(named_design(refined, requirements, name)) + limits_text(limits)
+
+
+def limits_text(limits: Limits) -> str:
+    """Return limits as the table of a drive file.
+
+    Parameters
+    ----------
+    limits : dict of str to Limit
+        To be written.
+    """
+    lines = ["", "[limits]"]
+    for key, limit in limits.items():
+        source = limit.source.replace("\\", "\\\\").replace('"', '\\"')
+        lines.append(f'{key} = {{ value = {limit.value!r}, source = "{source}" }}')
+    return "\n".join(lines) + "\n" if limits else ""
+
+
+def design_content(refined: Refined, found: Found, file: str) -> dict[str, Any]:
+    """Return a design for ``design.json``.
+
+    Parameters
+    ----------
+    refined : Refined
+        The design.
+    found : Found
+        With what was asked.
+    file : str
+        Of its drive.
+    """
+    return {
+        "file": file,
+        "sizes": {name: refined.row[name] for name in SIZES if refined.row[name]},
+        "values": {name: refined.solution.values[name] for name in REACHED if name in refined.solution.values},
+        "margins": {
+            one.name: float(one.margin(refined.solution.values[one.quantity]))
+            for one in found.demands
+            if one.kind != "shape" and one.quantity in refined.solution.values
+        },
+        "positions": refined.solution.positions,
+    }
+
+
+def relaxation_content(relaxation: Relaxation, file: str | None) -> dict[str, Any]:
+    """Return what would have to give for ``design.json``.
+
+    Parameters
+    ----------
+    relaxation : Relaxation
+        Of one requirement, or two.
+    file : str or None
+        Of the drive that then fits.
+    """
+    return {
+        "requirements": [
+            {
+                "name": one.name,
+                "quantity": one.quantity,
+                "asked": one.value,
+                "would_do": relaxation.would_do(one),
+                "unit": one.unit,
+            }
+            for one in relaxation.demands
+        ],
+        "words": relaxation.words,
+        "factor": factor_words(relaxation),
+        "file": file,
+        "broken_by_closed_forms": relaxation.broken,
+    }
+
+
+def comparison(found: Found, designs: list[tuple[str, Refined]]) -> list[list[str]]:
+    """Return the table that compares designs: heading, asked, then a column each.
+
+    Parameters
+    ----------
+    found : Found
+        With what was asked.
+    designs : list of (str, Refined)
+        Names and designs.
+    """
+    asked: dict[str, Demand] = {one.quantity: one for one in found.demands if one.kind != "shape"}
+    rows = [["", "asked", *(name for name, _ in designs)]]
+    for quantity in REACHED:
+        values = [one.solution.values.get(quantity) for _, one in designs]
+        if all(value is None for value in values):
+            continue
+        demand = asked.get(quantity) or Demand(
+            name=quantity, quantity=quantity, sense="max", value=0.0, kind="limit", source=""
+        )
+        cells = ["–" if value is None else shown(value, demand.unit) for value in values]
+        rows.append([demand.title, demand.words() if quantity in asked else "–", *cells])
+    for name, title in SIZES.items():
+        if any(one.row[name] for _, one in designs):
+            rows.append([title, "", *(f"{one.row[name]:.6g}" for _, one in designs)])
+    return rows
+
+
+def csv_text(rows: list[list[str]]) -> str:
+    """Return a table as CSV.
+
+    Parameters
+    ----------
+    rows : list of list of str
+        Of `comparison`.
+    """
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()

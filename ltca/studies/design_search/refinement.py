@@ -1,0 +1,358 @@
+"""Continuous sizes by scipy, closed forms corrected by what the solution said.
+
+The loaded drive is dear, closed forms are cheap and wrong by some tenths. So the drive is solved, every margin of the closed
+forms is moved to what came out, the sizes are optimised on the corrected ones within a step (sequential least squares), and
+the drive is solved again (space mapping: Bandler et al., IEEE Trans. Microwave Theory Tech. 52, 2004). What counts in the
+end is the solution alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import asin, floor, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.verdict.values import LIVES
+from ltca.drive.members.limits import Limits
+from ltca.errors import CycloError
+from ltca.studies.design_search.closed_forms import Setting, closed_forms
+from ltca.studies.design_search.demands import SAFETY, Demand, margins, written_limits
+from ltca.studies.design_search.enumeration import size_of
+from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
+from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
+
+FloatArray = NDArray[np.float64]
+
+ROUNDS = 6
+"""Solutions of a candidate over few positions."""
+FINE_ROUNDS = 2
+"""Solutions over those of a check."""
+STEP = 0.2
+"""By how much a size may change between two solutions (ln)."""
+DIFFERENCE = 1e-5
+STILL = 2e-3
+ENOUGH = 5e-3
+"""What another solution has to gain in what is to be small (ln)."""
+SLOW = 0.7
+"""Part of what was broken before that may still be: of candidates that come on slower nothing is hoped for."""
+NEARLY = 0.03
+"""What is broken by so little (ln) the next step may mend."""
+HARD = 30.0
+"""Weight of what is broken against what is to be small."""
+DECIMALS = 3
+"""Of the sizes, mm: what a drawing has."""
+TOUCH = 1e-2
+"""By how much sizes may be beyond their room before it is more than rounding, mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A candidate to refine.
+
+    Attributes
+    ----------
+    requirements : Requirements
+        What is asked.
+    demands : tuple of Demand
+        Of it.
+    row : dict of str to float
+        Where to start.
+    relaxed : tuple of str
+        Names of demands of which as little as possible is given; size counts where there are none.
+    """
+
+    requirements: Requirements
+    demands: tuple[Demand, ...]
+    row: dict[str, float]
+    relaxed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Refined:
+    """What came of a candidate.
+
+    Attributes
+    ----------
+    row : dict of str to float
+        Its sizes.
+    solution : Solution
+        Of `refine` a coarse one, of `finish` a fine one.
+    fits : bool
+        Whether it does.
+    given : float
+        By how much relaxed demands are broken at most (ln).
+    broken : dict of str to float
+        What it breaks of the others, by name (ln).
+    relaxed : tuple of str
+        As asked.
+    solved : int
+        Solutions.
+    shifts : dict of str to float
+        By how much margins of the solution are above those of closed forms, by name.
+    """
+
+    row: dict[str, float]
+    solution: Solution
+    fits: bool
+    given: float
+    broken: dict[str, float]
+    relaxed: tuple[str, ...]
+    solved: int
+    shifts: dict[str, float]
+
+
+def refine(task: Task) -> Refined:
+    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits.
+
+    Parameters
+    ----------
+    task : Task
+        The candidate.
+    """
+    row, best, last, solved = dict(task.row), None, None, 0
+    life: float | None = None
+    broken = np.inf
+    row["rollers"] = float(max(most_rollers(row, task), row["rollers"]))
+    for _ in range(ROUNDS):
+        row = _rounded(row, task)
+        solution, solved = solve_coarsely(row, task.requirements, task.demands, life), solved + 1
+        life = solution.life_factor or life
+        if not solution.values:
+            last = last or (row, solution)
+            if best is None:
+                break
+            row = _between(best[0], row)
+            continue
+        last = (row, solution)
+        each = _actual(solution, task)
+        worse, broken = broken, float(np.maximum(-each[_held(task)], 0.0).sum())
+        if _keeps(each, task):
+            aim = _aim(solution, each, task)
+            gained = np.inf if best is None else _aim(best[1], _actual(best[1], task), task) - aim
+            if gained > 0.0:
+                best = row, solution
+            if gained < ENOUGH:
+                break
+        elif broken > max(SLOW * worse, NEARLY) and best is None:
+            break
+        moved = _improve(row, each, task)
+        if max(abs(np.log(moved[name] / row[name])) for name in _varied(task)) < STILL:
+            break
+        row = moved
+    if best is None:
+        row, solution = last or (row, Solution(values={}))
+        return _told(row, solution, task, solved, fits=False)
+    return _told(*best, task, solved, fits=True)
+
+
+def finish(task: Task, solved: int = 0) -> Refined:
+    """Return a refined candidate solved finely; where that finds more, a step back by what it found.
+
+    Parameters
+    ----------
+    task : Task
+        With the refined sizes.
+    solved : int
+        Solutions so far.
+    """
+    row, solution = dict(task.row), Solution(values={})
+    # A life that gives way has no limit in the file any more, and has to be known all the same.
+    lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
+    for _ in range(FINE_ROUNDS):
+        try:
+            drive = drive_of(row, task.requirements)
+        except CycloError as error:
+            solution = Solution(values={}, message=" ".join(str(error).split()))
+            break
+        limits = relaxed_limits(written_limits(task.requirements), task)
+        solution, solved = (
+            solve_finely(row, drive, limits, task.requirements, task.demands, lives=lives),
+            solved + 1,
+        )
+        if not solution.values:
+            break
+        each = _actual(solution, task)
+        if solution.passes and _keeps(each, task):
+            return _told(row, solution, task, solved, fits=True)
+        row = _rounded(_improve(row, each, task), task)
+    return _told(row, solution, task, solved, fits=False)
+
+
+def relaxed_limits(limits: Limits, task: Task) -> Limits:
+    """Return limits without those of demands that are relaxed.
+
+    Parameters
+    ----------
+    limits : dict
+        Of a drive file.
+    task : Task
+        With the names of what is relaxed.
+    """
+    gone = {f"{one.sense}_{one.quantity}" for one in task.demands if one.name in task.relaxed}
+    return {key: limit for key, limit in limits.items() if key not in gone}
+
+
+def most_rollers(row: dict[str, float], task: Task) -> int:
+    """Return how many rollers go beside each other in the bearing of a candidate.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        Of `Sizes.row`.
+    task : Task
+        For the gap of the cage.
+    """
+    radius = row["roller_radius"]
+    part = radius * (1.0 + task.requirements.asked.shop.cage_gap) / (row["bore"] - radius)
+    return max(3, floor(pi / asin(part) + 1e-9)) if part < 1.0 else 3
+
+
+def _varied(task: Task) -> tuple[str, ...]:
+    return (*CONTINUOUS, "torque") if "torque" in task.relaxed else CONTINUOUS
+
+
+def _actual(solution: Solution, task: Task) -> FloatArray:
+    """Margins by the solution; of what it does not say, none."""
+    values = {name: np.array([value]) for name, value in solution.values.items()}
+    return np.asarray(margins(task.demands, values)[0])
+
+
+def _held(task: Task) -> NDArray[np.bool_]:
+    return np.asarray([one.name not in task.relaxed for one in task.demands])
+
+
+def _keeps(each: FloatArray, task: Task) -> bool:
+    return bool(np.all(each[_held(task)] >= -1e-9))
+
+
+def _given(each: FloatArray, task: Task) -> float:
+    # What is not known has given everything.
+    free = np.nan_to_num(each[~_held(task)], nan=-np.inf)
+    return float(np.max(-free, initial=0.0))
+
+
+def _aim(solution: Solution, each: FloatArray, task: Task) -> float:
+    if task.relaxed:
+        return _given(each, task)
+    return float(
+        size_of({name: np.array(value) for name, value in solution.values.items()}, task.requirements.asked.smallest)
+    )
+
+
+def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
+    """Sizes as a drawing has them, within the room there is."""
+    found = {name: round(value, DECIMALS) if name in CONTINUOUS else value for name, value in row.items()}
+    asked, shop = task.requirements.asked, task.requirements.asked.shop
+    if "outer_diameter" not in task.relaxed:
+        most = 0.5 * asked.outer_diameter - shop.housing_wall - row["pin_radius"]
+        found["pin_circle"] = (
+            min(found["pin_circle"], most) if found["pin_circle"] - most < TOUCH else found["pin_circle"]
+        )
+    if "length" not in task.relaxed:
+        most = (asked.length - shop.flanges - (row["discs"] - 1.0) * shop.disc_gap) / row["discs"]
+        found["thickness"] = min(found["thickness"], most) if found["thickness"] - most < TOUCH else found["thickness"]
+    if 0.0 < row["roller_length"] - found["thickness"] < TOUCH:
+        found["thickness"] = row["roller_length"]
+    found["torque"] = row["torque"] if row["torque"] == asked.torque else float(f"{row['torque']:.5g}")
+    return found
+
+
+def _between(first: dict[str, float], second: dict[str, float]) -> dict[str, float]:
+    return {name: (first[name] * second[name]) ** 0.5 if name in CONTINUOUS else first[name] for name in first}
+
+
+def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str, float]:
+    """Optimise on closed forms that say at `row` what the solution said there."""
+    from scipy.optimize import minimize
+
+    setting, names, held = Setting.of(task.requirements), _varied(task), _held(task)
+    row = {**row, "rollers": float(most_rollers(row, task))}
+    start = np.array([np.log(row[name]) for name in names])
+
+    def forms(places: FloatArray) -> tuple[FloatArray, FloatArray]:
+        rows = [row | dict(zip(names, np.exp(place), strict=True)) for place in places]
+        values = closed_forms(Sizes.of_rows(rows), setting)
+        each = margins(task.demands, values)
+        # What no closed form tells stays as it is.
+        return np.where(np.isnan(each), 0.0, each), size_of(values, task.requirements.asked.smallest)
+
+    here = forms(start[None])[0][0]
+    shape = np.array([one.kind == "shape" for one in task.demands])
+    # A count of rollers that grew is not what was solved: shape is exact, and told anew.
+    shift = np.where(shape | np.isnan(actual), 0.0, actual - here)
+    scale = np.array([one.scale for one in task.demands])
+    target = np.where(shape, 2.0 * 10.0**-DECIMALS / scale, SAFETY)
+    room = np.array([one.quantity in ("outer_diameter", "length", "torque") for one in task.demands])
+    target[room | np.array([one.quantity == "roller_room" for one in task.demands])] = 0.0
+    count = len(names)
+    cache: dict[bytes, tuple[FloatArray, FloatArray, float, FloatArray]] = {}
+
+    def known(full: FloatArray) -> tuple[FloatArray, FloatArray, float, FloatArray]:
+        place = full[:count]
+        key = place.tobytes()
+        if key not in cache:
+            each, size = forms(np.vstack([place, place + DIFFERENCE * np.eye(count)]))
+            cache.clear()
+            slopes, grows = ((each[1:] - each[0]) / DIFFERENCE).T, (size[1:] - size[0]) / DIFFERENCE
+            cache[key] = each[0] + shift - target, slopes, float(size[0]), grows
+        return cache[key]
+
+    # Beside the sizes: how much of what is relaxed is given, and how much of the rest is broken.
+    relaxes = bool(task.relaxed)
+
+    def objective(full: FloatArray) -> float:
+        _, _, size, _ = known(full)
+        return float((full[count] + 1e-3 * size if relaxes else size) + HARD * full[count + 1])
+
+    def slope(full: FloatArray) -> FloatArray:
+        _, _, _, size = known(full)
+        return np.concatenate([(1e-3 if relaxes else 1.0) * size, [1.0 if relaxes else 0.0, HARD]])
+
+    def kept(full: FloatArray) -> FloatArray:
+        return np.asarray(known(full)[0] + np.where(held, full[count + 1], full[count]))
+
+    def kept_slope(full: FloatArray) -> FloatArray:
+        return np.hstack([known(full)[1], np.where(held, 0.0, 1.0)[:, None], np.where(held, 1.0, 0.0)[:, None]])
+
+    first = known(np.concatenate([start, [0.0, 0.0]]))[0]
+    given, broken = (
+        max(0.0, float(np.max(-first[~held], initial=0.0))),
+        max(0.0, float(np.max(-first[held], initial=0.0))),
+    )
+    bounds = [(place - STEP, place + STEP) for place in start] + [(0.0, given + 3.0), (0.0, broken + 1.0)]
+    if "torque" in names:
+        at = names.index("torque")
+        bounds[at] = (start[at] - 2.0 * STEP, min(start[at] + STEP, float(np.log(task.requirements.asked.torque))))
+    found = minimize(
+        objective,
+        np.concatenate([start, [given, broken]]),
+        jac=slope,
+        method="SLSQP",
+        bounds=bounds,
+        constraints=[{"type": "ineq", "fun": kept, "jac": kept_slope}],
+        options={"maxiter": 60, "ftol": 1e-6},
+    )
+    place = np.clip(found.x[:count], [low for low, _ in bounds[:count]], [high for _, high in bounds[:count]])
+    if not np.all(np.isfinite(place)):
+        place = start
+    return row | {name: float(value) for name, value in zip(names, np.exp(place), strict=True)}
+
+
+def _told(row: dict[str, float], solution: Solution, task: Task, solved: int, *, fits: bool) -> Refined:
+    each = _actual(solution, task) if solution.values else np.full(len(task.demands), np.nan)
+    broken = {
+        one.name: float(-margin)
+        for one, margin in zip(task.demands, each, strict=True)
+        if one.name not in task.relaxed and margin < -1e-9
+    }
+    closed = margins(task.demands, closed_forms(Sizes.of_rows([row]), Setting.of(task.requirements)))[0]
+    moved = zip(task.demands, each - closed, strict=True)
+    shifts = {one.name: float(shift) for one, shift in moved if one.kind != "shape" and np.isfinite(shift)}
+    return Refined(
+        row=row, solution=solution, fits=fits, given=_given(each, task), broken=broken, relaxed=task.relaxed,
+        solved=solved,
+        shifts=shifts,
+    )  # fmt: skip

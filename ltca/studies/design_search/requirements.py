@@ -1,0 +1,323 @@
+"""What is asked of a drive, as a TOML file: numbers in the units of drive files, texts with their own (docs/design.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import STRICT, NonNegativeLength, PositiveLength, SignedLength
+from ltca.drive.materials import PARTS, STEEL, Materials
+from ltca.drive.members.limits import Limits, parse_limits
+from ltca.drive.members.named_materials import with_named_materials
+from ltca.drive.members.operation import Friction, Lubricant, Temperature
+from ltca.drive.mistakes import describe_mistakes
+from ltca.drive.names import Name
+from ltca.drive.units.quantities import COUNT, check_count, quantity
+from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.reading.toml_text import parse_toml, read_text
+from ltca.studies.design_search.stock import Stock, build_stock, first_mistakes, stock_table
+
+NO_FILE = "no such file; docs/design.md says what a requirement file holds, examples/requirements has ten"
+STOCK = ("eccentricities", "wheel_pins", "shaft_pins", "rollers")
+MOST_DISCS = 3
+
+
+def _counts(value: Any) -> Any:
+    return tuple(check_count(one) for one in (value if isinstance(value, list | tuple) else [value]))
+
+
+Counts = Annotated[
+    tuple[Annotated[int, Field(ge=1, le=MOST_DISCS)], ...], Field(min_length=1), BeforeValidator(_counts)
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Shop:
+    """What can be made, and how parts are put together.
+
+    Attributes
+    ----------
+    equidistant_offset, shifting_offset : float
+        Of the flank: the clearance that the shop needs there, mm.
+    bearing_clearance, pin_hole_clearance : float
+        As in a drive file, mm.
+    least_wall : float
+        Between holes, bores and roots, mm.
+    least_pin_gap : float
+        Between neighbouring wheel pins, mm.
+    housing_wall : float
+        Outside of the wheel pins, mm.
+    disc_gap : float
+        Between neighbouring discs, mm.
+    flanges : float
+        What comes to the discs in length, both sides together, mm.
+    cage_gap : float
+        Between neighbouring rollers, as a part of their diameter.
+    least_race : float
+        Of the crank, between its shaft and the inner race of the eccentric on its thin side, mm.
+    crankshaft_shear : float
+        That the shaft of a crank may have by the torque of the input, MPa.
+    shaft_pin_stiffness : float or None
+        Of a shaft pin as a spring, N/mm; left out, shaft pins are beams that a ring ties.
+    crank_support_stiffness : float or None
+        Radial, of each of the two bearings of a crankshaft, N/mm; rigid when left out.
+    """
+
+    equidistant_offset: SignedLength = 0.02
+    shifting_offset: SignedLength = 0.0
+    bearing_clearance: NonNegativeLength = 0.005
+    pin_hole_clearance: NonNegativeLength = 0.005
+    least_wall: PositiveLength = 2.0
+    least_pin_gap: PositiveLength = 0.5
+    housing_wall: NonNegativeLength = 4.0
+    disc_gap: NonNegativeLength = 1.0
+    flanges: NonNegativeLength = 0.0
+    cage_gap: Annotated[float, quantity("dimensionless", ge=0.0, le=2.0)] = 0.2
+    least_race: PositiveLength = 1.5
+    crankshaft_shear: Annotated[float, quantity("MPa", gt=0.0)] = 40.0
+    shaft_pin_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
+    crank_support_stiffness: Annotated[float, quantity("N/mm", gt=0.0)] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Asked:
+    """The plain keys and the tables of a requirement file that are read as they stand.
+
+    Attributes
+    ----------
+    name : str
+        Of the drives that are written.
+    kind : {"discs", "rv"}
+        One crank in the centre and a pin shaft, or several cranks behind a spur stage.
+    discs : tuple of int
+        Numbers of discs to choose from, 1 to 3.
+    cranks : int
+        Of an RV reducer.
+    held : {"pin-shaft", "pin-wheel"}
+        Member that stands still.
+    ratio : float
+        Turns of the input for one of the output, its size.
+    ratio_tolerance : float
+        By which part the ratio may differ.
+    torque : float
+        On the output, N·mm.
+    speed : float
+        Of the output, turns a minute.
+    outer_diameter, length : float
+        Room for the drive, mm.
+    life : float or None
+        Of the crank bearings, L10r in hours, at least.
+    stiffness : float or None
+        Torsional, at the output, N·mm/rad, at least.
+    backlash, lost_motion : float or None
+        At the output, rad, at most; lost motion at ± 3 % of the torque.
+    efficiency : float or None
+        At least.
+    smallest : {"size", "diameter", "length"}
+        What designs are ranked by: volume of the cylinder around them, or one of its sizes.
+    shop : Shop
+        What can be made.
+    friction, temperature, lubricant : dataclass or None
+        As in a drive file.
+    """
+
+    name: Name = "design"
+    kind: Literal["discs", "rv"] = "discs"
+    discs: Counts = (1, 2)
+    cranks: Annotated[int, Field(ge=2, le=6), COUNT] = 3
+    held: Literal["pin-shaft", "pin-wheel"] = "pin-wheel"
+    ratio: Annotated[float, quantity("dimensionless", ge=3.0, le=1000.0)]
+    ratio_tolerance: Annotated[float, quantity("dimensionless", ge=0.0, le=0.5)] = 0.0
+    torque: Annotated[float, quantity("N*mm", gt=0.0)]
+    speed: Annotated[float, quantity("rpm", gt=0.0)]
+    outer_diameter: PositiveLength
+    length: PositiveLength
+    life: Annotated[float, quantity("h", gt=0.0)] | None = None
+    stiffness: Annotated[float, quantity("N*mm/rad", gt=0.0)] | None = None
+    backlash: Annotated[float, quantity("rad", gt=0.0)] | None = None
+    lost_motion: Annotated[float, quantity("rad", gt=0.0)] | None = None
+    efficiency: Annotated[float, quantity("dimensionless", gt=0.0, lt=1.0)] | None = None
+    smallest: Literal["size", "diameter", "length"] = "size"
+    shop: Shop = field(default_factory=Shop)
+    friction: Friction | None = None
+    temperature: Temperature | None = None
+    lubricant: Lubricant | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Requirements:
+    """A requirement file, read.
+
+    Attributes
+    ----------
+    asked : Asked
+        What is asked.
+    stock : Stock
+        What there is to choose from.
+    materials : Materials
+        Of the parts, as in a drive file.
+    material_table : dict
+        The same as it was given, names and all.
+    limits : dict of str to Limit
+        ``[limits]``, as in a drive file.
+    text : str
+        What was read.
+    """
+
+    asked: Asked
+    stock: Stock
+    materials: Materials
+    material_table: dict[str, Any]
+    limits: Limits
+    text: str
+
+    @property
+    def input_speed(self) -> float:
+        """Turns a minute of the input at the ratio that is asked for."""
+        return self.asked.speed * self.asked.ratio
+
+
+def load_requirements(path: Path) -> Requirements:
+    """Read a requirement file.
+
+    Parameters
+    ----------
+    path : Path
+        TOML.
+
+    Raises
+    ------
+    DriveError
+        With every mistake: field, value, bound, unit.
+    """
+    return parse_requirements(read_text(path, NO_FILE), str(path), path.parent, path.stem)
+
+
+def parse_requirements(
+    text: str, source: str = "requirements", folder: Path | None = None, name: str = "design"
+) -> Requirements:
+    """Validate the text of a requirement file; see `load_requirements`.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    source : str
+        Where it is from, for messages.
+    folder : Path, optional
+        In which a stock file is looked for.
+    name : str
+        Of the designs where the file gives none.
+    """
+    table = parse_toml(text, source)
+    table.setdefault("name", name)
+    problems: list[str] = []
+    limits = parse_limits(table.pop("limits", {}), problems)
+    material_table = table.pop("materials", {})
+    materials = _materials(material_table, problems)
+    stock = _stock(table, folder or Path(), problems)
+    asked: Asked | None = None
+    try:
+        asked = TypeAdapter(Asked).validate_python(table)
+    except ValidationError as error:
+        for place, known in FIELDS.items():
+            # A missing field and its misspelling are told as one where they are of one table.
+            own = [detail for detail in first_mistakes(error) if _table_of(detail["loc"]) == place]
+            problems += describe_mistakes(own, (), known)
+    if asked is not None and materials is not None:
+        problems += _contradictions(asked, materials, limits)
+    if problems or asked is None or stock is None or materials is None:
+        raise DriveError(problems, source)
+    return Requirements(
+        asked=asked, stock=stock, materials=materials, material_table=dict(material_table), limits=limits, text=text
+    )
+
+
+FIELDS: dict[str, tuple[str, ...]] = {
+    "": (*Asked.__dataclass_fields__, "materials", "limits"),
+    "shop": (*Shop.__dataclass_fields__, *STOCK, "stock"),
+    "friction": tuple(Friction.__dataclass_fields__),
+    "temperature": tuple(Temperature.__dataclass_fields__),
+    "lubricant": tuple(Lubricant.__dataclass_fields__),
+}
+"""Names of fields, by table."""
+
+
+def _table_of(place: tuple[int | str, ...]) -> str:
+    return str(place[0]) if len(place) > 1 and place[0] in FIELDS else ""
+
+
+def _materials(table: Any, problems: list[str]) -> Materials | None:
+    if not isinstance(table, Mapping):
+        problems.append(f"materials = {shortened(table)}: must be a table")
+        return None
+    before = len(problems)
+    problems += [
+        f"materials.{shortened(part)[1:-1]}: is not a part{did_you_mean(str(part), PARTS)}"
+        for part in table
+        if part not in PARTS
+    ]
+    resolved = with_named_materials({"materials": table}, problems)["materials"]
+    if len(problems) > before:
+        return None
+    try:
+        return TypeAdapter(Materials).validate_python(resolved)
+    except ValidationError as error:
+        problems += describe_mistakes(error.errors(), ("materials",))
+        return None
+
+
+def _stock(table: dict[str, Any], folder: Path, problems: list[str]) -> Stock | None:
+    """The stock: of the package, of a file, and of ``[shop]``, whose entries stand before both."""
+    shop = table.get("shop", {})
+    own: dict[str, Any] = {}
+    given: dict[str, Any] = {}
+    source = "shop"
+    if isinstance(shop, Mapping):
+        table["shop"] = {key: value for key, value in shop.items() if key not in (*STOCK, "stock")}
+        own = {key: shop[key] for key in STOCK if key in shop}
+        path = shop.get("stock")
+        if path is not None and not isinstance(path, str):
+            problems.append(f"shop.stock = {shortened(path)}: must be the name of a file")
+            return None
+        if path is not None:
+            source = path
+    try:
+        given = stock_table(None if source == "shop" else folder / source)
+        return build_stock({**given, **own}, source)
+    except DriveError as error:
+        problems += error.problems
+        return None
+
+
+def _contradictions(asked: Asked, materials: Materials, limits: Limits) -> list[str]:
+    found = []
+    if asked.efficiency is not None and asked.friction is None:
+        found.append(
+            f"efficiency = {asked.efficiency:g}: nothing rubs; give [friction] its coefficients, or leave it out"
+        )
+    if asked.kind == "discs" and abs(asked.ratio - round(asked.ratio)) > asked.ratio * asked.ratio_tolerance + 1e-9:
+        found.append(
+            f'ratio = {asked.ratio:g}: must be a whole number with kind = "discs", or within ratio_tolerance of one '
+            f"(ratio_tolerance = {asked.ratio_tolerance:g})"
+        )
+    if asked.kind == "rv" and asked.shop.shaft_pin_stiffness is not None:
+        found.append('shop.shaft_pin_stiffness: must be left out with kind = "rv", which has no shaft pins')
+    if asked.kind == "rv" and 1 in asked.discs:
+        found.append('discs: must be 2 or 3 with kind = "rv"; one disc leaves its cranks unbalanced')
+    wanted_lives = [key for key in limits if "bearing_life" in key or "static_safety" in key]
+    for part in ("inner_race", "roller", "disc"):
+        modulus = getattr(materials, part).youngs_modulus
+        if not STEEL[0] <= modulus <= STEEL[1] and (asked.life is not None or wanted_lives):
+            name = "life" if asked.life is not None else f"limits.{wanted_lives[0]}"
+            value = f" = {asked.life:g} h" if asked.life is not None else ""
+            found.append(
+                f"{name}{value}: cannot be rated with materials.{part}.youngs_modulus = {modulus:g} MPa, which is no bearing "
+                "steel (ISO 281); leave it out"
+            )
+    return found

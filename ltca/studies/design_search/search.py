@@ -1,0 +1,340 @@
+"""From requirements to designs; where none fits, what stands in the way and how much it would have to give.
+
+Each requirement alone is dropped and becomes what is to be broken least, all others held: its own enumeration and refinement
+say what would do. Where no single one is enough, pairs give alike (the same factor on both).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, as_completed
+from dataclasses import dataclass
+from itertools import combinations as pairs_of
+from math import ceil, exp, floor, log10
+
+import numpy as np
+
+from ltca.studies.design_search.demands import Demand, find_demands
+from ltca.studies.design_search.enumeration import FARTHEST, Enumeration, enumerate_candidates, size_of
+from ltca.studies.design_search.refinement import Refined, Task, finish, refine
+from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.sizes import Sizes
+
+CANDIDATES = 6
+"""Candidates that are refined."""
+RELAXED_CANDIDATES = 3
+TORQUES = 0.85, 0.7, 0.55, 0.4, 0.28, 0.2, 0.14, 0.1
+"""Parts of the torque that are tried where it stands in the way."""
+PASSES = 2
+"""Enumerations: the second with closed forms moved by what loaded drives said, where the first found nothing."""
+CHANCE = 0.1
+"""What a candidate may break by closed forms (ln) to be taken for one."""
+PAIRS = 6
+"""Pairs of requirements that are tried at most."""
+DIGITS = 4
+"""Of what would do; rounded to the side that does."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Relaxation:
+    """What one requirement, or two, would have to give.
+
+    Attributes
+    ----------
+    demands : tuple of Demand
+        Which.
+    refined : Refined or None
+        The design that then fits; None where none was found.
+    combinations : int
+        That were looked at.
+    broken : float or None
+        Least sum of what the best candidate breaks of the others by closed forms (ln); None without candidates.
+    """
+
+    demands: tuple[Demand, ...]
+    refined: Refined | None
+    combinations: int
+    broken: float | None
+
+    @property
+    def name(self) -> str:
+        """Of the requirements."""
+        return "-and-".join(one.name for one in self.demands)
+
+    def would_do(self, demand: Demand) -> float | None:
+        """Return the value of a requirement that would do, rounded to the side that does.
+
+        Parameters
+        ----------
+        demand : Demand
+            One of `demands`.
+        """
+        if self.refined is None:
+            return None
+        return rounded_safely(self.refined.solution.values[demand.quantity], demand.sense)
+
+    @property
+    def words(self) -> str:
+        """The same as a sentence."""
+        asked = " and ".join(f"{one.name.replace('_', ' ')} {one.words()}" for one in self.demands)
+        if self.refined is None:
+            alone = "alone" if len(self.demands) == 1 else "together"
+            room = any(one.name in ("outer_diameter", "length") for one in self.demands)
+            return f"{asked}: not enough {alone}{f' (tried to × {FARTHEST:g})' if room else ''}"
+        found = " with ".join(one.words(self.would_do(one)) for one in self.demands)
+        return f"{asked}: {found} would do"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Found:
+    """What a search found.
+
+    Attributes
+    ----------
+    requirements : Requirements
+        What was asked.
+    demands : tuple of Demand
+        Of it.
+    designs : tuple of Refined
+        That fit, best first.
+    tried : tuple of Refined
+        Candidates that were refined and do not.
+    relaxations : tuple of Relaxation
+        Where nothing fits: what would do first, by how little.
+    combinations, solved : int
+        Looked at by closed forms; loaded drives that were solved.
+    """
+
+    requirements: Requirements
+    demands: tuple[Demand, ...]
+    designs: tuple[Refined, ...]
+    tried: tuple[Refined, ...]
+    relaxations: tuple[Relaxation, ...]
+    combinations: int
+    solved: int
+
+
+def rounded_safely(value: float, sense: str) -> float:
+    """Return a value with a few digits, rounded up where it is the most that is allowed, down where the least.
+
+    Parameters
+    ----------
+    value : float
+        What was reached.
+    sense : {"max", "min"}
+        Of the limit.
+
+    Examples
+    --------
+    >>> rounded_safely(71.3521, "max"), rounded_safely(0.86129, "min")
+    (71.36, 0.8612)
+    """
+    if value == 0.0:
+        return 0.0
+    digits = DIGITS - 1 - floor(log10(abs(value)))
+    scaled = value * 10.0**digits
+    whole = round(scaled) if abs(scaled - round(scaled)) < 1e-6 else (ceil(scaled) if sense == "max" else floor(scaled))
+    return round(whole / 10.0**digits, max(digits, 0))
+
+
+def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> Relaxation:
+    """Return the least that requirements would have to give, all others held.
+
+    Parameters
+    ----------
+    requirements : Requirements
+        What is asked.
+    demands : tuple of Demand
+        Of it.
+    names : tuple of str
+        Of the demands that give.
+    """
+    combinations, best = 0, None
+    shifts: dict[str, float] = {}
+    giving = tuple(one for one in demands if one.name in names)
+    for _ in range(PASSES):
+        # Less torque changes what goes into a drive: the first part of it that closed forms leave a chance is where to start.
+        for part in TORQUES if "torque" in names else (1.0,):
+            torque = part * requirements.asked.torque
+            found = enumerate_candidates(requirements, demands, names, RELAXED_CANDIDATES, torque, shifts)
+            combinations += found.combinations
+            if found.broken.size and found.broken.min() < CHANCE:
+                break
+        tasks = [Task(requirements=requirements, demands=demands, row=row, relaxed=names) for row in _rows(found)]
+        refined = [refine(task) for task in tasks]
+        for one in sorted((one for one in refined if one.fits), key=lambda one: one.given):
+            fine = finish(Task(requirements=requirements, demands=demands, row=one.row, relaxed=names), one.solved)
+            if fine.fits:
+                best = fine
+                break
+        shifts = mean_shifts(refined)
+        if best is not None or not shifts:
+            break
+    broken = float(found.broken.min()) if found.broken.size else None
+    return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken)
+
+
+def find_designs(
+    requirements: Requirements,
+    executor: Executor,
+    told: Callable[[str], None] = lambda step: None,
+    best: int = 3,
+) -> Found:
+    """Return the designs that fit, or what stands in the way.
+
+    Parameters
+    ----------
+    requirements : Requirements
+        What is asked.
+    executor : Executor
+        That refines candidates.
+    told : callable
+        Told of every step.
+    best : int
+        Designs wanted.
+    """
+    demands = find_demands(requirements)
+    told("combinations")
+    most = max(CANDIDATES, 2 * best)
+    found = enumerate_candidates(requirements, demands, (), most)
+    refined = _refine_all(requirements, demands, _rows(found), executor, told)
+    looked = found.combinations
+    if not any(one.fits for one in refined) and (shifts := mean_shifts(refined)):
+        # Closed forms that are wrong on one side pick the wrong candidates: once more with what loaded drives said.
+        found = enumerate_candidates(requirements, demands, (), most, shifts=shifts)
+        refined += _refine_all(requirements, demands, _rows(found), executor, told)
+        looked += found.combinations
+    solved = sum(one.solved for one in refined)
+    smallest = requirements.asked.smallest
+    coarse = _once(sorted((one for one in refined if one.fits), key=lambda one: _size(one, smallest)))
+    designs: list[Refined] = []
+    missed = [one for one in refined if not one.fits]
+    while coarse and len(designs) < best:
+        told(f"designs solved finely: {len(designs)} of {min(best, len(designs) + len(coarse))}")
+        now, coarse = coarse[: best - len(designs)], coarse[best - len(designs) :]
+        tasks = [Task(requirements=requirements, demands=demands, row=one.row) for one in now]
+        done = [future.result() for future in [executor.submit(finish, task) for task in tasks]]
+        solved += sum(one.solved for one in done)
+        designs += [one for one in done if one.fits]
+        missed += [one for one in done if not one.fits]
+    relaxations: list[Relaxation] = []
+    if not designs:
+        relaxations = _stand_in_the_way(requirements, demands, missed, executor, told)
+        looked += sum(one.combinations for one in relaxations)
+        solved += sum(one.refined.solved for one in relaxations if one.refined is not None)
+        # What has nothing to give after all fits as it is, if a solution with every limit in its place says so.
+        whole = [one.refined for one in relaxations if one.refined is not None and one.refined.given <= 0.0]
+        fine = [finish(Task(requirements=requirements, demands=demands, row=one.row)) for one in whole]
+        designs = [one for one in fine if one.fits]
+    designs.sort(key=lambda one: _size(one, smallest))
+    return Found(
+        requirements=requirements,
+        demands=demands,
+        designs=tuple(_once(designs)),
+        tried=tuple(missed),
+        relaxations=() if designs else tuple(relaxations),
+        combinations=looked,
+        solved=solved,
+    )
+
+
+def _rows(found: Enumeration) -> list[dict[str, float]]:
+    return [] if found.sizes is None else [found.sizes.take([place]).row() for place in range(found.sizes.count)]
+
+
+def mean_shifts(refined: list[Refined]) -> dict[str, float]:
+    """Return by how much margins of loaded drives are above those of closed forms, by name: the mean of all.
+
+    Parameters
+    ----------
+    refined : list of Refined
+        What was solved.
+    """
+    each = [one.shifts for one in refined if one.shifts]
+    names = set().union(*each) if each else set()
+    return {name: float(np.mean([one[name] for one in each if name in one])) for name in sorted(names)}
+
+
+def _size(refined: Refined, smallest: str) -> float:
+    return float(size_of({name: np.array(value) for name, value in refined.solution.values.items()}, smallest))
+
+
+def _refine_all(
+    requirements: Requirements,
+    demands: tuple[Demand, ...],
+    rows: list[dict[str, float]],
+    executor: Executor,
+    told: Callable[[str], None],
+) -> list[Refined]:
+    """In the order of the rows, whoever is done first."""
+    futures = {}
+    for number, row in enumerate(rows):
+        told(f"candidate {number + 1} of {len(rows)}")
+        futures[executor.submit(refine, Task(requirements=requirements, demands=demands, row=row))] = number
+    done: dict[int, Refined] = {}
+    for future in as_completed(futures):
+        done[futures[future]] = future.result()
+        told(f"candidates refined: {len(done)} of {len(rows)}")
+    return [done[number] for number in sorted(done)]
+
+
+def _stand_in_the_way(
+    requirements: Requirements,
+    demands: tuple[Demand, ...],
+    tried: list[Refined],
+    executor: Executor,
+    told: Callable[[str], None],
+) -> list[Relaxation]:
+    asked = [one for one in demands if one.kind in ("requirement", "limit")]
+    single = _relax_all(requirements, demands, [(one.name,) for one in asked], executor, told)
+    if any(one.refined is not None for one in single):
+        return sorted(single, key=_least)
+    # Pairs: of what closed forms and candidates broke least or most there is no telling, so room and torque go first.
+    broken = {name for one in tried for name in one.broken}
+    order = sorted(
+        asked, key=lambda one: (one.name not in broken, one.name not in ("outer_diameter", "length", "torque"))
+    )
+    names = [tuple(one.name for one in pair) for pair in pairs_of(order, 2)][:PAIRS]
+    return sorted(_relax_all(requirements, demands, names, executor, told), key=_least) + single
+
+
+def _relax_all(
+    requirements: Requirements,
+    demands: tuple[Demand, ...],
+    names: list[tuple[str, ...]],
+    executor: Executor,
+    told: Callable[[str], None],
+) -> list[Relaxation]:
+    futures = {}
+    for number, own in enumerate(names):
+        told(f"what stands in the way: {number + 1} of {len(names)}")
+        futures[executor.submit(relax, requirements, demands, own)] = number
+    done: dict[int, Relaxation] = {}
+    for future in as_completed(futures):
+        done[futures[future]] = future.result()
+        told(f"what stands in the way: {len(done)} of {len(names)}")
+    return [done[number] for number in sorted(done)]
+
+
+def _least(relaxation: Relaxation) -> float:
+    return float("inf") if relaxation.refined is None else relaxation.refined.given
+
+
+def factor_words(relaxation: Relaxation) -> str:
+    """Return by which factor a relaxed requirement gives, as told beside it; empty where nothing does."""
+    if relaxation.refined is None:
+        return ""
+    return f"× {exp(relaxation.refined.given):.3g}"
+
+
+def _once(designs: list[Refined]) -> list[Refined]:
+    """Designs that differ by more than rounding."""
+    found: list[Refined] = []
+    for one in designs:
+        if all(_differs(one.row, other.row) for other in found):
+            found.append(one)
+    return found
+
+
+def _differs(first: dict[str, float], second: dict[str, float]) -> bool:
+    return any(abs(first[name] - second[name]) > 0.02 * abs(second[name]) for name in Sizes.__dataclass_fields__)

@@ -1,0 +1,198 @@
+"""Sizes of many candidates at once, and the drive of one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.drive.materials import Material
+from ltca.drive.parts import Drive
+from ltca.reading.drive_file import build_drive
+from ltca.studies.design_search.requirements import Requirements
+
+FloatArray = NDArray[np.float64]
+
+LIGHT = 0.03
+"""Light torque as a part of the whole."""
+CONTINUOUS = ("pin_circle", "thickness", "bore", "hole_circle")
+"""What refinement varies; the rest is counted, or comes in stock sizes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sizes:
+    """Sizes of candidates, an array each, shape (candidates,); radii and lengths in mm.
+
+    Attributes
+    ----------
+    discs, pins, rollers, holes : array
+        n, z_P, n_BR, and z_PS (0 for RV reducers).
+    stage : array
+        z₂/z₁ of the first stage of RV reducers; 1 for others.
+    sun, planet : array
+        Its teeth z₁ and z₂; 0 for others.
+    eccentricity, pin_circle, pin_radius, thickness : array
+        e, R_C, r_P, t.
+    bore, roller_radius, roller_length : array
+        r_o, r_BR and the length of the rollers.
+    hole_circle, hole_pin : array
+        R_PS, or of RV reducers the circle of the cranks; r_PS.
+    torque : array
+        On the output, N·mm: that asked for, or less where it stands in the way.
+    """
+
+    discs: FloatArray
+    pins: FloatArray
+    stage: FloatArray
+    sun: FloatArray
+    planet: FloatArray
+    eccentricity: FloatArray
+    pin_circle: FloatArray
+    pin_radius: FloatArray
+    thickness: FloatArray
+    bore: FloatArray
+    roller_radius: FloatArray
+    roller_length: FloatArray
+    rollers: FloatArray
+    holes: FloatArray
+    hole_circle: FloatArray
+    hole_pin: FloatArray
+    torque: FloatArray
+
+    @property
+    def count(self) -> int:
+        """Candidates."""
+        return int(self.pins.size)
+
+    def take(self, rows: Any) -> Sizes:
+        """Return some of the candidates, as an index of arrays chooses."""
+        return Sizes(**{item.name: np.atleast_1d(getattr(self, item.name)[rows]) for item in fields(self)})
+
+    def row(self) -> dict[str, float]:
+        """Return the numbers of the one candidate by name."""
+        return {item.name: float(getattr(self, item.name).item()) for item in fields(self)}
+
+    @classmethod
+    def of_rows(cls, rows: list[dict[str, float]]) -> Sizes:
+        """Return candidates of their numbers by name."""
+        return cls(**{item.name: np.array([row[item.name] for row in rows], dtype=float) for item in fields(cls)})
+
+
+def joined(parts: list[Sizes]) -> Sizes:
+    """Return the candidates of several sets as one."""
+    return Sizes(**{item.name: np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Sizes)})
+
+
+def stack_length(sizes: Sizes, gap: float) -> FloatArray:
+    """Return the length of the discs with the gaps between them, mm."""
+    return np.asarray(sizes.discs * sizes.thickness + (sizes.discs - 1.0) * gap)
+
+
+def drive_table(row: dict[str, float], requirements: Requirements, name: str) -> dict[str, Any]:
+    """Return the drive of one candidate as plain tables, as in a drive file.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        Of `Sizes.row`.
+    requirements : Requirements
+        For all that is not varied.
+    name : str
+        Of the drive.
+    """
+    asked, shop = requirements.asked, requirements.asked.shop
+    discs, several = int(row["discs"]), asked.kind == "rv"
+    pitch, stack = row["thickness"] + shop.disc_gap, discs * row["thickness"] + (discs - 1) * shop.disc_gap
+    inner = row["bore"] - 2.0 * row["roller_radius"]
+    held = asked.held == "pin-wheel"
+    turned = row["pins"] - (1.0 if held else 0.0)
+    if several:
+        turned = row["stage"] * row["pins"] + (1.0 if held else 0.0)
+    materials = {
+        part: getattr(requirements.materials, part)
+        for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+        if not (several and part == "shaft_pin")
+    }
+    expands = asked.temperature is not None
+    if shop.crank_support_stiffness is not None or (expands and requirements.materials.crankshaft != Material()):
+        materials["crankshaft"] = requirements.materials.crankshaft
+    if expands:
+        materials["wheel_seat"] = requirements.materials.wheel_seat
+    table: dict[str, Any] = {
+        "name": name,
+        "installation": {"held": asked.held},
+        "crank": {"eccentricity": row["eccentricity"]},
+        "pin_wheel": {
+            "number_of_pins": int(row["pins"]),
+            "pin_circle_radius": row["pin_circle"],
+            "pin_radius": row["pin_radius"],
+        },
+        "disc": {
+            "number_of_teeth": int(row["pins"]) - 1,
+            "thickness": row["thickness"],
+            "number_of_discs": discs,
+            "equidistant_offset": shop.equidistant_offset,
+            "shifting_offset": shop.shifting_offset,
+        },
+        "crank_bearing": {
+            "inner_race_radius": inner,
+            "outer_race_radius": row["bore"],
+            "number_of_rollers": int(row["rollers"]),
+            "roller_radius": row["roller_radius"],
+            "roller_length": row["roller_length"],
+        },
+        "load": {"torque": row["torque"], "light_torque": LIGHT * row["torque"], "speed": asked.speed * turned},
+        "clearance": {"bearing": shop.bearing_clearance},
+        "materials": materials,
+    }
+    if discs > 1:
+        table["disc"]["planes"] = tuple(pitch * (disc - 0.5 * (discs - 1)) for disc in range(discs))
+    if several:
+        table["installation"]["first_stage_ratio"] = row["stage"]
+        table["crank"] |= {"number": asked.cranks, "circle_radius": row["hole_circle"]}
+        if shop.crank_support_stiffness is not None:
+            half = 0.5 * stack + shop.disc_gap + 0.5 * inner
+            table["crank"]["support"] = {
+                "diameter": 2.0 * (inner - row["eccentricity"]),
+                "positions": (-half, half),
+                "stiffness": (shop.crank_support_stiffness,) * 2,
+            }
+    else:
+        table["clearance"]["pin_hole"] = shop.pin_hole_clearance
+        table["pin_shaft"] = {
+            "number_of_pins": int(row["holes"]),
+            "pin_circle_radius": row["hole_circle"],
+            "pin_radius": row["hole_pin"],
+            "hole_radius": row["hole_pin"] + row["eccentricity"],
+        }
+        if shop.shaft_pin_stiffness is None:
+            span = stack + 2.0 * shop.disc_gap
+            table["pin_shaft"]["beam"] = {"span": span, "tip": "tied-clamped"}
+        else:
+            table["pin_shaft"]["stiffness"] = shop.shaft_pin_stiffness
+    for key in ("friction", "temperature", "lubricant"):
+        if getattr(asked, key) is not None:
+            table[key] = getattr(asked, key)
+    return table
+
+
+def drive_of(row: dict[str, float], requirements: Requirements, name: str | None = None) -> Drive:
+    """Return the drive of one candidate, fully checked.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        Of `Sizes.row`.
+    requirements : Requirements
+        For all that is not varied.
+    name : str, optional
+        Of the drive; that of the requirements by default.
+
+    Raises
+    ------
+    DriveError
+        When it cannot be built.
+    """
+    return build_drive(drive_table(row, requirements, name or requirements.asked.name))

@@ -1,0 +1,193 @@
+"""What the loaded drive of a candidate reaches, judged as `cyclo check` judges it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import gcd
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltca.analysis.extremes import RESOLVED
+from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.analysis.summary import summarise
+from ltca.analysis.torque_curve import torque_curve
+from ltca.analysis.verdict.values import LIVES, find_values, judge_analysis
+from ltca.drive.members.judgement import Check
+from ltca.drive.members.limits import Limits
+from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCMIN
+from ltca.errors import CycloError
+from ltca.geometry.placement import position_angles
+from ltca.studies.design_search.closed_forms import Setting, lives_by_loads, shape_values
+from ltca.studies.design_search.demands import OF_SHAPE, Demand
+from ltca.studies.design_search.requirements import Requirements
+from ltca.studies.design_search.sizes import Sizes, drive_of
+
+COARSE_POSITIONS = 24
+TURNS, HOURS = "bearing_life_million_turns", "bearing_life_hours"
+CHECK_POSITIONS = 360
+"""Of `cyclo check`."""
+BESIDE = 1e-3
+"""Between the positions of a turn, so that nothing is refined, rad."""
+CURVE_ANGLES = np.array([0.0, 0.1])
+"""Crank angles at which stiffness and lost motion are read, rad."""
+CURVE_POINTS = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution:
+    """What a candidate reaches.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        By quantity; empty where it cannot be solved.
+    checks : tuple of Check
+        Of `cyclo check`, for fine solutions alone.
+    positions : int
+        Of a turn.
+    message : str
+        Why it cannot be solved.
+    life_factor : float or None
+        Life by what ISO 281 says of the mean force, of coarse solutions with a demand on lives.
+    """
+
+    values: dict[str, float]
+    checks: tuple[Check, ...] = ()
+    positions: int = COARSE_POSITIONS
+    message: str = ""
+    life_factor: float | None = None
+
+    @property
+    def passes(self) -> bool:
+        """Whether `cyclo check` passes a fine solution."""
+        return bool(self.checks) and not any(check.fails for check in self.checks)
+
+
+def solve_coarsely(
+    row: dict[str, float], requirements: Requirements, demands: tuple[Demand, ...], life_factor: float | None = None
+) -> Solution:
+    """Return what a candidate reaches over few positions.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        Of `Sizes.row`.
+    requirements : Requirements
+        What is asked.
+    demands : tuple of Demand
+        For what has to be known.
+    life_factor : float, optional
+        Of an earlier solution of much the same sizes: lives follow from the forces then. Rollers in slices, which tell them
+        without, take longer than all else.
+    """
+    try:
+        drive = drive_of(row, requirements)
+        positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
+        analysis = analyse(drive, position_angles(positions) + BESIDE)
+        by_forces = _lives_by_forces(row, analysis, requirements)
+        asked = [one for one in demands if one.quantity in LIVES]
+        # ISO 281 with the mean force falls short of the slices by a factor of two or so: what it finds enough is.
+        short = any(float(one.margin(by_forces[one.quantity])) < 0.0 for one in asked)
+        values = find_values(analysis, summarise(analysis), lives=short and life_factor is None)
+        found = {one.quantity: one.value for one in values if one.value is not None}
+        if asked:
+            if short and life_factor is None:
+                life_factor = found.get(TURNS, by_forces[TURNS]) / by_forces[TURNS]
+            factors = {TURNS: life_factor or 1.0, HOURS: life_factor or 1.0}
+            found = {name: value * factors.get(name, 1.0) for name, value in by_forces.items()} | found
+        found |= own_values(row, drive, requirements, demands, CURVE_ANGLES[:1])
+        return Solution(values=found, life_factor=life_factor)
+    except CycloError as error:
+        return Solution(values={}, message=" ".join(str(error).split()))
+
+
+def _lives_by_forces(row: dict[str, float], analysis: LoadedAnalysis, requirements: Requirements) -> dict[str, float]:
+    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
+    force = force.reshape(force.shape[0], -1)
+    mean = (force ** (10.0 / 3.0)).mean(axis=0).max() ** 0.3
+    sizes, setting = Sizes.of_rows([row]), Setting.of(requirements)
+    found = lives_by_loads(sizes, setting, np.array([force.max()]), np.array([mean]))
+    return {name: float(value[0]) for name, value in found.items()}
+
+
+def own_values(
+    row: dict[str, float],
+    drive: Drive,
+    requirements: Requirements,
+    demands: tuple[Demand, ...],
+    angles: NDArray[np.float64] = CURVE_ANGLES,
+) -> dict[str, float]:
+    """Return what `cyclo check` does not tell: room, torque, margins of the shape as far as demanded, stiffness, lost motion.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        Of `Sizes.row`.
+    drive : Drive
+        The same, built.
+    requirements : Requirements
+        What is asked.
+    demands : tuple of Demand
+        Stiffness and lost motion take a curve of their own, and are told where they are demanded.
+    angles : array
+        Crank angles of that curve, rad.
+    """
+    shape = shape_values(Sizes.of_rows([row]), Setting.of(requirements))
+    found = {name: float(shape[name][0]) for name in (*OF_SHAPE, "outer_diameter", "length", "torque")}
+    if any(one.quantity in ("stiffness", "lost_motion") for one in demands):
+        curve = torque_curve(warm_drive(drive), angles, points=CURVE_POINTS)
+        found["stiffness"] = float(curve.stiffness.min())
+        found["lost_motion"] = float(curve.lost_motion.max()) * ARCMIN
+    return found
+
+
+def check_positions(drive: Drive) -> int:
+    """Return the positions at which to check a drive: those of `cyclo check`, one more where they alias with its teeth.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    distinct = CHECK_POSITIONS // gcd(CHECK_POSITIONS, drive.disc.number_of_teeth)
+    return CHECK_POSITIONS if distinct >= RESOLVED else CHECK_POSITIONS + 1
+
+
+def solve_finely(
+    row: dict[str, float],
+    drive: Drive,
+    limits: Limits,
+    requirements: Requirements,
+    demands: tuple[Demand, ...],
+    *,
+    lives: bool = True,
+) -> Solution:
+    """Return what a drive reaches, with the checks of `cyclo check`.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        Of `Sizes.row`.
+    drive : Drive
+        As it is written.
+    limits : dict of str to Limit
+        Of its file.
+    requirements : Requirements
+        What is asked.
+    demands : tuple of Demand
+        For what has to be known beside the checks.
+    lives : bool
+        Whether lives are wanted where no limit asks for them.
+    """
+    positions = check_positions(drive)
+    try:
+        analysis = analyse(drive, position_angles(positions))
+        checks = judge_analysis(analysis, summarise(analysis), limits, lives=lives)
+        found = {check.value.quantity: check.value.value for check in checks if check.value.value is not None}
+        found |= own_values(row, drive, requirements, demands)
+        return Solution(values=found, checks=tuple(checks), positions=positions)
+    except CycloError as error:
+        return Solution(values={}, positions=positions, message=" ".join(str(error).split()))

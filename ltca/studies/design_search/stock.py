@@ -1,0 +1,96 @@
+"""Diameters and lengths that pins and rollers come in, eccentricities that grinders offer; typical ones are data."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
+
+from ltca.drive.deviations import STRICT, PositiveLength
+from ltca.drive.mistakes import describe_mistakes
+from ltca.errors import DriveError
+from ltca.reading.toml_text import parse_toml, read_text
+
+Lengths = Annotated[tuple[PositiveLength, ...], Field(min_length=1)]
+TYPICAL = "stock_sizes.toml"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Stock:
+    """What there is to choose from.
+
+    Attributes
+    ----------
+    eccentricities : tuple of float
+        That the grinder offers, mm.
+    wheel_pins, shaft_pins : tuple of float
+        Diameters, mm.
+    rollers : tuple of (float, float)
+        Diameters and lengths of the rollers of crank bearings, mm.
+    """
+
+    eccentricities: Lengths
+    wheel_pins: Lengths
+    shaft_pins: Lengths
+    rollers: Annotated[tuple[tuple[PositiveLength, PositiveLength], ...], Field(min_length=1)]
+
+
+def stock_table(path: Path | None = None) -> dict[str, Any]:
+    """Return the table of a stock file.
+
+    Parameters
+    ----------
+    path : Path, optional
+        Of the user; the typical sizes of the package by default.
+    """
+    if path is None:
+        text = (resources.files("ltca") / "studies" / "design_search" / TYPICAL).read_text(encoding="utf-8")
+        return parse_toml(text, TYPICAL)
+    return parse_toml(read_text(path, "shop.stock: no such file"), str(path))
+
+
+def build_stock(table: dict[str, Any], source: str = "shop") -> Stock:
+    """Return the stock of a table.
+
+    Parameters
+    ----------
+    table : dict
+        As in a stock file.
+    source : str
+        Where it is from, for messages.
+
+    Raises
+    ------
+    DriveError
+        With every mistake.
+
+    Examples
+    --------
+    >>> build_stock(stock_table()).eccentricities[0]
+    0.65
+    """
+    try:
+        return TypeAdapter(Stock).validate_python(table)
+    except ValidationError as error:
+        known = tuple(Stock.__dataclass_fields__)
+        raise DriveError(describe_mistakes(first_mistakes(error), (source,), known)) from error
+
+
+def first_mistakes(error: ValidationError) -> list[Any]:
+    """Return the mistakes of an error, without arrays that are too short because an entry is wrong.
+
+    Parameters
+    ----------
+    error : ValidationError
+        Of pydantic.
+    """
+    found = error.errors()
+    places = [detail["loc"] for detail in found]
+
+    def inner(place: tuple[int | str, ...]) -> bool:
+        return any(len(other) > len(place) and other[: len(place)] == place for other in places)
+
+    return [detail for detail in found if detail["type"] != "too_short" or not inner(detail["loc"])]

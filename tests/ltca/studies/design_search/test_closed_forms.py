@@ -1,0 +1,148 @@
+"""Closed forms against laws, printed cases, and the loaded drive."""
+
+import numpy as np
+import pytest
+
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.summary import summarise
+from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
+from ltca.analysis.verdict.values import find_values
+from ltca.geometry.placement import position_angles
+from ltca.studies.design_search.closed_forms import Setting, closed_forms, lives_by_loads, shape_values
+from ltca.studies.design_search.demands import find_demands
+from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
+from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.search import rounded_safely
+from ltca.studies.design_search.sizes import Sizes, drive_of
+
+STEEL = "\n[materials]\n" + "\n".join(
+    f'{part} = "100Cr6"' for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+)
+PAPER = """
+discs = 1
+held = "pin-shaft"
+ratio = 14
+torque = "377.3 N m"
+speed = 107.14
+outer_diameter = 190.0
+length = 12.0
+[shop]
+equidistant_offset = 0.15
+shifting_offset = 0.09
+bearing_clearance = 0.0
+pin_hole_clearance = 0.0
+shaft_pin_stiffness = 1.0e6
+"""
+ROW = {
+    "discs": 1.0, "pins": 14.0, "stage": 1.0, "sun": 0.0, "planet": 0.0, "eccentricity": 4.0, "pin_circle": 88.0,
+    "pin_radius": 6.5, "thickness": 11.8, "bore": 29.5, "roller_radius": 5.0, "roller_length": 11.8, "rollers": 11.0,
+    "holes": 8.0, "hole_circle": 56.0, "hole_pin": 10.075, "torque": 377_300.0,
+}  # fmt: skip
+
+
+def forms(text=PAPER + STEEL, **changed):
+    requirements = parse_requirements(text)
+    return {
+        name: float(value[0])
+        for name, value in closed_forms(Sizes.of_rows([ROW | changed]), Setting.of(requirements)).items()
+    }
+
+
+@pytest.mark.parametrize(("changed"), [{}, {"eccentricity": 5.0}, {"pin_radius": 9.0, "bore": 25.0}])
+def test_shapes_are_those_of_the_verdict(changed):
+    """The verdict takes curvatures of the flank itself from 2001 places, closed forms from 33: a thousandth apart."""
+    drive = drive_of(ROW | changed, parse_requirements(PAPER + STEEL))
+    told = forms(**changed)
+    assert told["undercut_margin"] == pytest.approx(undercut_margin(drive), rel=5e-3)
+    assert told["pin_hollow_margin"] == pytest.approx(pin_hollow_margin(drive), rel=2e-2)
+    assert told["roller_gap"] == pytest.approx(roller_gap(drive), rel=1e-12)
+    named = dict(walls(drive))
+    assert told["pin_gap"] == pytest.approx(named.pop("between neighbouring wheel pins"), rel=1e-12)
+    # The paper's rollers leave nothing of the bore's own wall to judge here.
+    assert told["wall"] == pytest.approx(min(wall for name, wall in named.items() if "hole" in name), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("e", "pin", "R", "force"),
+    [(2.8, 3.5, 64.00, 138.4), (2.9, 3.4, 66.29, 133.6), (3.0, 3.3, 68.57, 129.2)],
+)
+def test_loads_without_clearance_are_those_of_krol(e, pin, R, force):
+    """Król et al., MMS 73 (2019), variants 1, 3, 4: F = 4 M/(z_C z_P e) of a disc moment of 23 250 N·mm, re-run from their code.
+
+    Linear contacts give the same in the mean over the pitch, as Σ sin²φ/d² = z_P/(4 R²) says for many pins; of the four
+    places in a pitch none need be the largest lever, which takes off less than 2 %.
+    """
+    text = PAPER.replace("ratio = 14", "ratio = 16").replace("0.15", "0.0").replace("0.09", "0.0")
+    told = forms(text + STEEL, eccentricity=e, pin_circle=R, pin_radius=pin, pins=16.0, torque=23_250.0 * 16.0 / 15.0)
+    assert told["pin_load"] == pytest.approx(force, rel=0.02)
+
+
+def test_closed_forms_are_near_the_loaded_paper_drive():
+    """What enumeration allows for (`OTHER_SLACK`, 0.4) has to be more than closed forms are wrong by."""
+    drive = drive_of(ROW, parse_requirements(PAPER + STEEL))
+    analysis = analyse(drive, position_angles(24) + 1e-3)
+    loaded = {one.quantity: one.value for one in find_values(analysis, summarise(analysis), lives=False)}
+    told = forms()
+    for name in (
+        "pin_pressure_mid",
+        "pin_load",
+        "pin_shaft_pressure_mid",
+        "roller_pressure_mid_inner",
+        "backlash_output",
+    ):
+        assert abs(np.log(told[name] / loaded[name])) < 0.25, name
+
+
+def test_ratings_are_those_of_the_life_of_one_drive():
+    from ltca.analysis.life.ratings import EDGE_ALLOWANCE, RollerBearing
+
+    requirements = parse_requirements(PAPER + STEEL)
+    bearing = RollerBearing.of_drive(drive_of(ROW, requirements))
+    load = np.array([8000.0])
+    told = lives_by_loads(Sizes.of_rows([ROW]), Setting.of(requirements), load, load)
+    capacity = bearing.dynamic_load_rating / EDGE_ALLOWANCE
+    assert told["bearing_life_million_turns"][0] == pytest.approx((capacity / 8000.0) ** (10.0 / 3.0), rel=1e-12)
+    assert told["static_safety_S0"][0] == pytest.approx(bearing.static_load_rating / 8000.0, rel=1e-12)
+
+
+def test_what_is_kept_keeps_its_walls_and_comes_from_stock():
+    requirements = parse_requirements(PAPER + STEEL)
+    found = enumerate_candidates(requirements, find_demands(requirements))
+    shape = shape_values(found.sizes, Setting.of(requirements))
+    assert shape["wall"].min() >= 2.0 - 1e-9
+    assert shape["outer_diameter"].max() <= 190.0 + 1e-9
+    stock = {tuple(one) for one in requirements.stock.rollers}
+    assert {
+        (2.0 * r, long) for r, long in zip(found.sizes.roller_radius, found.sizes.roller_length, strict=True)
+    } <= stock
+
+
+def test_teeth_of_an_rv_reducer_give_its_ratio():
+    asked = 'kind = "rv"\ndiscs = 2\nratio = 81\ntorque = 4e5\nspeed = 15.0\nouter_diameter = 160.0\nlength = 40.0\n'
+    found = teeth(parse_requirements(asked))
+    assert found
+    assert all(1.0 + planet / sun * pins == pytest.approx(81.0, rel=1e-12) for pins, _, sun, planet in found)
+
+
+def test_values_that_would_do_are_rounded_to_the_side_that_does():
+    assert rounded_safely(71.35001, "max") == 71.36
+    assert rounded_safely(71.3599, "min") == 71.35
+    assert rounded_safely(71.35, "max") == 71.35
+
+
+def test_a_wider_part_is_no_smaller_load():
+    """Loads follow from levers alone: wheel pins of twice the size carry the same, and are pressed less."""
+    small, large = forms(), forms(pin_radius=8.0)
+    assert large["pin_load"] == pytest.approx(small["pin_load"], rel=1e-3)
+    assert large["pin_pressure_mid"] < small["pin_pressure_mid"]
+
+
+def test_a_life_that_gives_way_is_known_all_the_same():
+    """A design was told to fit whose life nobody had asked: what is not known has given everything, never nothing."""
+    from ltca.studies.design_search.refinement import Task, finish
+
+    requirements = parse_requirements(PAPER.replace("[shop]", "life = 1.0e9\n[shop]") + STEEL)
+    demands = find_demands(requirements)
+    found = finish(Task(requirements=requirements, demands=demands, row=ROW | {"pin_circle": 88.4}, relaxed=("life",)))
+    assert found.solution.values["bearing_life_hours"] > 0.0
+    assert found.given == pytest.approx(np.log(1e9 / found.solution.values["bearing_life_hours"]), rel=1e-9)

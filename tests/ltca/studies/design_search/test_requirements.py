@@ -1,0 +1,72 @@
+"""A requirement file: what is wrong is told once, with field, value, bound and unit."""
+
+from pathlib import Path
+
+import pytest
+
+from ltca.errors import DriveError
+from ltca.studies.design_search.requirements import load_requirements, parse_requirements
+
+EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "requirements").glob("*.toml"))
+SOUND = """
+ratio = 39
+torque = "400 N m"
+speed = "15 rpm"
+outer_diameter = "140 mm"
+length = 32.0
+"""
+
+
+def test_there_are_six_possible_and_four_impossible_ones():
+    assert [sum(path.stem.startswith(kind) for path in EXAMPLES) for kind in ("possible", "impossible")] == [6, 4]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_read(path):
+    assert load_requirements(path).asked.torque > 0.0
+
+
+def test_texts_carry_units():
+    asked = parse_requirements(SOUND).asked
+    assert (asked.torque, asked.speed, asked.outer_diameter) == (400_000.0, 15.0, 140.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ('torque = "400 N"', "torque = '400 N': must have the unit N·mm"),
+        ("length = -3.0", "length = -3.0: must be greater than 0 mm"),
+        ("ratio = 39.5", "ratio = 39.5: must be a whole number"),
+        ('kind = "rw"', "kind = 'rw': must be 'discs' or 'rv'"),
+        ("discs = 4", "discs.0 = 4: must be less than or equal to 3"),
+        ("outer_diametre = 3.0", "outer_diametre: is not a field of such a table; did you mean `outer_diameter`?"),
+        ("efficiency = 0.9", "efficiency = 0.9: nothing rubs; give [friction] its coefficients"),
+        ("[shop]\nleast_wal = 2.0", "shop.least_wal: is not a field of such a table; did you mean `least_wall`?"),
+        ("[shop]\nwheel_pins = [-1.0]", "shop.wheel_pins.0 = -1.0: must be greater than 0 mm"),
+        ('[shop]\nstock = "nowhere.toml"', "shop.stock: no such file"),
+        ('[materials]\ndisk = "PLA"', "materials.disk: is not a part"),
+        (
+            'life = 100.0\n[materials]\ndisc = "PLA"',
+            "life = 100 h: cannot be rated with materials.disc.youngs_modulus = 3039",
+        ),
+        ("[limits]\nmax_pin_pressur = 3.0", "did you mean `max_pin_pressure_mid`?"),
+    ],
+)
+def test_one_clear_sentence_for_each_mistake(changed, told):
+    key = changed.partition("=")[0].strip()
+    text = "\n".join(line for line in SOUND.splitlines() if not line.startswith(f"{key} ")) + "\n" + changed
+    with pytest.raises(DriveError) as caught:
+        parse_requirements(text)
+    assert len(caught.value.problems) == 1
+    assert told in str(caught.value)
+
+
+def test_missing_field_and_its_misspelling_are_one_mistake():
+    with pytest.raises(DriveError, match="did you mean `outer_diameter`, which is missing"):
+        parse_requirements(SOUND.replace("outer_diameter", "outer_diametre"))
+
+
+def test_own_sizes_stand_before_the_typical_ones():
+    stock = parse_requirements(SOUND + "[shop]\neccentricities = [1.1]\n").stock
+    assert stock.eccentricities == (1.1,)
+    assert len(stock.rollers) > 10
