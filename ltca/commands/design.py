@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 SUMMARY = (
     "find drives for requirements: ratio, torque, room, life, backlash; or say which requirement stands in the way"
 )
+EXAMPLES = (
+    ("cyclo design requirements.toml", "the best three drives as files, or what stands in the way"),
+    ("cyclo design requirements.toml --best 1 --workers 2", "one drive, on two cores"),
+)
 BEST = 3
 NOTHING_FITS = 1
 
@@ -24,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "requirements", metavar="REQUIREMENTS", type=path_argument("REQUIREMENTS"),
-        help="requirement file (TOML): docs/design.md, examples/requirements",
+        help="requirement file (TOML): docs/how-to/design.md, examples/requirements",
     )  # fmt: skip
     parser.add_argument(
         "--best",

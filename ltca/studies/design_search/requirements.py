@@ -1,4 +1,4 @@
-"""What is asked of a drive, as a TOML file: numbers in the units of drive files, texts with their own (docs/design.md)."""
+"""What is asked of a drive, as a TOML file: numbers in the units of drive files, texts with their own (docs/how-to/design.md)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.toml_text import parse_toml, read_text
 from ltca.studies.design_search.stock import Stock, build_stock, first_mistakes, stock_table
 
-NO_FILE = "no such file; docs/design.md says what a requirement file holds, examples/requirements has ten"
+NO_FILE = "no such file; docs/how-to/design.md says what a requirement file holds, examples/requirements has ten"
 STOCK = ("eccentricities", "wheel_pins", "shaft_pins", "rollers")
 MOST_DISCS = 3
 
