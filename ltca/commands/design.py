@@ -78,9 +78,9 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _write(found: Found, best: int, out: Path) -> None:
-    from ltca.figures.design_page import write_design_page
     from ltca.output.files import whole_file, write_json
     from ltca.output.provenance import code_hash, code_version
+    from ltca.page.studies.designs import write_design_page
     from ltca.studies.design_search.designs import (
         comparison,
         csv_text,

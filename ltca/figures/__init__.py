@@ -17,6 +17,5 @@ curve_figures     Figures of `cyclo curves`: torque against wind-up, orders of t
 pressure_figures  Pictures of contact pressure, corresponding to the paper's Fig. 27 and 31–33
 study_figures     Figures of a study: distribution of every quantity, what they come from, and responses of a sweep
 optimum_figures   Figures of an optimisation: the search in one aim over every variable, or the Pareto front of two
-design_page       The page of `cyclo design`: designs beside each other, the outline of each, what stands in the way
 ================  ============================================================
 """

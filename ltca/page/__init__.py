@@ -12,8 +12,9 @@ verdict_tables  The verdict of a design: one sentence, then tables, worst first
 run_tables      Tables of a run: loads, pressures, transmission error and its orders, losses, inputs
 compared        A second run, or a measured transmission error, beside the first
 writing         A page from templates, style and scripts of this package
-run_page        ``report.html`` of a run
 study_page      ``report.html`` of other commands: tables and curves in sections
+run_sections    Torque curve and life beside the positions of a run
+run_page        ``report.html`` of a run
 studies         What each of these commands puts there
 ==============  ============================================================
 

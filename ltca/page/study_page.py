@@ -89,18 +89,24 @@ def write_study_page(page: StudyPage, folder: Path) -> Path:
     return write_page(folder / PAGE, study_page(page))
 
 
-def study_page(page: StudyPage) -> str:
-    """Return the page of a command; the same content gives the same page."""
+def curves_content(sections: Sequence[Section]) -> tuple[dict[str, FloatArray], list[dict[str, Any]]]:
+    """Return the numbers of the curves of sections, by name, and what the script ``sections.js`` is told of each."""
     arrays: dict[str, FloatArray] = {}
     plots: list[dict[str, Any]] = []
-    for section in page.sections:
+    for section in sections:
         for curves in section.curves:
-            first = f"{len(plots)}"
+            first = f"plot/{len(plots)}"
             arrays[f"{first}/x"] = np.asarray(curves.x, dtype=float)
             for place, values in enumerate(curves.lines.values()):
                 arrays[f"{first}/{place}"] = np.asarray(values, dtype=float)
             told = {"title": curves.title, "unit": curves.unit, "axis": curves.axis, "names": list(curves.lines)}
             plots.append(told | {"kind": curves.kind, "degrees": curves.degrees})
+    return arrays, plots
+
+
+def study_page(page: StudyPage) -> str:
+    """Return the page of a command; the same content gives the same page."""
+    arrays, plots = curves_content(page.sections)
     places, numbers = pack(arrays)
     made = [("version of cyclo", code_version()), ("hash of its code", code_hash("ltca"))]
     made += [(name.replace("_", " "), str(value)) for name, value in page.made.items()]
@@ -113,5 +119,5 @@ def study_page(page: StudyPage) -> str:
             "data": script_data({"places": places, "plots": plots}),
             "numbers": numbers,
         },
-        scripts=("plots", "motion", "study"),
+        scripts=("plots", "motion", "sections", "study"),
     )

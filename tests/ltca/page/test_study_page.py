@@ -29,9 +29,9 @@ def test_curves_are_those_computed(page):
     curve, text = page
     content = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.S).group(1))
     numbers = unpack(content["places"], re.search(r'<script id="numbers"[^>]*>(.*?)</script>', text, re.S).group(1))
-    assert np.allclose(numbers["0/x"], curve.torque / 1e3, rtol=1e-6)
+    assert np.allclose(numbers["plot/0/x"], curve.torque / 1e3, rtol=1e-6)
     for place in range(2):
-        assert np.allclose(numbers[f"0/{place}"], np.degrees(curve.output_angle[place]) * 60.0, rtol=1e-6)
+        assert np.allclose(numbers[f"plot/0/{place}"], np.degrees(curve.output_angle[place]) * 60.0, rtol=1e-6)
     assert content["plots"][0]["names"] == ["crank at 0°", "crank at 5.73°"]
 
 

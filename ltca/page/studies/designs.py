@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
-from ltca.output.files import whole_file
+from ltca.page.tables import Table, minus, word
+from ltca.page.writing import page_text, write_page
 from ltca.studies.design_search.designs import named_design
 from ltca.studies.design_search.refinement import Refined
 from ltca.studies.design_search.search import Found
@@ -35,26 +36,23 @@ def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: 
     path : Path
         Where to.
     """
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("ltca.figures"), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )  # fmt: skip
     requirements = found.requirements
-    text = environment.get_template("design.html").render(
-        asked=requirements.asked,
-        fits=bool(found.designs),
-        rows=rows,
-        in_the_way=[one.words for one in found.relaxations],
-        outlines=[(name, outline(named_design(one, requirements, "outline"))) for name, one in shown],
-        requirements=requirements.text,
-        combinations=found.combinations,
-        solved=found.solved,
+    table = Table(
+        name="designs", caption="", columns=rows[0], rows=[[word(minus(cell)) for cell in row] for row in rows[1:]]
     )
-    with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8")
-    return path
+    content = {
+        "title": f"{requirements.asked.name}: designs",
+        "name": requirements.asked.name,
+        "ratio": f"{requirements.asked.ratio:g}",
+        "fits": bool(found.designs),
+        "table": table,
+        "in_the_way": [minus(one.words) for one in found.relaxations],
+        "outlines": [(name, outline(named_design(one, requirements, "outline"))) for name, one in shown],
+        "requirements": requirements.text,
+        "combinations": found.combinations,
+        "solved": found.solved,
+    }
+    return write_page(path, page_text("design.html", content))
 
 
 def outline(drive: Drive) -> dict[str, object]:
