@@ -24,7 +24,7 @@ from validation.study import Study
 PICTURE_WIDTHS = {"von_mises": 1200, "deformed": 1200, "contacts": 2000}
 PICTURE_TITLES = {
     "von_mises": "von Mises stress at the loaded pose",
-    "contacts": "The three most loaded contacts: mesh, stress, pressure",
+    "contacts": "The most loaded contact of each kind: mesh, stress, pressure",
     "deformed": "Elastic displacement, magnified",
 }
 SHARED = (

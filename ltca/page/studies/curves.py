@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +21,9 @@ TOLD_ORDERS = 15
 
 def torque_section(curve: TorqueCurve, of: str) -> Section:
     """Return wind-up over torque, and what is read from it; `of` names case and colon, or is empty."""
-    lines = {
-        minus(f"crank at {degrees(angle):.4g}°"): each * ARCMIN
-        for angle, each in zip(curve.crank_angle, curve.output_angle, strict=True)
-    }
+    # Curves at single crank angles lie on each other; the table has how far they differ.
+    many = f"mean of {curve.crank_angle.size} crank angles" if curve.crank_angle.size > 1 else ""
+    lines = {many: np.mean(curve.output_angle, axis=0) * ARCMIN}
     plot = Curves(
         title="Wind-up of the output",
         unit="arc minutes",
