@@ -88,6 +88,8 @@ def find_coefficients_of(cases: dict[str, Drive], arguments: argparse.Namespace)
     """
     from ltca.compliance.coefficient_files import find_case_coefficients
     from ltca.compliance.near_field import NEAR_FIELDS
+    from ltca.drive.members.temperatures import warm_drive
 
     if arguments.compliance in NEAR_FIELDS:
-        find_case_coefficients(cases, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])
+        warm = {name: warm_drive(drive) for name, drive in cases.items()}  # coefficients are those of the warm bodies
+        find_case_coefficients(warm, arguments.coefficients or (), near_field=NEAR_FIELDS[arguments.compliance])

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import ltca
+import ltca.compliance.coefficient_files
 from ltca.analysis.loaded_analysis import analyse
+from ltca.commands.compliance_arguments import find_coefficients_of
 from ltca.drive.materials import elastic_alone
 from ltca.drive.members.temperatures import growth_of, warm_drive
 from ltca.drive.parts import Material, Temperature
@@ -273,3 +276,15 @@ def test_what_is_written_stays_with_the_results():
 @pytest.mark.parametrize(("value", "celsius"), [("333.15 K", 60.0), ("60 °C", 60.0), (60, 60.0)])
 def test_units_of_temperature(value, celsius):
     assert with_fields(PAPER, EXPANSION | {"temperature.shaft": value}).temperature == Temperature(shaft=celsius)
+
+
+def test_coefficients_of_a_warm_drive_are_asked_for_its_warm_bodies(monkeypatch):
+    """`cyclo run --compliance fe` of a drive with temperatures ended in "lengths are at 20 °C still"."""
+    asked = {}
+    monkeypatch.setattr(
+        ltca.compliance.coefficient_files, "find_case_coefficients", lambda cases, *_, **__: asked.update(cases)
+    )
+    drive = with_fields(PAPER, EXPANSION | warmth(30.0, 50.0, 40.0))
+    find_coefficients_of({"warm": drive}, argparse.Namespace(compliance="fe", coefficients=None))
+    assert asked["warm"] == warm_drive(drive)
+    assert asked["warm"].shape_fingerprint() != PAPER.shape_fingerprint()
