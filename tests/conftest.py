@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import tomllib
 from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -22,6 +23,7 @@ import pytest
 
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
+from ltca.laws import profiled_line_contact
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 
 
@@ -164,6 +166,15 @@ def random_drives() -> list[Drive]:
         except DriveError:  # a random drive may be unsound: the checks say so, the next one is drawn
             continue
     return drives
+
+
+_COARSE_TABLE = cache(partial(profiled_line_contact.profiled_table.__wrapped__, cells=6, nodes=25))
+
+
+@pytest.fixture
+def coarse_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tables of profiled contacts in tenths of a second: good to a per cent, and the same for all who ask."""
+    monkeypatch.setattr(profiled_line_contact, "profiled_table", _COARSE_TABLE)
 
 
 CHROMIUM = next(

@@ -147,7 +147,7 @@ def walk():
 
 
 @pytest.mark.parametrize(("model", "path"), list(walk()))
-def test_every_field_is_used_or_refused(model, path, models, answers):
+def test_every_field_is_used_or_refused(model, path, models, answers, coarse_tables):
     base, answer = models[model]
     base, change = change_of(base, path)
     refused = ""

@@ -167,7 +167,7 @@ def test_stiffness_scales_with_modulus_and_shaft_spring(vary):
 
 
 @pytest.mark.slow
-def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases):
+def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases, coarse_tables):
     """A batch of drives with crowned pins and waves on their flanks ended in a mismatch of shapes."""
     waves = {"disc.profile_errors.cosine": (0.001, 0.0, 0.0, 0.0), "disc.profile_errors.sine": (0.0,) * 4}
     crown = {"pin_wheel.pin_profile.crown_drop": 0.002}
@@ -184,7 +184,7 @@ def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases):
 
 
 @pytest.mark.slow
-def test_radii_between_samples_and_on_other_lobes_are_in_the_table_of_crowned_pins():
+def test_radii_between_samples_and_on_other_lobes_are_in_the_table_of_crowned_pins(coarse_tables):
     """A crowned pin at the sharpest place of a flank was "asked for 2.85237" mm of a table from 2.85238 mm on."""
     drive = load_drive(Path(__file__).parents[2] / "contract" / "drive.toml").cases["nominal"]
     drive = with_fields(drive, {"pin_wheel.pin_profile.crown_drop": 0.001})

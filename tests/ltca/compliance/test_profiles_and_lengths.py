@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import pytest
 
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
-from ltca.laws import profiled_line_contact
 from ltca.reading.changes import with_fields
 
 ANGLES = np.array([0.5])
 CROWN = "crank_bearing.roller_profile.crown_drop"
-MADE: dict[tuple[object, ...], object] = {}
-
-
-@pytest.fixture
-def coarse_tables(monkeypatch):
-    """Tables of profiled contacts in tenths of a second: good to a per cent, and the same for all who ask."""
-    coarse = partial(profiled_line_contact.profiled_table.__wrapped__, cells=6, nodes=25)
-
-    def table(*words):
-        if words not in MADE:
-            MADE[words] = coarse(*words)
-        return MADE[words]
-
-    monkeypatch.setattr(profiled_line_contact, "profiled_table", table)
 
 
 def answers(result):
