@@ -277,11 +277,14 @@ def test_halving_divides_the_error():
 
 
 @pytest.mark.slow
-def test_mesh_halved(disc_shape, stations):
-    """The issue's bound: 0.3 % of the largest entry once rigid motions are projected out; measured 0.05 %."""
-    default, fine = (derive_disc(disc_shape, stations, STEEL, thickness=THICKNESS, size=size) for size in (1.0, 0.5))
+def test_mesh_halved(disc_shape, stations, disc):
+    """The issue's bound: 0.3 % of the largest entry once rigid motions are projected out; measured 0.05 % at the default.
+
+    Held already from one and a half times the default size, whose error is the larger: see `test_halving_divides_the_error`.
+    """
+    fine = derive_disc(disc_shape, stations, STEEL, thickness=THICKNESS, size=0.5 * SIZE)
     reference = project_rigid_motions(fine.approach, fine.resultants)
-    change = np.max(np.abs(project_rigid_motions(default.approach, default.resultants) - reference))
+    change = np.max(np.abs(project_rigid_motions(disc.approach, disc.resultants) - reference))
     print(f"mesh halved: {change / np.max(reference):.2e} of the largest entry")
     assert change < 3e-3 * np.max(reference)
 

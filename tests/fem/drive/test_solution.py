@@ -288,9 +288,10 @@ def test_nothing_that_can_carry_is_one_error():
         solve_drive(loose, 0.5, scale=3.0)
 
 
-@pytest.mark.parametrize(("case", "angle"), [("CS-1", 1.0), ("CS-3", 0.5)])
-def test_default_drive_balances(case, angle):
-    solution = solve_drive(drive(case), angle)
+@pytest.mark.parametrize("case", ["CS-1", "CS-3"])
+def test_default_drive_balances(case, default):
+    """Two cases, two angles."""
+    solution = default if case == "CS-1" else solve_drive(drive(case), 1.0)
     check_balance(solution)
     ((_, tangential),) = solution.bearing_components
     # It swings by tens of newtons with the slope of the transmission error; 0.15 % is 10 N.
@@ -300,13 +301,14 @@ def test_default_drive_balances(case, angle):
             assert detail.half_width / detail.largest_edge >= 8.0, pair.kind
 
 
-def test_halved_mesh_changes_little(default):
-    fine = solve_drive(drive(), 0.5, scale=0.5)
+def test_halved_mesh_changes_little():
+    """What the issue asks of the default size, held already from one and a half times that size."""
+    start, fine = (solve_drive(drive(), 0.5, scale=scale) for scale in (1.5, 0.75))
     for load, pressure in CONTACT_KINDS:
-        first, second = getattr(default.contacts, load), getattr(fine.contacts, load)
+        first, second = getattr(start.contacts, load), getattr(fine.contacts, load)
         assert np.max(np.abs(first - second)) < 3e-3 * second.max()
         counts = second > 0.05 * second.max()
-        ratio = getattr(default.contacts, pressure)[counts] / getattr(fine.contacts, pressure)[counts]
+        ratio = getattr(start.contacts, pressure)[counts] / getattr(fine.contacts, pressure)[counts]
         np.testing.assert_allclose(ratio, 1.0, atol=1e-2)
 
 
@@ -317,7 +319,7 @@ def test_default_start_pose_does_not_matter(default):
         assert np.max(np.abs(first - second)) < 1e-3 * first.max()
 
 
-def test_rigid_body_limit_comes_near_the_half_space_drive():
+def test_rigid_body_limit_comes_near_the_half_space_drive(coarse):
     """Disc and race 1000 times as stiff, pins and rollers half: every E* unchanged, only local yielding left.
 
     What stays different: the half-space laws are those of the finite width (a line contact's approach depends on the
@@ -331,7 +333,7 @@ def test_rigid_body_limit_comes_near_the_half_space_drive():
     soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
     materials = dataclasses.replace(steel.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
     contacts = solve_drive(dataclasses.replace(steel, materials=materials), 0.5, scale=3.0).contacts
-    elastic = solve_drive(steel, 0.5, scale=3.0).contacts
+    elastic = coarse.contacts
     half_space = analyse(steel, np.array([0.5]), None).full.response
     for name, limit, theirs in (
         ("pin_load", 0.15, half_space.pin_load[0]),
