@@ -141,6 +141,7 @@ def test_damaged_batches_are_set_aside(damage, study, interrupted, reference):
     assert path.with_suffix(".npz.aside").exists()
 
 
+@pytest.mark.slow
 def test_batches_of_another_study_or_number_are_set_aside(study, other, solved, interrupted, reference):
     """Two studies with different seeds mixed in silence."""
     paths = sorted(interrupted.path.glob("batches/*.npz"))

@@ -75,6 +75,7 @@ def test_damaged_bytes_are_refused(damage, drive, sound, tmp_path):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.slow
 def test_any_bit_of_a_number_is_seen(drive, sound, tmp_path):
     """By the checksum: one bit somewhere in the matrix of the disc breaks no law."""
     content, rng = sound.read_bytes(), np.random.default_rng(5)
@@ -215,6 +216,7 @@ def test_wrong_contents_are_refused(name, drive, sound, tmp_path):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.slow
 def test_a_damaged_entry_of_the_cache_is_derived_again_with_a_word(drive, derived, capsys):
     first = find_coefficients(drive)
     path = cached_file(drive)
@@ -253,6 +255,7 @@ def test_an_unwritable_cache_is_told_before_the_derivation(drive, derived, tmp_p
     assert not cached_file(drive).exists()
 
 
+@pytest.mark.slow
 def test_caches_are_keyed_by_the_code(drive, derived, monkeypatch):
     """They were keyed by the version alone, and after a change of the code its old answers came back."""
     find_coefficients(drive)
@@ -263,6 +266,7 @@ def test_caches_are_keyed_by_the_code(drive, derived, monkeypatch):
     assert len(derived) == 2
 
 
+@pytest.mark.slow
 def test_the_checksum_is_of_the_content_not_of_its_storage(drive, sound, tmp_path):
     dataset = closed_form(drive)
     packed = tmp_path / "packed.nc"

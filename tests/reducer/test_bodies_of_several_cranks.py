@@ -220,6 +220,7 @@ def test_tangent_is_the_slope_of_the_force(small, closed_forms, name):
     check_tangent(drive, PlaneStrain(coefficients=closed_forms(drive)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "engine"), [("cranks", "hybrid"), pytest.param("wheel", "fe", marks=pytest.mark.slow)]
 )

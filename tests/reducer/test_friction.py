@@ -263,6 +263,7 @@ def test_a_drive_that_locks_itself(paper):
     assert summarise(found)["moves_back"] == 0.0
 
 
+@pytest.mark.slow
 def test_free_pins_roll_on_the_flank(paper):
     """Where the seat takes less the pin slips there, at r_i/R of the speed, and not on the flank."""
     wheel = paper.pin_wheel

@@ -199,6 +199,7 @@ def test_overhanging_shaft_is_a_cantilever_behind_a_turned_support():
     assert found[0, 0] == pytest.approx(c * c * (span + c) / (3.0 * rigidity), rel=1e-10)
 
 
+@pytest.mark.slow
 def test_stiff_supports_tend_to_rigid_ones(rv):
     """What supports add to the wheel's angle falls with their flexibility, in first order."""
     rigid = analyse(kind(rv, "rigid"), ANGLES).full.pose[:, WHEEL_ANGLE]

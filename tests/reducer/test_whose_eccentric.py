@@ -36,6 +36,7 @@ def test_an_eccentric_is_named_by_disc_and_crank():
     assert whose(load_drive("paper").cases["CS-1"], "crank.of.0.phase_error") == ""
 
 
+@pytest.mark.slow
 def test_a_study_says_whose_the_eccentric_is(tmp_path, capsys):
     """Three eccentrics of six were printed as crank.of.1 … with nothing that told them from entries of the file."""
     head = RV.partition("[tolerances]")[0]

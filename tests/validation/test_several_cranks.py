@@ -229,6 +229,7 @@ def test_summary_is_read_by_disc_and_crank(drive, discs):
     np.testing.assert_array_equal(answer.bearing_tangential, [7.0, 8.0, 9.0] if discs == 1 else [10.0, 11.0, 12.0])
 
 
+@pytest.mark.slow
 def test_the_page_draws_every_bore_and_race(compared, drive):
     """Contacts lie on rollers and bores, rollers about their races; each bearing's forces on the disc are its force."""
     scene, still = position_scene(compared), drive_scene(drive)

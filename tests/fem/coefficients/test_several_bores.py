@@ -149,6 +149,7 @@ def direct(derived):
     return body, patches, forces, solution
 
 
+@pytest.mark.slow
 def test_superposition_against_a_direct_solution(derived, direct):
     """Loads on several bores at once, all bores fitted together node by node."""
     body, patches, forces, solution = direct
@@ -168,6 +169,7 @@ def test_superposition_against_a_direct_solution(derived, direct):
     np.testing.assert_allclose(found, measured, atol=4e-3 * np.max(np.abs(measured)))
 
 
+@pytest.mark.slow
 def test_wall_stress_against_recovered_stress(derived, direct):
     """The same loads: stresses recovered at the nodes of the other mesh, at stations clear of the loads."""
     body, _, forces, solution = direct

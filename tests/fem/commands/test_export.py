@@ -28,6 +28,7 @@ def names_in(folder):
     return {path.name for path in folder.iterdir()} - {MANIFEST}
 
 
+@pytest.mark.slow
 def test_formats_lie_beside_each_other(tmp_path, capfd):
     """Each export adds to the folder; standard output tells the frame and holds nothing of the kernel's chatter."""
     for kind in ("dxf", "step", "stl", "csv"):

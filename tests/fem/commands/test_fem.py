@@ -103,6 +103,7 @@ def test_dataset_has_the_dimensions_and_names_of_a_run(folder, paper_cases):
             assert "units" in variable.attrs or name in data.dims, name
 
 
+@pytest.mark.slow
 def test_one_file_opens_all_bodies(folder):
     import pyvista
 

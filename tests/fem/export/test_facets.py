@@ -79,6 +79,7 @@ def test_sleeves_and_pins_are_bodies_of_their_own(kinds_of_drives, tmp_path):
     assert enclosed(corners) == pytest.approx(10 * (pins + sleeves), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_file_says_chord_and_unit_and_has_no_clock(kinds_of_drives, tmp_path):
     (part,) = make_parts(kinds_of_drives["paper"], "CS-1", compensation=0.1)
     for name in ("one", "other"):

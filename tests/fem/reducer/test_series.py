@@ -52,6 +52,7 @@ def condense(paper_cases):
     return of
 
 
+@pytest.mark.slow
 def test_pins_and_rollers_are_taken_only_where_all_that_they_are_made_of_is_the_same(condense, paper_cases):
     """Material, thickness and plane state belong to the stiffness as the shape does."""
     drive = paper_cases["CS-1"]

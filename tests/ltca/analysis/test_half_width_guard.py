@@ -67,6 +67,7 @@ def one_disc_of(seed):
     return with_fields(alone, {"installation.held": "pin-shaft"}), angle
 
 
+@pytest.mark.slow
 def test_tables_are_warned_of_where_the_flank_leaves_its_parabola():
     """Curvature that changes within the contact: tables 1.5 % beside the true separation while b/r is 0.07."""
     drive, angle = one_disc_of(116)

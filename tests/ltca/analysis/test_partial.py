@@ -56,6 +56,7 @@ def test_a_light_torque_that_fails_keeps_the_full_one(failing, paper_cases, disc
     assert np.all(np.isnan(partial.light.pose[~good]))
 
 
+@pytest.mark.slow
 def test_positions_without_an_answer_are_no_numbers(failing):
     drive = ltca.load_drive("paper").cases["CS-4"]
     whole = ltca.analyse(drive, 8)

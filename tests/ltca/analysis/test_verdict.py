@@ -71,6 +71,7 @@ def test_a_value_without_a_limit_is_said_to_have_none(paper, checked):
     assert check.value.value == np.max(checked[0].pressures.pins.mid)
 
 
+@pytest.mark.slow
 def test_limits_of_the_file_stand_before_those_of_materials(paper, checked):
     largest = float(np.max(checked[0].pressures.pins.mid))
     soft = replace(paper, materials=replace(paper.materials, disc=Material(allowable_pressure=0.884 * largest)))

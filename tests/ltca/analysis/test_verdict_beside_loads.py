@@ -59,6 +59,7 @@ def test_play_that_warmth_takes_from_the_holes_fails():
     assert "temperature" in check.limit.source
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_file_on_that_play_stands_before():
     drive = with_fields(PAPER, warm(20.0, 60.0, 20.0))
     assert checks_of(drive, {"min_play_at_temperature": -0.05})["play_at_temperature"].verdict == "pass"
@@ -278,6 +279,7 @@ def test_torque_drives_pressures():
     assert drivers["load.torque"].elasticity == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_static_safety_is_of_the_load_and_its_duty():
     """A light duty beside a heavy load had the S0 of the duty."""
     angles = 2.0 * np.pi * np.arange(12) / 12.0

@@ -58,6 +58,7 @@ def printed_range(text, name):
     return float(low), float(high)
 
 
+@pytest.mark.slow
 def test_torque_curve_is_printed_as_it_is_kept(told):
     text, content, *_ = told
     kept = content["torque_curve"]
@@ -71,6 +72,7 @@ def test_torque_curve_is_printed_as_it_is_kept(told):
         assert printed_range(text, name) == pytest.approx((values.min(), values.max()), rel=1e-3), name
 
 
+@pytest.mark.slow
 def test_torque_curve_is_that_of_the_drive(told, paper_cases):
     """At the last angle against two balances; the angles divide one tooth of the flank."""
     kept = told[1]["torque_curve"]
@@ -82,6 +84,7 @@ def test_torque_curve_is_that_of_the_drive(told, paper_cases):
     assert kept["lost_motion_rad"][-1] == pytest.approx(high - low, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_torque_curve_is_drawn_as_it_is_kept(told):
     kept, (whole, close) = told[1]["torque_curve"], told[2]["torque_curve"].axes
     wound, torque = np.array(kept["wheel_angle_rad"]) * ARCMIN, np.array(kept["torque_N_mm"]) / 1000.0
@@ -105,6 +108,7 @@ def test_torque_curve_is_drawn_as_it_is_kept(told):
     assert dashed == pytest.approx([-0.03 * 377.3, 0.03 * 377.3])
 
 
+@pytest.mark.slow
 def test_orders_rebuild_the_transmission_error(told):
     """Σ a cos(o φ − p) and a mean leave the residual that is printed, and what it leaves is orthogonal to every order."""
     text, content, _, analysis = told
@@ -125,6 +129,7 @@ def test_orders_rebuild_the_transmission_error(told):
     assert kept["turns"] == TURNS
 
 
+@pytest.mark.slow
 def test_orders_are_printed_and_drawn_as_they_are_kept(told):
     text, content, figures, _ = told
     largest = sorted(content["transmission_error_orders"]["orders"], key=lambda entry: -entry["amplitude_rad"])
@@ -141,6 +146,7 @@ def test_orders_are_printed_and_drawn_as_they_are_kept(told):
     assert f"{content['transmission_error_orders']['residual_rms_rad'] * ARCSEC:.2g}″ rms" in axes.get_title()
 
 
+@pytest.mark.slow
 def test_pressure_is_one_number(told):
     """Printed, kept and drawn from the same positions: all turns, not the first alone."""
     text, content, figures, analysis = told
@@ -163,6 +169,7 @@ def test_pressure_is_one_number(told):
     assert mark.get_xdata()[0] == pytest.approx(curve.get_xdata()[at])
 
 
+@pytest.mark.slow
 def test_life_is_printed_as_it_is_kept(told):
     text, content, *_ = told
     kept = content["bearing_life"]
@@ -184,6 +191,7 @@ def test_life_is_printed_as_it_is_kept(told):
     assert kept["duty"] is None
 
 
+@pytest.mark.slow
 def test_life_is_that_of_the_analysis(told):
     """All its turns, at the speed asked for."""
     *_, analysis = told

@@ -48,6 +48,7 @@ def test_run_writes_results_and_summary(tmp_path):
     assert "report.html" in json.loads((tmp_path / MANIFEST).read_text())["files"]
 
 
+@pytest.mark.slow
 def test_no_page_leaves_the_page_out(tmp_path, capsys):
     words = ["run", "paper", "--case", "CS-1", "--angles", "0.1", "--no-figures", "--no-page", "--out", str(tmp_path)]
     assert main(words) == 0

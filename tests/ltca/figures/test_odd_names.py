@@ -28,7 +28,7 @@ def analysis(paper_cases):
     return analyse(replace(paper_cases["CS-1"], name=NAMES[0]), np.array([0.1, 0.2]))
 
 
-@pytest.mark.parametrize("figure", ["fig25_loaded_pins", "fig28_bearing_load"])
+@pytest.mark.parametrize("figure", ["fig28_bearing_load", pytest.param("fig25_loaded_pins", marks=pytest.mark.slow)])
 def test_figures_hold_the_names_as_they_are(figure, analysis, tmp_path):
     """matplotlib took what stands between dollar signs for a formula, and ended in its parser."""
     dataset = build_dataset(NAMES[0], dict.fromkeys(NAMES, analysis))

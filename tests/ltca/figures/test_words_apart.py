@@ -171,6 +171,7 @@ def test_words_of_pressures_stand_apart():
             assert_words_stand_apart(figure)
 
 
+@pytest.mark.slow
 def test_words_of_curves_stand_apart(tmp_path):
     angle = np.radians([0.0, 7.0, 14.0, 21.0])
     torque = np.linspace(-4e5, 4e5, 41)

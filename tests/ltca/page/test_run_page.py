@@ -182,6 +182,7 @@ def test_nothing_to_compare_with(tmp_path):
         read_compared(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_second_run_beside_the_first(paper_run, tmp_path):
     run, dataset = paper_run
     dataset.to_netcdf(tmp_path / "results.nc", engine="h5netcdf")

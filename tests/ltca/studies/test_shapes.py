@@ -73,6 +73,7 @@ def derived(monkeypatch, tmp_path):
     return asked
 
 
+@pytest.mark.slow
 def test_a_sweep_derives_each_shape_once_and_beforehand(derived, tmp_path):
     study, half = (parse_sweep(tomllib.loads(SHAPES), "paper", engine=engine) for engine in (ALONE, None))
     told = []

@@ -45,6 +45,7 @@ def test_reducers_of_all_kinds_quick():
     check_seeds(0, 4, crank_drive)
 
 
+@pytest.mark.slow
 def test_a_disc_that_rolls_in_the_wheel_is_followed_along_its_valley():
     """Pressed by 226 pins all around it rolls almost freely: "no equilibrium" after 700 steps that each fell by 0.6 %."""
     check_seeds(833, 1, crank_drive)

@@ -132,6 +132,7 @@ def echo(monkeypatch):
     return asked
 
 
+@pytest.mark.slow
 def test_kept_answers_are_used_again(echo, tmp_path):
     first = rows_of(tmp_path / "kept.json")
     assert len(echo) == 1

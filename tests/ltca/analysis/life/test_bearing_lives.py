@@ -98,6 +98,7 @@ def test_on_a_carrier_neither_race_stands(rvs):
                 assert low + 0.03 * (high - low) < load < high - 0.03 * (high - low)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("even")
 def test_every_bearing_is_rated_and_the_shortest_named(rv, rvs):
     found = bearing_lives(rvs)

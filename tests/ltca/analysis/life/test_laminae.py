@@ -91,6 +91,7 @@ def test_against_a_thousand_slices(profile):
     assert factor(laminae(**profile), patch.load) == pytest.approx(fine, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_between_solved_loads_nothing_is_lost():
     """Shares at a load by interpolation against a contact solved at that load."""
     of = laminae(crown_drop=0.005)

@@ -137,6 +137,7 @@ def test_a_wider_part_is_no_smaller_load():
     assert large["pin_pressure_mid"] < small["pin_pressure_mid"]
 
 
+@pytest.mark.slow
 def test_a_life_that_gives_way_is_known_all_the_same():
     """A design was told to fit whose life nobody had asked: what is not known has given everything, never nothing."""
     from ltca.studies.design_search.refinement import Task, finish
