@@ -137,7 +137,7 @@ def test_radii_outside_the_table_are_refused():
         profiled_table(LOGARITHMIC, 3.0, 2.0)
 
 
-def test_open_contacts_give_zeros():
+def test_open_contacts_give_zeros(coarse_tables):
     law = law_at(LOGARITHMIC)
     approach = np.array([-1e-3, 0.0])
     for value in (*law.load_and_stiffness(approach, 2.0), law.energy(approach, 2.0), law.mid_pressure(approach, 2.0)):
