@@ -80,14 +80,18 @@ THREE, PINNED, ALL = (
     for name in ("three discs on bent sleeved pins", "tied-pinned", "everything")
 )
 KINDS = ["slots", "sleeves", "bent wheel pins", THREE, "free", "tied-clamped", PINNED, ALL]
+QUICK_AND_SLOW = [
+    name if name in ("slots", "free", THREE, PINNED, ALL) else pytest.param(name, marks=pytest.mark.slow)
+    for name in KINDS
+]
 
 
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", QUICK_AND_SLOW)
 def test_virtual_work_at_every_position(joint, name, unbalanced_work):
     np.testing.assert_allclose(unbalanced_work(kind(joint, name), ANGLES + 0.05), 0.0, atol=1e-7)
 
 
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", QUICK_AND_SLOW)
 def test_tangent_is_the_slope_of_the_force(joint, name, tangent_and_slope):
     scaled, slope = tangent_and_slope(kind(joint, name), ANGLES[:1])
     # differences of second order over 1e-7 mm: round-off of loads of 1e4 N by the step, and contacts that just open
@@ -244,7 +248,7 @@ def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
     return on_shaft_pin
 
 
-@pytest.mark.parametrize("name", ["sleeves", "tied-clamped", ALL])
+@pytest.mark.parametrize("name", ["sleeves", pytest.param("tied-clamped", marks=pytest.mark.slow), ALL])
 def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
     """Coefficients without coupling: the coupled model, its matrix of slopes too, gives what the tables give."""
     drive = kind(joint, name)

@@ -327,8 +327,18 @@ def test_shares_of_the_compliance(rv, name):
             "inner_race_radius = 14.0",
             r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2\.127",
         ),
-        ("\npin_radius = 3.0", "\npin_radius = 9.0", r"pin_wheel\.pin_radius = 9 mm: must be less than 6\.27673 mm"),
-        ("circle_radius = 42.0 ", "circle_radius = 62.0 ", r"crank\.circle_radius = 62 mm: bores cut through the root"),
+        pytest.param(
+            "\npin_radius = 3.0",
+            "\npin_radius = 9.0",
+            r"pin_wheel\.pin_radius = 9 mm: must be less than 6\.27673 mm",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "circle_radius = 42.0 ",
+            "circle_radius = 62.0 ",
+            r"crank\.circle_radius = 62 mm: bores cut through the root",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_causes_are_looked_for_without_a_pin_shaft(old, new, message):

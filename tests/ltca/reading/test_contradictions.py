@@ -27,7 +27,10 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("part", "field", "value", "side", "bound"), WRONG)
+@pytest.mark.parametrize(
+    ("part", "field", "value", "side", "bound"),
+    [*WRONG[::3], *(pytest.param(*row, marks=pytest.mark.slow) for row in WRONG if row not in WRONG[::3])],
+)
 def test_the_field_that_was_spoilt_is_named_with_its_bound(part, field, value, side, bound, paper_table):
     """A pin circle too small read 'hole_radius must be less than −29.06'."""
     with pytest.raises(DriveError) as caught:
@@ -64,7 +67,9 @@ ONE_LINE = {
 }
 
 
-@pytest.mark.parametrize(("old", "new"), ONE_LINE)
+@pytest.mark.parametrize(
+    ("old", "new"), [*list(ONE_LINE)[:2], *(pytest.param(*row, marks=pytest.mark.slow) for row in list(ONE_LINE)[2:])]
+)
 def test_what_is_wrong_in_the_common_part_is_told_once_by_its_field(old, new):
     """An offset of 15 mm named the circle of the holes, four times; a race of 295 mm took seven lines."""
     text = shipped_drive()

@@ -70,7 +70,9 @@ MALFORMED = [
     # materials
     (STEEL, "disc = { youngs_modulus = -1.0 }", ["materials.disc.youngs_modulus = -1.0", "greater than 0 MPa"]),
     (STEEL, "disc = { poisson_ratio = 0.5 }", ["materials.disc.poisson_ratio = 0.5", "less than 0.5"]),
-    # geometry that cannot be
+]
+# Geometry that cannot be: the field that mends it is looked for, which takes a while.
+IMPOSSIBLE = [
     ("eccentricity = 4.0", "eccentricity = 7.0", ["crank.eccentricity = 7 mm", "at most 4.5 mm", "loops"]),
     ("pin_radius = 6.5", "pin_radius = 25.0", ["pin_wheel.pin_radius = 25 mm", "at most 13.86 mm", "undercut"]),
     ("equidistant_offset = 0.15", "equidistant_offset = -0.45", ["equidistant_offset = -0.45 mm", "at least -0.41 mm"]),
@@ -94,7 +96,9 @@ MALFORMED = [
     ("hole_radius = 14.075", "hole_radius = 13.0", ["pin_shaft.hole_radius = 13 mm", "at least 13.575 mm"]),
     ("bearing = 0.0", "bearing = 20.0", ["clearance.bearing = 20 mm", "at most 5 mm"]),
     ("pin_hole = 0.0", "pin_hole = 3.0", ["clearance.pin_hole = 3 mm", "at most 2 mm"]),
-    # profiles and errors of single parts
+]
+# Profiles and errors of single parts.
+MALFORMED += [
     (ROLLER_PROFILE, "roller_profile = { logarithmic_factor = -1.0 }", ["logarithmic_factor = -1.0", "at least 0"]),
     (ROLLER_PROFILE, "roller_profile = { crown_drop = 2.0 }", ["crown_drop = 2 mm", "at most 0.5 mm"]),
     (
@@ -118,7 +122,17 @@ def test_the_base_is_sound():
     assert list(parse_drive(BASE).cases) == ["nominal"]
 
 
-@pytest.mark.parametrize(("old", "new", "told"), MALFORMED, ids=[new[:48] or "(removed)" for _, new, _ in MALFORMED])
+QUICK = 5
+"""Of the impossible geometries; the others are slow."""
+
+
+def walk():
+    for number, row in enumerate([*IMPOSSIBLE, *MALFORMED]):
+        marks = [pytest.mark.slow] if QUICK <= number < len(IMPOSSIBLE) else []
+        yield pytest.param(*row, id=row[1][:48] or "(removed)", marks=marks)
+
+
+@pytest.mark.parametrize(("old", "new", "told"), list(walk()))
 def test_malformed_drive_says_what_is_wrong(old, new, told, tmp_path, capsys):
     assert old in BASE
     path = tmp_path / "bad.toml"

@@ -138,7 +138,7 @@ def test_a_read_drive_is_written_with_its_numbers(exported):
     assert parse_drive(text).cases["nominal"] == read
 
 
-@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("separator", [";", *(pytest.param(other, marks=pytest.mark.slow) for other in ",\t")])
 def test_what_measuring_machines_write(exported, deviated, tmp_path, separator):
     """Other separators and orders of columns, no names at all, points in any order, the first repeated as the last."""
     measured = read_points(exported / "points.csv")

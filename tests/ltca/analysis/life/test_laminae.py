@@ -76,7 +76,12 @@ def test_heavy_crown_against_the_ellipse_of_hertz():
 
 
 @pytest.mark.parametrize(
-    "profile", [{"logarithmic_factor": 1.0}, {"crown_drop": 0.02}, {"end_relief_length": 4.0, "end_relief_depth": 0.02}]
+    "profile",
+    [
+        {"logarithmic_factor": 1.0},
+        pytest.param({"crown_drop": 0.02}, marks=pytest.mark.slow),
+        pytest.param({"end_relief_length": 4.0, "end_relief_depth": 0.02}, marks=pytest.mark.slow),
+    ],
 )
 def test_against_a_thousand_slices(profile):
     """Profiles whose load ends inside: the patch behind the load law, on its own grid, cut into a thousand slices."""
