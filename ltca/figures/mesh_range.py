@@ -83,7 +83,8 @@ def loaded_window(crank_angle: FloatArray, load: FloatArray) -> tuple[float, flo
     at = crank_angle[loaded_at(load).any(axis=0)]
     if at.size < 2:
         return None
-    room = max(BESIDE_THE_MESH * float(np.ptp(at)), STEP)
+    apart = float(np.max(np.diff(np.sort(crank_angle))))  # to the next position, where a curve has come down to nothing
+    room = max(BESIDE_THE_MESH * float(np.ptp(at)), STEP, apart)
     low = max(STEP * np.floor((at.min() - room) / STEP), STEP * np.floor(crank_angle.min() / STEP))
     high = min(STEP * np.ceil((at.max() + room) / STEP), STEP * np.ceil(crank_angle.max() / STEP))
     return (float(low), float(high)) if high - low < 0.95 * np.ptp(crank_angle) else None

@@ -55,7 +55,7 @@ def read_points(path: Path) -> MeasuredPoints:
     Raises
     ------
     DriveError
-        When it cannot be read, has no columns x and y, or holds what is no finite number.
+        When it cannot be read, has no columns x and y, holds what is no finite number, or says that it is compensated.
     """
     text, source = read_text(path), str(path)
     lines = [
@@ -65,6 +65,10 @@ def read_points(path: Path) -> MeasuredPoints:
     ]
     if not lines:
         raise DriveError(["holds no points"], source)
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip("# \t").startswith("compensation ") and line.lstrip().startswith("#"):
+            told = "is a flank compensated for a printer, which no machine measured: export it without --compensate"
+            raise DriveError([f"line {number}: {told}"], source)
     separator = max(SEPARATORS, key=lines[0][1].count)
     names = [name.strip().strip('"').casefold() for name in lines[0][1].split(separator)]
     if _is_number(names[0]):

@@ -232,3 +232,13 @@ def test_a_wrong_drive_is_told_before_its_measured_flank(exported, tmp_path):
     (tmp_path / "drive.toml").write_text(text)
     with pytest.raises(DriveError, match="number_of_teeth"):
         load_drive(tmp_path / "drive.toml")
+
+
+def test_a_compensated_flank_is_no_measured_one(tmp_path):
+    """An export for a printer read back as an error of form of a tenth of a millimetre, in silence."""
+    path = tmp_path / "flank.csv"
+    path.write_text(
+        "# compensation 0.1 mm: every face is moved into the material by 0.1 mm\nx,y\n1.0,2.0\n", encoding="utf-8"
+    )
+    with pytest.raises(DriveError, match="line 1: is a flank compensated for a printer"):
+        read_points(path)
