@@ -309,7 +309,7 @@ def _stand_in_the_way(
     broken = {name for one in tried for name in one.broken}
     room = ("outer_diameter", "length", "torque")
     order = sorted(asked, key=lambda one: (one.name not in broken, one.name not in room))
-    names = [(first.name, second.name) for first, second in pairs_of(order, 2)]
+    names: list[tuple[str, ...]] = [(first.name, second.name) for first, second in pairs_of(order, 2)]
     told(f"pairs that stand in the way: {len(names)}")
     chances = [
         future.result() for future in [executor.submit(least_broken, requirements, demands, own) for own in names]
