@@ -138,7 +138,10 @@ def _print(found: Found, rows: list[list[str]], out: Path) -> None:
         f"combinations by closed forms, {found.solved} loaded drives"
     )
     if not found.designs:
-        print("nothing fits. What stands in the way, each with all others held:")
+        print(
+            "nothing fits. What stands in the way, each with all others held, and at most so much (a longer search may "
+            "find less):"
+        )
         for one in found.relaxations:
             print(f"  {one.words}")
         if not found.relaxations:

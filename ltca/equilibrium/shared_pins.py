@@ -129,21 +129,25 @@ class SharedTangent:
     """
 
     def __init__(self, flexibility: FloatArray, parts: tuple[Response, ...], coordinates: Coordinates) -> None:
-        self.parts, self.coordinates, self.flexibility = parts, coordinates, flexibility
+        self.parts, self.coordinates = parts, coordinates
         self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
-        gradient = np.stack([_pairs(part, "gradient")[..., DISC_PLACE] for part in parts], axis=1)
-        along = np.stack([_pairs(part, "along")[..., DISC_PLACE] for part in parts], axis=1)
-        self.load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
-        pins = parts[0].pin_load.shape[1]
-        sense = np.ones(self.load.shape[-1])
-        sense[:pins] = -1.0
-        bending = np.stack([_pairs(part, "bending") for part in parts], axis=1)
+        bends = np.any(flexibility != 0.0, axis=(-2, -1)).reshape(-1, flexibility.shape[-3]).any(axis=0)
+        self.coupled = any(slopes.by_approach.ndim > 2 for slopes in self.slopes)
+        self.own = np.arange(bends.size) if self.coupled else np.flatnonzero(bends)
+        """Pairs that matter: pins that do not bend stand still, unless their loads follow those of others."""
+        self.flexibility: FloatArray = flexibility[..., self.own, :, :]
+        gradient = np.stack([self._pairs(part, "gradient")[..., DISC_PLACE] for part in parts], axis=1)
+        along = np.stack([self._pairs(part, "along")[..., DISC_PLACE] for part in parts], axis=1)
+        loads = [np.concatenate((part.pin_load, part.hole_load), axis=1)[:, self.own] for part in parts]
+        self.load = np.stack(loads, axis=1)
+        sense = np.where(self.own < parts[0].pin_load.shape[1], -1.0, 1.0)
+        bending = np.stack([self._pairs(part, "bending") for part in parts], axis=1)
         # A pin moves against a disc as the disc moves the other way against it; shape (positions, pairs, discs, 2).
         self.normal = -gradient.swapaxes(1, 2)
         self.slip = -along.swapaxes(1, 2)
         force = self.load.swapaxes(1, 2)[..., None] * self.normal
         if parts[0].friction is not None:
-            rubbed = np.stack([part.friction for part in parts if part.friction is not None], axis=2)
+            rubbed = np.stack([part.friction[:, self.own] for part in parts if part.friction is not None], axis=2)
             force = force + rubbed[..., None] * self.slip
         self.force: ComplexArray = np.ascontiguousarray(force).view(complex)[..., 0]
         self.bend = (self.load * sense * bending).swapaxes(1, 2)
@@ -153,9 +157,9 @@ class SharedTangent:
         for disc in range(discs):
             slip = self.slip[:, :, disc]
             spread[:, :, disc, :, disc, :] = self.bend[:, :, disc, None, None] * slip[..., :, None] * slip[..., None, :]
-        held = np.zeros((*np.broadcast_shapes(flexibility.shape[:-3], (positions,)), pairs, discs, 2, discs, 2))
+        held = np.zeros((*np.broadcast_shapes(self.flexibility.shape[:-3], (positions,)), pairs, discs, 2, discs, 2))
         for axis in (0, 1):
-            held[..., axis, :, axis] = flexibility
+            held[..., axis, :, axis] = self.flexibility
         shape = (positions, pairs, 2 * discs, 2 * discs)
         by_force: FloatArray = held.reshape(shape)
         # What a change of forces, and one of their directions, moves.
@@ -170,18 +174,23 @@ class SharedTangent:
     def left_over(self, shifts: ComplexArray) -> ComplexArray:
         """Return displacements less what the forces make of them, mm, shape (positions, discs, pairs)."""
         moved = np.matmul(self.flexibility.astype(complex), self.force[..., None])[..., 0]
-        return np.asarray(shifts + moved.swapaxes(1, 2))
+        left = shifts.copy()
+        left[..., self.own] += moved.swapaxes(1, 2)
+        return left
 
     def step(self, left: ComplexArray) -> ComplexArray:
         """Return Newton's step of the displacements."""
-        flat = np.stack((left.real, left.imag), axis=-1).swapaxes(1, 2)
+        step = -left
+        own = left[..., self.own]
+        flat = np.stack((own.real, own.imag), axis=-1).swapaxes(1, 2)
         positions, pairs, discs, _ = flat.shape
         alone = np.linalg.solve(self.yielding, flat.reshape(positions, pairs, 2 * discs, 1))
         onto = np.matmul(self.directions, alone)[..., 0]
         change = self._loads(-self._times_slope(onto[..., None]))
         moved = -alone[..., 0] - np.matmul(self.held, np.matmul(self.directions.swapaxes(2, 3), change))[..., 0]
         moved = moved.reshape(positions, pairs, discs, 2)
-        return np.asarray((moved[..., 0] + 1j * moved[..., 1]).swapaxes(1, 2))
+        step[..., self.own] = (moved[..., 0] + 1j * moved[..., 1]).swapaxes(1, 2)
+        return step
 
     def correction(self) -> FloatArray:
         """Return what shared pins add to the tangent of discs whose pins stand still."""
@@ -190,10 +199,10 @@ class SharedTangent:
         loads, turned = np.zeros((positions, pairs, discs, size)), np.zeros((positions, pairs, discs, 2, size))
         for disc, (part, slopes) in enumerate(zip(self.parts, self.slopes, strict=True)):
             own = self.coordinates.columns(disc)
-            loads[:, :, disc, own] = slopes.by_pose
+            loads[:, :, disc, own] = slopes.by_pose[:, self.own]
             # F ∂²δ/∂u∂q: κ s_u s_qᵀ, on the flank with s_u e₂ᵀ as well.
             slip = self.slip[:, :, disc, :, None]
-            block = self.bend[:, :, disc, None, None] * slip * _pairs(part, "along")[:, :, None, :]
+            block = self.bend[:, :, disc, None, None] * slip * self._pairs(part, "along")[:, :, None, :]
             block[..., DISC_ROTATION] -= self.on_flank[:, :, disc, None] * slip[..., 0]
             turned[:, :, disc][..., own] = block
         directions: FloatArray = turned.reshape(positions, pairs, 2 * discs, size)
@@ -209,8 +218,8 @@ class SharedTangent:
         found = np.empty_like(values)
         for disc, slopes in enumerate(self.slopes):
             own = values[:, :, disc]
-            if slopes.by_approach.ndim == 2:
-                found[:, :, disc] = slopes.by_approach[..., None] * own
+            if not self.coupled:
+                found[:, :, disc] = slopes.by_approach[:, self.own, None] * own
             else:
                 found[:, :, disc] = np.matmul(slopes.by_approach, own)
         return found
@@ -218,8 +227,8 @@ class SharedTangent:
     def _loads(self, right: FloatArray) -> FloatArray:
         """Loads that change by `right` with the pins held, shape (positions, pairs, discs, …), as the pins yield."""
         positions, pairs, discs, columns = right.shape
-        if self.slopes[0].by_approach.ndim == 2:
-            slope = np.stack([slopes.by_approach for slopes in self.slopes], axis=2)
+        if not self.coupled:
+            slope = np.stack([slopes.by_approach[:, self.own] for slopes in self.slopes], axis=2)
             matrix = np.eye(discs) + slope[..., None] * self.along_normals
             return np.asarray(np.linalg.solve(matrix, right))
         # Shape (positions, discs, pairs, discs, pairs): the slope of disc d, then what its pins share with disc d'.
@@ -233,10 +242,10 @@ class SharedTangent:
         found = np.linalg.solve(flat, right.swapaxes(1, 2).reshape(positions, discs * pairs, columns))
         return np.asarray(found.reshape(positions, discs, pairs, columns).swapaxes(1, 2))
 
-
-def _pairs(part: Response, name: str) -> FloatArray:
-    """What wheel pins and shaft pins of one disc have, side by side."""
-    return np.concatenate((getattr(part.flank, name), getattr(part.holes, name)), axis=1)
+    def _pairs(self, part: Response, name: str) -> FloatArray:
+        """What the pairs that matter have on one disc, wheel pins before shaft pins."""
+        found: FloatArray = np.concatenate((getattr(part.flank, name), getattr(part.holes, name)), axis=1)[:, self.own]
+        return found
 
 
 def _flexibility(drive: Drive) -> FloatArray | None:

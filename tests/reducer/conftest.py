@@ -40,7 +40,7 @@ def stored_energy(model, response, pose):
     if isinstance(model, Reducer) and model.pins is not None:
         shared = SharedTangent(model.pins.flexibility, disc_responses(response), model.coordinates)
         force = shared.load.swapaxes(1, 2)[..., None] * shared.normal
-        total = total + 0.5 * np.einsum("bpdi,pde,bpei->b", force, model.pins.flexibility, force)
+        total = total + 0.5 * np.einsum("bpdi,pde,bpei->b", force, shared.flexibility, force)
     return total, np.concatenate(slopes, axis=1)
 
 

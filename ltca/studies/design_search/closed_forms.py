@@ -90,7 +90,7 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     inner = sizes.bore - 2.0 * sizes.roller_radius
     bore = sizes.bore + 0.5 * shop.bearing_clearance
     root = sizes.pin_circle + shop.shifting_offset - sizes.eccentricity - sizes.pin_radius - shop.equidistant_offset
-    speed_up = asked.ratio / (sizes.stage * asked.cranks if asked.kind == "rv" else 1.0)
+    speed_up = asked.ratio / (sizes.stage * asked.number_of_cranks if asked.kind == "rv" else 1.0)
     shaft = 0.5 * (16.0 * sizes.torque / speed_up / (np.pi * shop.crankshaft_shear)) ** (1.0 / 3.0)
     pitch = inner + sizes.roller_radius
     chord = pitch * np.sin(np.pi / sizes.rollers) - sizes.roller_radius
@@ -103,7 +103,7 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     }
     if asked.kind == "rv":
         circle = sizes.hole_circle
-        between = 2.0 * (circle * np.sin(np.pi / asked.cranks) - bore)
+        between = 2.0 * (circle * np.sin(np.pi / asked.number_of_cranks) - bore)
         found["wall"] = np.minimum(np.minimum(root - circle - bore, between), circle - bore)
         return found
     hole = sizes.hole_pin + sizes.eccentricity + shop.pin_hole_clearance
@@ -239,7 +239,7 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     found: dict[str, FloatArray] = {}
     holes = np.zeros(sizes.count)
     if several:
-        radial, count = flank["radial"], asked.cranks
+        radial, count = flank["radial"], asked.number_of_cranks
         turning = np.exp(2j * np.pi * np.arange(TURN) / TURN)
         push = (across * 1j - radial)[:, None] / count + (on_disc / (count * sizes.hole_circle))[:, None] * turning
         force = np.abs(push)

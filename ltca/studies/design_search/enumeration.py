@@ -297,7 +297,7 @@ def _inner(
             length = np.where((2.0 * r == diameter) & (long <= thickness), np.maximum(length, long), length)
         count = np.zeros(own.size)
         if several:
-            half = sin(pi / asked.cranks)
+            half = sin(pi / asked.number_of_cranks)
             edge = root - 0.5 * shop.bearing_clearance - shop.least_wall
             bore = part[other] * (half * edge - 0.5 * (shop.least_wall + shop.bearing_clearance)) / (1.0 + half)
             circle = edge - bore

@@ -96,8 +96,8 @@ class Asked:
         One crank in the centre and a pin shaft, or several cranks behind a spur stage.
     discs : tuple of int
         Numbers of discs to choose from, 1 to 3.
-    cranks : int
-        Of an RV reducer.
+    cranks : int or None
+        Of an RV reducer; three when left out. None of others.
     held : {"pin-shaft", "pin-wheel"}
         Member that stands still.
     ratio : float
@@ -129,7 +129,7 @@ class Asked:
     name: Name = "design"
     kind: Literal["discs", "rv"] = "discs"
     discs: Counts = (1, 2)
-    cranks: Annotated[int, Field(ge=2, le=6), COUNT] = 3
+    cranks: Annotated[int, Field(ge=2, le=6), COUNT] | None = None
     held: Literal["pin-shaft", "pin-wheel"] = "pin-wheel"
     ratio: Annotated[float, quantity("dimensionless", ge=3.0, le=1000.0)]
     ratio_tolerance: Annotated[float, quantity("dimensionless", ge=0.0, le=0.5)] = 0.0
@@ -147,6 +147,11 @@ class Asked:
     friction: Friction | None = None
     temperature: Temperature | None = None
     lubricant: Lubricant | None = None
+
+    @property
+    def number_of_cranks(self) -> int:
+        """Of an RV reducer; three where nothing else is asked."""
+        return 3 if self.cranks is None else self.cranks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -305,6 +310,16 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits) -> list[
         found.append(
             f'ratio = {asked.ratio:g}: must be a whole number with kind = "discs", or within ratio_tolerance of one '
             f"(ratio_tolerance = {asked.ratio_tolerance:g})"
+        )
+    if asked.kind == "discs" and asked.cranks is not None:
+        found.append(
+            f'cranks = {asked.cranks}: has no effect with kind = "discs", whose one crank stands in the centre'
+        )
+    walls = 2.0 * asked.shop.housing_wall
+    if walls >= asked.outer_diameter:
+        found.append(
+            f"shop.housing_wall = {asked.shop.housing_wall:g} mm: must be less than half of outer_diameter = "
+            f"{asked.outer_diameter:g} mm, or nothing is left inside"
         )
     if asked.kind == "rv" and asked.shop.shaft_pin_stiffness is not None:
         found.append('shop.shaft_pin_stiffness: must be left out with kind = "rv", which has no shaft pins')

@@ -30,7 +30,7 @@ PASSES = 2
 CHANCE = 0.1
 """What a candidate may break by closed forms (ln) to be taken for one."""
 PAIRS = 6
-"""Pairs of requirements that are tried at most."""
+"""Pairs of requirements that are refined at most, of all that closed forms leave a chance."""
 DIGITS = 4
 """Of what would do; rounded to the side that does."""
 
@@ -174,6 +174,22 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
     return Relaxation(demands=giving, refined=best, combinations=combinations, broken=broken)
 
 
+def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
+    """Return the least that closed forms say is broken of all other requirements (ln); infinite where none has a chance.
+
+    Parameters
+    ----------
+    requirements : Requirements
+        What is asked.
+    demands : tuple of Demand
+        Of it.
+    names : tuple of str
+        Of the demands that give.
+    """
+    torque = requirements.asked.torque * (TORQUES[-1] if "torque" in names else 1.0)
+    return float(np.min(enumerate_candidates(requirements, demands, names, 1, torque).broken, initial=np.inf))
+
+
 def find_designs(
     requirements: Requirements,
     executor: Executor,
@@ -289,13 +305,18 @@ def _stand_in_the_way(
     single = _relax_all(requirements, demands, [(one.name,) for one in asked], executor, told)
     if any(one.refined is not None for one in single):
         return sorted(single, key=_least)
-    # Pairs: of what closed forms and candidates broke least or most there is no telling, so room and torque go first.
+    # All pairs by closed forms, those that have a chance by loaded drives; of equal ones what candidates broke goes first.
     broken = {name for one in tried for name in one.broken}
-    order = sorted(
-        asked, key=lambda one: (one.name not in broken, one.name not in ("outer_diameter", "length", "torque"))
-    )
-    names = [tuple(one.name for one in pair) for pair in pairs_of(order, 2)][:PAIRS]
-    return sorted(_relax_all(requirements, demands, names, executor, told), key=_least) + single
+    room = ("outer_diameter", "length", "torque")
+    order = sorted(asked, key=lambda one: (one.name not in broken, one.name not in room))
+    names: list[tuple[str, ...]] = [(first.name, second.name) for first, second in pairs_of(order, 2)]
+    told(f"pairs that stand in the way: {len(names)}")
+    chances = [
+        future.result() for future in [executor.submit(least_broken, requirements, demands, own) for own in names]
+    ]
+    likely = sorted(range(len(names)), key=lambda place: chances[place])[:PAIRS]
+    pairs = [names[place] for place in likely if np.isfinite(chances[place])]
+    return sorted(_relax_all(requirements, demands, pairs, executor, told), key=_least) + single
 
 
 def _relax_all(

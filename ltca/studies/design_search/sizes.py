@@ -151,7 +151,7 @@ def drive_table(row: dict[str, float], requirements: Requirements, name: str) ->
         table["disc"]["planes"] = tuple(pitch * (disc - 0.5 * (discs - 1)) for disc in range(discs))
     if several:
         table["installation"]["first_stage_ratio"] = row["stage"]
-        table["crank"] |= {"number": asked.cranks, "circle_radius": row["hole_circle"]}
+        table["crank"] |= {"number": asked.number_of_cranks, "circle_radius": row["hole_circle"]}
         if shop.crank_support_stiffness is not None:
             half = 0.5 * stack + shop.disc_gap + 0.5 * inner
             table["crank"]["support"] = {

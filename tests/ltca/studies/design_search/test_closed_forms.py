@@ -138,10 +138,12 @@ def test_a_wider_part_is_no_smaller_load():
 
 
 @pytest.mark.slow
-def test_a_life_that_gives_way_is_known_all_the_same():
+def test_a_life_that_gives_way_is_known_all_the_same(monkeypatch):
     """A design was told to fit whose life nobody had asked: what is not known has given everything, never nothing."""
+    from ltca.studies.design_search import refinement
     from ltca.studies.design_search.refinement import Task, finish
 
+    monkeypatch.setattr(refinement, "FINE_ROUNDS", 1)
     requirements = parse_requirements(PAPER.replace("[shop]", "life = 1.0e9\n[shop]") + STEEL)
     demands = find_demands(requirements)
     found = finish(Task(requirements=requirements, demands=demands, row=ROW | {"pin_circle": 88.4}, relaxed=("life",)))

@@ -70,3 +70,17 @@ def test_own_sizes_stand_before_the_typical_ones():
     stock = parse_requirements(SOUND + "[shop]\neccentricities = [1.1]\n").stock
     assert stock.eccentricities == (1.1,)
     assert len(stock.rollers) > 10
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (SOUND + "cranks = 3\n", "cranks = 3: has no effect"),
+        (SOUND.replace("140 mm", "8 mm"), "shop.housing_wall = 4 mm: must be less"),
+    ],
+)
+def test_what_has_no_effect_or_leaves_no_room_is_refused(text, told):
+    """A number of cranks was ignored with discs on one; walls of 80 mm in 55 were searched."""
+    with pytest.raises(DriveError) as error:
+        parse_requirements(text)
+    assert told in str(error.value)

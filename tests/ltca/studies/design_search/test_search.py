@@ -1,0 +1,135 @@
+"""What stands in the way: single requirements first, pairs where no single one is enough."""
+
+import math
+from concurrent.futures import Future
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from ltca.commands.program import main
+from ltca.studies.design_search import search
+from ltca.studies.design_search.demands import find_demands
+from ltca.studies.design_search.designs import design_text
+from ltca.studies.design_search.enumeration import Enumeration
+from ltca.studies.design_search.refinement import Refined
+from ltca.studies.design_search.requirements import parse_requirements
+from ltca.studies.design_search.search import Relaxation, find_designs
+from ltca.studies.design_search.solution import Solution
+
+STEEL = "\n[materials]\n" + "\n".join(
+    f'{part} = "100Cr6"' for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+)
+# Rollers of 20 mm do not go into a disc of 15 mm, and with a clearance of 20 µm no lever within three times the room leaves
+# 0.2 arcmin: either stands in the way alone.
+TWO_IN_THE_WAY = """
+discs = 1
+held = "pin-wheel"
+ratio = 19
+torque = "60 N m"
+speed = "15 rpm"
+outer_diameter = "150 mm"
+length = "15 mm"
+backlash = "0.2 arcmin"
+[shop]
+equidistant_offset = 0.02
+shaft_pin_stiffness = 4.0e5
+rollers = [[8.0, 20.0]]
+"""
+
+
+class InTurn:
+    """An executor that does all at once."""
+
+    def submit(self, function, *arguments):
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+def made_up(row, given, values, fits):
+    return Refined(
+        row=row, solution=Solution(values=values), fits=fits, given=given, broken={}, relaxed=(), solved=1, shifts={},
+    )  # fmt: skip
+
+
+def searched(monkeypatch, enough, chances=None):
+    """Search where nothing but `enough`, names to ln of the factor, is enough; what closed forms break of pairs: `chances`."""
+    asked = []
+
+    def relax(requirements, demands, names):
+        asked.append(names)
+        giving = tuple(one for one in demands if one.name in names)
+        given = enough.get(frozenset(names))
+        values = {one.quantity: one.value * math.exp(given or 0.0) for one in giving}
+        refined = None if given is None else made_up({}, given, values, True)
+        return Relaxation(demands=giving, refined=refined, combinations=10, broken=None)
+
+    def least_broken(requirements, demands, names):
+        return (chances or {}).get(frozenset(names), 1.0)
+
+    monkeypatch.setattr(search, "refine", lambda task: made_up(task.row, 0.0, {}, False))
+    monkeypatch.setattr(search, "relax", relax)
+    monkeypatch.setattr(search, "least_broken", least_broken)
+    nothing = Enumeration(sizes=None, broken=np.zeros(0), combinations=0)
+    monkeypatch.setattr(search, "enumerate_candidates", lambda *arguments, **keys: nothing)
+    return find_designs(parse_requirements(TWO_IN_THE_WAY + STEEL), InTurn()), asked
+
+
+def test_where_one_is_enough_no_pair_is_tried(monkeypatch):
+    found, asked = searched(monkeypatch, {frozenset({"torque"}): 0.7, frozenset({"length"}): 0.2})
+    assert asked == [("outer_diameter",), ("length",), ("torque",), ("backlash",)]
+    assert [one.name for one in found.relaxations[:2]] == ["length", "torque"]
+    assert [one.refined for one in found.relaxations[2:]] == [None, None]
+
+
+def test_where_no_single_one_is_enough_pairs_are_tried(monkeypatch):
+    enough = {frozenset({"length", "backlash"}): 0.6, frozenset({"torque", "backlash"}): 0.4}
+    found, asked = searched(monkeypatch, enough)
+    assert not found.designs
+    assert len(set(map(frozenset, asked[4:]))) == len(asked[4:]) == 6
+    first, second = found.relaxations[:2]
+    # The least factor first; each with both of its values.
+    assert ({one.name for one in first.demands}, first.refined.given) == ({"torque", "backlash"}, 0.4)
+    assert {one.name for one in second.demands} == {"length", "backlash"}
+    assert "27.34 mm" in second.words  # 15 mm × e^0.6, rounded up
+    assert second.words.endswith("would do")
+    assert " with " in second.words
+    assert all(one.refined is None for one in found.relaxations[2:])
+    assert "not enough together" in found.relaxations[2].words
+    assert "not enough alone" in found.relaxations[-1].words
+
+
+def test_pairs_with_a_chance_are_tried_first_and_no_more_than_said(monkeypatch):
+    """The last pair of the list is the likeliest; one that closed forms rule out is not tried."""
+    monkeypatch.setattr(search, "PAIRS", 2)
+    chances = dict.fromkeys(
+        map(frozenset, combinations(("outer_diameter", "length", "torque", "backlash"), 2)), math.inf
+    )
+    _, asked = searched(monkeypatch, {}, chances | {frozenset({"torque", "backlash"}): 0.1})
+    assert [set(names) for names in asked[4:]] == [{"torque", "backlash"}]
+    _, asked = searched(monkeypatch, {}, {frozenset({"torque", "backlash"}): 0.1})
+    assert [len(names) for names in asked] == [1, 1, 1, 1, 2, 2]
+    assert set(asked[4]) == {"torque", "backlash"}
+
+
+@pytest.mark.slow
+def test_a_pair_that_would_do_does(monkeypatch, tmp_path):
+    """Length and backlash by what is known without a search: rollers of 20 mm, and the clearance by the longest lever."""
+    monkeypatch.setattr(search, "CANDIDATES", 1)
+    monkeypatch.setattr(search, "RELAXED_CANDIDATES", 1)
+    requirements = parse_requirements(TWO_IN_THE_WAY + STEEL)
+    assert {one.name for one in find_demands(requirements) if one.kind == "requirement"} == {
+        "outer_diameter", "length", "torque", "backlash"
+    }  # fmt: skip
+    found = find_designs(requirements, InTurn(), best=1)
+    assert not found.designs
+    best = found.relaxations[0]
+    assert best.name == "length-and-backlash"
+    assert [one.name for one in found.relaxations if one.refined is not None] == [best.name]
+    length, backlash = (best.would_do(one) for one in best.demands)
+    assert 20.0 <= length <= 3.0 * 15.0
+    assert backlash > 2.0 * 0.02 / 75.0  # rad; no lever is longer than the pin circle
+    file = tmp_path / "pair.toml"
+    file.write_text(design_text(best.refined, found, "pair"))
+    assert main(["check", str(file), "--no-advice", "--out", str(tmp_path / "check")]) == 0
