@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ltca.commands.study_arguments import add_worker_arguments, check_worker_arguments
 from ltca.reading.arguments import add_out_argument, count_argument, default_folder, path_argument
 
 if TYPE_CHECKING:
@@ -37,14 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=BEST,
         help=f"designs to write; default {BEST}",
     )
-    parser.add_argument(
-        "--workers",
-        metavar="W",
-        type=count_argument("--workers", 1, 1024),
-        default=1,
-        help="local processes; default 1",
-    )
-    parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
+    add_worker_arguments(parser)
     add_out_argument(parser, "design")
 
 
@@ -52,12 +46,11 @@ def execute(arguments: argparse.Namespace) -> int:
     """Search, write and print what was found; exit status 1 when nothing fits."""
     from concurrent.futures.process import BrokenProcessPool
 
-    from ltca.errors import DriveError, FaultError
+    from ltca.errors import FaultError
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.studies.design_search.requirements import load_requirements
 
-    if arguments.scheduler and arguments.workers > 1:
-        raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
+    check_worker_arguments(arguments)
     requirements = load_requirements(arguments.requirements)
     out = arguments.out or default_folder(requirements.asked.name, "design")
     require_folder(out)

@@ -46,9 +46,8 @@ def add_seed_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
-    """Add what every study has: compliance, who solves it, folder, resuming, figures."""
-    add_compliance_arguments(parser)
+def add_worker_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add who solves: local processes or a cluster."""
     parser.add_argument(
         "--workers",
         metavar="W",
@@ -57,6 +56,12 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
         help="local processes; default 1",
     )
     parser.add_argument("--scheduler", metavar="URL", default="", help="dask.distributed scheduler, tcp://host:port")
+
+
+def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
+    """Add what every study has: compliance, who solves it, folder, resuming, figures."""
+    add_compliance_arguments(parser)
+    add_worker_arguments(parser)
     add_out_argument(parser, command)
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
     parser.add_argument("--force", action="store_true", help="replace another study in --out")
@@ -70,6 +75,20 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     )
 
 
+def check_worker_arguments(arguments: argparse.Namespace) -> None:
+    """Refuse local processes beside a cluster.
+
+    Raises
+    ------
+    DriveError
+        When both are given.
+    """
+    from ltca.errors import DriveError
+
+    if arguments.scheduler and arguments.workers > 1:
+        raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
+
+
 def check_study_arguments(arguments: argparse.Namespace) -> None:
     """Refuse options that contradict each other, before anything is imported.
 
@@ -80,8 +99,7 @@ def check_study_arguments(arguments: argparse.Namespace) -> None:
     """
     from ltca.errors import DriveError
 
-    if arguments.scheduler and arguments.workers > 1:
-        raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])
+    check_worker_arguments(arguments)
     if arguments.resume and arguments.force:
         raise DriveError(
             ["--resume and --force: give one of them; one goes on with the study in --out, one replaces it"]

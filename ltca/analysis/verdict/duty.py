@@ -64,10 +64,11 @@ def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | D
 
     drive, speed = analysis.drive, analysis.drive.load.speed
     for number, entry in enumerate(drive.duty):
-        if entry.torque <= analysis.torque and (speed is not None and entry.speed <= speed):
+        quicker = drive.friction is not None and (
+            speed is None or entry.speed > speed
+        )  # what goes with speed is friction's
+        if entry.torque <= analysis.torque and not quicker:
             continue
-        if drive.friction is None and entry.torque <= analysis.torque:
-            continue  # nothing there goes with speed
         try:
             yield number, at_entry(analysis, number)
         except DriveError as error:
