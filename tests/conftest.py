@@ -37,6 +37,16 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     return WorkStealingScheduling(config, log)
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Skip what is nightly, unless the expression of `-m` names it; what is nightly is slow, too."""
+    named = "nightly" in config.option.markexpr
+    for item in items:
+        if item.get_closest_marker("nightly"):
+            item.add_marker("slow")
+            if not named:
+                item.add_marker(pytest.mark.skip(reason="nightly: python -m pytest -m nightly"))
+
+
 def _merge(below: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     for key, value in over.items():
         if isinstance(value, dict) and isinstance(below.get(key), dict):
