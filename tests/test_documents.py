@@ -40,10 +40,9 @@ def test_every_page_has_one_title():
         assert len(re.findall(r"^# ", text, flags=re.MULTILINE)) == 1, page
 
 
-def test_readme_is_a_screen_and_a_half():
-    """About 100 lines, and the two set-up lines, which the CI calls to the letter."""
+def test_set_up_lines_are_those_of_the_ci():
+    """The two lines that install, to the letter."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert len(text.splitlines()) < 110
     lines = re.findall(r"```sh\n(.*)\n```", text)[:2]
     set_up = "sh .ci/system-libraries && python3 -m venv .venv && .venv/bin/pip install --quiet --editable "
     assert lines == [
@@ -63,6 +62,3 @@ def test_examples_pin_a_number_that_readers_do_not_see(path):
     assert set(line) == {"="}
     assert len(line) >= len(title)
 
-
-def test_there_are_examples_enough():
-    assert len(EXAMPLES) >= 12
