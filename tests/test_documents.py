@@ -61,4 +61,3 @@ def test_examples_pin_a_number_that_readers_do_not_see(path):
     title, line = ast.get_docstring(ast.parse(text)).splitlines()[:2]
     assert set(line) == {"="}
     assert len(line) >= len(title)
-
