@@ -136,6 +136,10 @@ def known(answers, model, base, answer):
     return answers[key]
 
 
+# Engines beyond the first are walked at night; what is slow of the first stays in every full run.
+ENGINES = ["tables", *(pytest.param(model, marks=[pytest.mark.slow, pytest.mark.nightly]) for model in ("hybrid", "fe"))]
+
+
 def walk():
     """Every field of every model; quick are the half-space tables of cylinders, what is told twice once."""
     for model in ("tables", "paper", "hybrid", "fe", "direct"):
@@ -145,7 +149,9 @@ def walk():
             judges = path.rpartition(".")[2] in JUDGED_BY and not path.startswith("materials.disc.")
             # One disc's own part errors go the way of those of all, other materials' limits that of the disc's.
             dear = model != "tables" or "_profile." in path or path.startswith("disc.of.") or judges
-            yield pytest.param(model, path, id=f"{model}-{path}", marks=[pytest.mark.slow] if dear else [])
+            marks = [pytest.mark.slow] if dear else []
+            marks += [pytest.mark.nightly] if model != "tables" else []
+            yield pytest.param(model, path, id=f"{model}-{path}", marks=marks)
 
 
 @pytest.mark.parametrize(("model", "path"), list(walk()))
@@ -194,9 +200,7 @@ OF_SEVERAL_CRANKS = [
 ]
 
 
-@pytest.mark.parametrize(
-    "model", ["tables", pytest.param("hybrid", marks=pytest.mark.slow), pytest.param("fe", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("model", ENGINES)
 @pytest.mark.parametrize("path", OF_SEVERAL_CRANKS)
 def test_fields_of_several_cranks_are_used(path, model, models, answers):
     """The walk above starts from a central crank; what several have is looked at on an RV reducer."""
@@ -219,9 +223,7 @@ OF_LOOSE_PINS = [
 ]
 
 
-@pytest.mark.parametrize(
-    "model", ["tables", pytest.param("hybrid", marks=pytest.mark.slow), pytest.param("fe", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("model", ENGINES)
 @pytest.mark.parametrize("path", OF_LOOSE_PINS)
 def test_fields_of_loose_pins_are_used(path, model, models, answers):
     """The walk above starts from one disc and has sleeves on the wheel; here two discs bend pins, sleeves are on the shaft."""

@@ -22,6 +22,7 @@ def content(folder):
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("command", COMMANDS)
 def test_killed_and_started_again(command, tmp_path, capsys):
     whole, out = tmp_path / "whole", tmp_path / "out"

@@ -23,7 +23,7 @@ from validation.commands import validate
 from validation.levels.other_code_problems import CODES
 from validation.rows import LEVELS
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.nightly]
 
 WORDS = ("paper", "--case", "CS-3", "--angles", "0.5")
 

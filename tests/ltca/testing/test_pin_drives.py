@@ -52,9 +52,10 @@ def test_shared_pins_settle_to_round_off_and_no_further(monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_hundred_drives_of_all_pins():
+@pytest.mark.parametrize(("first", "count"), [(3, 17), pytest.param(20, 80, marks=pytest.mark.nightly)])
+def test_a_hundred_drives_of_all_pins(first, count):
     """``benchmarks/random_drives.py --pins`` runs thousands."""
-    check_seeds(3, 97)
+    check_seeds(first, count)
 
 
 def test_every_kind_of_pin_is_drawn():

@@ -26,9 +26,10 @@ def test_practical_drives_quick():
 
 
 @pytest.mark.slow
-def test_five_hundred_practical_drives():
+@pytest.mark.parametrize(("first", "count"), [(4, 96), pytest.param(100, 400, marks=pytest.mark.nightly)])
+def test_five_hundred_practical_drives(first, count):
     """``benchmarks/random_drives.py --practical`` runs 10,000."""
-    check_seeds(4, 496)
+    check_seeds(first, count)
 
 
 def test_preloaded_drives_quick():
@@ -36,9 +37,10 @@ def test_preloaded_drives_quick():
 
 
 @pytest.mark.slow
-def test_forty_preloaded_drives():
+@pytest.mark.parametrize(("first", "count"), [(3, 5), pytest.param(8, 32, marks=pytest.mark.nightly)])
+def test_forty_preloaded_drives(first, count):
     """``benchmarks/random_drives.py --preloaded`` runs thousands."""
-    check_seeds(3, 37, preloaded_drive)
+    check_seeds(first, count, preloaded_drive)
 
 
 def test_reducers_of_all_kinds_quick():
@@ -52,9 +54,10 @@ def test_a_disc_that_rolls_in_the_wheel_is_followed_along_its_valley():
 
 
 @pytest.mark.slow
-def test_two_hundred_reducers_of_all_kinds():
+@pytest.mark.parametrize(("first", "count"), [(4, 36), pytest.param(40, 160, marks=pytest.mark.nightly)])
+def test_two_hundred_reducers_of_all_kinds(first, count):
     """``benchmarks/random_drives.py --cranks`` runs thousands."""
-    check_seeds(4, 196, crank_drive)
+    check_seeds(first, count, crank_drive)
 
 
 def test_every_kind_of_reducer_is_drawn():
