@@ -14,6 +14,7 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import argparse
 import contextlib
 import io
 import json
@@ -141,11 +142,15 @@ COMMANDS: dict[str, tuple[str, Callable[[Drive], np.ndarray]]] = {
 
 def main() -> int:
     """Walk the commands asked for."""
-    asked = sys.argv[1:] or [name for name in COMMANDS if not name.startswith("run-")]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("commands", nargs="*", metavar="COMMAND", help=f"of {', '.join(COMMANDS)}; default: no run-…")
+    parser.add_argument("--fields", type=int, default=0, help="the first so many alone; default: all")
+    arguments = parser.parse_args()
+    asked = arguments.commands or [name for name in COMMANDS if not name.startswith("run-")]
     unknown = set(asked) - set(COMMANDS)
     if unknown:
-        print(f"unknown: {', '.join(sorted(unknown))}; there are {', '.join(COMMANDS)}", file=sys.stderr)
-        return 2
+        parser.error(f"unknown: {', '.join(sorted(unknown))}; there are {', '.join(COMMANDS)}")
+    paths = leaf_fields()[: arguments.fields or None]
     drive = load_drive(FILE).cases["nominal"]
     plain = with_fields(drive, {"crank_bearing.roller_length": drive.disc.thickness})
     bases = {
@@ -156,7 +161,7 @@ def main() -> int:
     for name in asked:
         kind, answer = COMMANDS[name]
         began, ignored, refused, known = time.perf_counter(), [], 0, {}
-        for path in leaf_fields():
+        for path in paths:
             base, change = change_of(bases.get(name, drive), path)
             try:
                 after = answer(with_fields(base, change))
@@ -178,7 +183,7 @@ def main() -> int:
             if moves(known[key], after) == (path in EXCEPTIONS[kind]):
                 ignored.append(f"{path}: {'moves the answer' if path in EXCEPTIONS[kind] else 'is ignored'}")
         seconds = time.perf_counter() - began
-        print(f"{name}: {len(leaf_fields())} fields, {refused} refused by name, {len(ignored)} wrong ({seconds:.0f} s)")
+        print(f"{name}: {len(paths)} fields, {refused} refused by name, {len(ignored)} wrong ({seconds:.0f} s)")
         for line in ignored:
             print(f"  {line}")
         status |= bool(ignored)

@@ -20,6 +20,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -80,9 +81,7 @@ def measure_others(paper: Drive, angles: np.ndarray, rounds: int, base: float) -
     print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'time by one disc':>20}")
     for name, drive in other_reducers(paper).items():
         model = HalfSpace().prepare(drive).model
-        found, seconds = best(
-            rounds, lambda model=model, drive=drive: solve_at_output(model, drive, angles, drive.load.torque)
-        )
+        found, seconds = best(rounds, partial(solve_at_output, model, drive, angles, drive.load.torque))
         print(f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{seconds / base:>20.1f}")
 
 
@@ -110,9 +109,7 @@ def main() -> None:
     for name, model in models.items():
         found, seconds = near, base
         if name != "half-space":
-            found, seconds = best(
-                arguments.rounds, lambda model=model: solve_equilibrium(model, angles, moment, near.pose)
-            )
+            found, seconds = best(arguments.rounds, partial(solve_equilibrium, model, angles, moment, near.pose))
             seconds += base
         each = min(one_evaluation(model, angles, found.pose) for _ in range(arguments.rounds)) / angles.size
         print(

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from ltca.analysis.engines import HalfSpace
-from ltca.analysis.friction.losses import losses, moves_back
+from ltca.analysis.friction.losses import losses
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
@@ -56,7 +56,7 @@ def try_friction_drive(seed: int) -> tuple[str, str, int]:
         lost = losses(moving, own, balanced, drive.load.torque)
         if not np.all(np.isfinite(lost.efficiency)) or np.any(lost.total < 0.0):
             found.append(f"efficiency {lost.efficiency}, losses {lost.total} N·mm")
-        if driven_by == "output" and not np.all(moves_back(lost)):
+        if driven_by == "output" and np.any(lost.at_input >= 0.0):
             outcome = "balanced, locks itself"
         problems += [f"driven by its {driven_by}: {problem}" for problem in found]
         iterations = max(iterations, int(balanced.iterations[0]))

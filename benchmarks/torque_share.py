@@ -141,8 +141,8 @@ def print_errors(drive: Drive, angle: FloatArray, torque: float) -> None:
         def largest(size: float, fields: Callable[[float], Mapping[str, object]] = fields) -> float:
             return float(shares(with_fields(drive, fields(1e-3 * size)), angle, torque).max())
 
-        size = size_of_overload(largest, discs)
-        told = f"beyond {LARGEST:g}" if size is None else f"{size:.1f}"
+        needed = size_of_overload(largest, discs)
+        told = f"beyond {LARGEST:g}" if needed is None else f"{needed:.1f}"
         print(f"  {name:<34}{told:>5} µm  give a largest share of {(1.0 + OVERLOAD) / discs:.3f}", flush=True)
 
 

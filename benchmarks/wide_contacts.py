@@ -7,9 +7,12 @@ separation, ``circle`` what ``direct`` takes.
 
 from __future__ import annotations
 
+import argparse
+
 from ltca.testing.elastic_cylinder import CylinderContact, hertz_approach, press_cylinder, press_half_plane
 
 CELLS, REACH = 400, 0.4
+WIDTHS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3)
 
 
 def errors(found: CylinderContact, right: CylinderContact) -> str:
@@ -24,9 +27,12 @@ def errors(found: CylinderContact, right: CylinderContact) -> str:
 
 def main() -> None:
     """Print the curve."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--widths", type=float, nargs="+", default=WIDTHS, help="b/r; default 0.02 to 0.3")
+    arguments = parser.parse_args()
     titles = "".join(f"{name:>9}" for name in ("load", "width", "peak"))
     print(f"{'b/r':>6}   parabola {titles}   circle {titles}   per cent")
-    for half_width in (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3):
+    for half_width in arguments.widths:
         approach = hertz_approach(half_width)
         right = press_cylinder(approach, CELLS, REACH)
         parabola, circle = (press_half_plane(approach, CELLS, REACH, parabola=flag) for flag in (True, False))

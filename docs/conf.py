@@ -7,6 +7,7 @@ import sys
 import warnings
 from importlib.metadata import version as installed
 from pathlib import Path
+from typing import Any
 
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
@@ -30,7 +31,7 @@ exclude_patterns = ["build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/*
 suppress_warnings = ["config.cache"]
 nitpicky = True
 # Nothing is fetched: names of other libraries stay plain text.
-nitpick_ignore_regex = []
+nitpick_ignore_regex: list[tuple[str, str]] = []
 default_role = "code"
 
 myst_enable_extensions = ["colon_fence", "deflist"]
@@ -80,10 +81,10 @@ html_theme_options = {
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
-html_sidebars = {"index": [], "start/index": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "start/index": []}
 
 
-def add_single_pages(app, docname, source):
+def add_single_pages(app: Any, docname: str, source: list[str]) -> None:
     """Put pages of single features, which stand beside the folders (``docs/*.md``), at the end of the how-to list."""
     if docname != "how-to/index":
         return
@@ -95,7 +96,7 @@ def add_single_pages(app, docname, source):
         source[0] += f"\n**More**\n\n{listed}\n\n```{{toctree}}\n:hidden:\n\n{tree}\n```\n"
 
 
-def setup(app):
+def setup(app: Any) -> None:
     """Write the pages that the program itself tells, before the sources are read."""
     app.connect("builder-inited", lambda _: generated_pages.write_pages(HERE / "reference" / "generated"))
     app.connect("source-read", add_single_pages)

@@ -8,6 +8,7 @@ circle. No load, no contact: geometry alone.
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Circle
 
 import ltca
 from ltca.geometry.first_contact import backlash
@@ -26,7 +27,7 @@ flank = profile.flank(parameter) + places.race_centre(np.array(0.0))
 figure, axes = plt.subplots(figsize=(5.0, 5.0))
 axes.plot(flank.real, flank.imag, color="#4c72b0")
 for centre in np.ravel(places.wheel_pin_centres):
-    axes.add_patch(plt.Circle((centre.real, centre.imag), drive.pin_wheel.pin_radius, fill=False, color="#555555"))
+    axes.add_patch(Circle((centre.real, centre.imag), drive.pin_wheel.pin_radius, fill=False, color="#555555"))
 axes.set(aspect="equal", xlabel="x [mm]", ylabel="y [mm]")
 axes.autoscale_view()
 figure.tight_layout()

@@ -11,7 +11,7 @@ import numpy as np
 from ltca.testing.elastic_cylinder import hertz_approach, press_cylinder, press_half_plane
 
 widths = np.array([0.05, 0.1, 0.15, 0.2, 0.25, 0.3])
-off = {"parabola (tables)": [], "true separation (grids)": []}
+off: dict[str, list[float]] = {"parabola (tables)": [], "true separation (grids)": []}
 for width in widths:
     approach = hertz_approach(width)
     right = press_cylinder(approach, 100, 0.4)

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from fault_kinds.programs import Counts, content, is_one_line, start
 
@@ -40,7 +41,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _tried(kind: str, out: Path, folder: Path, wanted: dict[str, bytes]) -> str:
     python = [sys.executable, "-m"]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     place = folder / f"{out.name}.json"
     scheduler = subprocess.Popen(
         [

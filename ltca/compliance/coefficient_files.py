@@ -28,7 +28,7 @@ from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
-from ltca.output.provenance import code_hash, code_version
+from ltca.output.provenance import cache_home, code_hash, code_version
 from ltca.reading.coefficient_file import write_coefficients
 
 GROUP = "cyclo.derivations"
@@ -65,8 +65,7 @@ def cache_folder() -> Path:
 
 
 def _kept_folder() -> Path:
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "cyclo" / f"{code_version()}-{code_hash('ltca', 'fem')}"
+    return cache_home() / f"{code_version()}-{code_hash('ltca', 'fem')}"
 
 
 def require_cache() -> None:

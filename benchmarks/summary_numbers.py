@@ -1,11 +1,12 @@
 """What a release moves: summaries of all shipped drives by two versions of the code, side by side.
 
-    python benchmarks/numbers.py v0.1.0            # against the tree as it is
-    python benchmarks/numbers.py v0.1.0 v0.2.0
+    python benchmarks/summary_numbers.py HEAD~1            # against the tree as it is
+    python benchmarks/summary_numbers.py HEAD~2 HEAD~1 --positions 36
 
-Each version is installed apart, with what it depends on (``pip install --target``), and runs the drives that it ships and
-the other one reads; a line for every scalar of ``summary.json`` that moved by more than ``--beyond`` (a part of itself), as
-Markdown.
+A version is any commit that git knows by a name: a hash, a tag, a branch. Each is installed apart, without what it depends on
+(``pip install --target``: both run on the libraries that are installed here), and runs the drives that it ships and the other
+one reads; a line for every scalar of ``summary.json`` that moved by more than ``--beyond`` (a part of itself), as Markdown.
+Exit status 2 for a commit that is not there.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 ROOT = Path(__file__).parents[1]
 PROGRAM = (
@@ -26,8 +27,22 @@ PROGRAM = (
 )
 
 
+def commit_of(parser: argparse.ArgumentParser, revision: str) -> str:
+    """Return the hash of a commit by any name that git knows; end with a line where there is none."""
+    words = ["git", "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}"]
+    try:
+        found = subprocess.run(words, cwd=ROOT, check=False, capture_output=True, text=True)
+    except FileNotFoundError:
+        parser.error("git is not installed: commits come from it")
+    if found.returncode != 0:
+        parser.error(
+            f"{revision}: no commit of this repository (git log --oneline lists them; a shallow clone has few)"
+        )
+    return found.stdout.strip()
+
+
 def install(revision: str | None, folder: Path) -> Path:
-    """Install a revision, or the tree as it is, into a folder of its own."""
+    """Install a commit, or the tree as it is, into a folder of its own."""
     tree = folder / "tree"
     if revision is None:
         tree = ROOT
@@ -35,7 +50,17 @@ def install(revision: str | None, folder: Path) -> Path:
         tree.mkdir(parents=True)
         archive = subprocess.run(["git", "archive", revision], cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
         subprocess.run(["tar", "-x", "-C", str(tree)], input=archive, check=True)
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--target", str(folder / "site"), str(tree)]
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-deps",
+        "--target",
+        str(folder / "site"),
+        str(tree),
+    ]
     subprocess.run(command, check=True)
     return folder / "site"
 
@@ -55,13 +80,17 @@ def summaries(site: Path, drive: Path, positions: int, folder: Path) -> dict[str
     return {name: values for name, values in cases.items() if isinstance(values, dict)}
 
 
+def is_number(value: object) -> TypeGuard[float]:
+    """Tell a number; true and false are none."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
 def rows(before: dict[str, Any], after: dict[str, Any], beyond: float) -> list[str]:
     """Return a line for every scalar that both have and that moved."""
     lines = []
     for name, old in before.items():
         new = after.get(name)
-        numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in (old, new))
-        if not numbers:
+        if not (is_number(old) and is_number(new)):
             if old != new and name in after:
                 lines.append(f"| `{name}` | {old} | {new} | |")
             continue
@@ -74,14 +103,16 @@ def rows(before: dict[str, Any], after: dict[str, Any], beyond: float) -> list[s
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("before", help="revision or tag")
-    parser.add_argument("after", nargs="?", help="revision or tag; the tree as it is by default")
+    parser.add_argument("before", help="commit")
+    parser.add_argument("after", nargs="?", help="commit; the tree as it is by default")
     parser.add_argument("--positions", type=int, default=360)
     parser.add_argument("--beyond", type=float, default=1e-9, help="part of itself that a scalar has to move by")
     arguments = parser.parse_args()
+    before = commit_of(parser, arguments.before)
+    after = None if arguments.after is None else commit_of(parser, arguments.after)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        sites = [install(arguments.before, folder / "before"), install(arguments.after, folder / "after")]
+        sites = [install(before, folder / "before"), install(after, folder / "after")]
         drives = {path.stem: path for site in sites for path in sorted((site / "ltca" / "drives").glob("*.toml"))}
         for number, (drive, own) in enumerate(sorted(drives.items())):
             found = []
