@@ -27,7 +27,7 @@ def test_full_drive(tmp_path):
     answer = ask_calculix(solution, write_deck(solution, tmp_path / "drive.inp"), "ccx")
     for name, difference in load_differences(solution, answer).items():
         assert abs(difference) < 5e-3, name
-    # 0.3″ of the wheel is 0.13 µm at the pins: the penalty gives way by a fifth of that.
+    # 0.3″ of the wheel is 0.13 µm at the pins: the penalty gives way by a quarter of that.
     assert np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0 == pytest.approx(0.0, abs=0.3)
 
 
