@@ -239,13 +239,18 @@ def main() -> None:
     arguments = parser.parse_args()
     keep = arguments.keep
     if arguments.worker is not None:
+        from ltca.errors import CycloError
+
         task, size = arguments.worker.split(":")
-        if task == "series":
-            done = solve_series(float(size), arguments.series, arguments.refereed, keep)
-        elif task == "ccx":
-            done = compare(float(size), arguments.penalty, keep)
-        else:
-            done = measure(float(size), float(size) == 1.0)
+        try:
+            if task == "series":
+                done = solve_series(float(size), arguments.series, arguments.refereed, keep)
+            elif task == "ccx":
+                done = compare(float(size), arguments.penalty, keep)
+            else:
+                done = measure(float(size), float(size) == 1.0)
+        except CycloError as error:
+            raise SystemExit(f"{task} of size {size}: {error}") from error
         print(json.dumps(done))
         return
     kept = [] if keep is None else ["--keep", str(keep.resolve())]
@@ -259,6 +264,8 @@ def main() -> None:
     if arguments.out:
         content = {"load_average": os.getloadavg(), "rows": rows, "calculix": compared, "series": series}
         arguments.out.write_text(json.dumps(content, indent=1) + "\n")
+    if series and any("ccx_failed" in row for row in series["rows"]):
+        raise SystemExit(1)
 
 
 def run_worker(task: str, size: float, *options: str) -> dict:
@@ -266,8 +273,8 @@ def run_worker(task: str, size: float, *options: str) -> dict:
     words = [sys.executable, __file__, "--worker", f"{task}:{size}", *options]
     done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
-        # It has said why; a traceback of this process would only hide it.
-        raise SystemExit(f"{task} of size {size:g} failed: see above")
+        # It has said why.
+        raise SystemExit(done.returncode)
     return json.loads(done.stdout.splitlines()[-1])
 
 
