@@ -4,13 +4,16 @@
 size, each in a process of its own (peak memory is that of the process), then a further load and a further position at
 the default size; with ``--ccx`` CalculiX solves the decks of these sizes (the default one) in the same run.
 
-``--sizes --series 12 [--series-size 1] [--refereed 12]``: a whole turn of the crank in so many positions, each taking from the
-one before what it can; CalculiX solves the decks of the refereed ones (evenly spread), and its mean stands for the others.
+``--sizes --series 12 [--series-size 1] [--refereed 12] [--keep FOLDER]``: a whole turn of the crank in so many positions,
+each taking from the one before what it can; CalculiX solves the decks of the refereed ones (evenly spread). What it
+answers is kept in the folder, by the deck: a series that was stopped goes on where it was, and ours is solved anew.
+
+Both print the processor time of either code, their ratio, and by how much loads and wheel angle differ.
 
 ``--sizes --ccx 6 4 3 2`` (no timing) shows what coarse meshes do to the wheel's angle: ours, ours on the same mesh with
 every other pressure alone (both ways to choose them), CalculiX's. With every other pressure the mesh of size 3 has as few of
 them as that of size 6 (1.3 for each half-width) and its displacements stay: what then moves, the pressures move.
-``--penalty 25 50 100`` shows what CalculiX's penalty gives way.
+``--penalty 50 100 200`` shows what CalculiX's penalty gives way.
 """
 
 from __future__ import annotations
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
     from fem.drive.full_solution import FullSolution
 
 CASE, ANGLE = "CS-1", 0.5
+HEADINGS = f"{'times':>8}{'loads, %':>10}{'wheel, ″':>10}"
 STAGES = ("guess", "coarse", "mesh", "assembly and factorisation", "contact and pose", "check")
 
 
@@ -70,76 +74,112 @@ def measure(size: float, further: bool) -> dict:
     return row
 
 
-def solve_series(size: float, positions: int, refereed: int) -> dict:
-    """Solve a turn of the crank in this process and let CalculiX solve some positions; return the seconds of both."""
+def solve_series(size: float, positions: int, refereed: int, keep: Path | None) -> dict:
+    """Solve a turn of the crank in this process and let CalculiX solve some positions; return what both took and differ by."""
     import math
     import resource
     import tempfile
     import time
 
     from fem.reducer.series import solve_positions
-    from fem.referee.calculix import ask_calculix
-    from fem.referee.calculix_deck import find_calculix, write_deck
     from ltca.errors import CycloError
     from ltca.reading.drive_file import load_drive
 
     angles = [ANGLE + 2.0 * math.pi * position / positions for position in range(positions)]
     chosen = {round(place * positions / refereed) for place in range(refereed)}
-    row: dict = {
-        "size": size,
-        "memory_MB": 0.0,
-        "unknowns": [],
-        "seconds": [],
-        "cpu_seconds": [],
-        "ccx_seconds": {},
-        "ccx_cpu_seconds": {},
-        "ours_less_ccx": {},
-    }
+    rows: list[dict] = []
     solutions = solve_positions(load_drive("paper").cases[CASE], angles, scale=size)
     with tempfile.TemporaryDirectory() as folder:
         for position in range(positions):
             start, cpu = time.perf_counter(), time.process_time()
             solution = next(solutions)
-            row["seconds"].append(time.perf_counter() - start)
-            row["cpu_seconds"].append(time.process_time() - cpu)
-            row["unknowns"].append(solution.unknowns)
+            row: dict = {"position": position, "unknowns": solution.unknowns, "seconds": time.perf_counter() - start}
+            row["cpu_seconds"] = time.process_time() - cpu
             if position in chosen:
                 (disc,) = solution.discs
-                deck = write_deck(disc, Path(folder) / "deck.inp")
-                start = time.perf_counter()
                 try:
-                    answer = ask_calculix(disc, deck, find_calculix())
-                    row["ours_less_ccx"][position] = arcseconds(solution.wheel_angle - answer.wheel_angle)
-                    row["ccx_seconds"][position] = answer.seconds
+                    row["ccx"] = ask_referee(disc, Path(folder), keep)
                 except CycloError as error:
-                    # It took its time, whatever came of it.
-                    print(f"position {position}: {error}", file=sys.stderr, flush=True)
-                    row["ccx_seconds"][position] = time.perf_counter() - start
-                used = resource.getrusage(resource.RUSAGE_CHILDREN)
-                before = sum(row["ccx_cpu_seconds"].values())
-                row["ccx_cpu_seconds"][position] = used.ru_utime + used.ru_stime - before
-    row["memory_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-    return row
+                    row["ccx_failed"] = str(error)
+            rows.append(row)
+            # The last line of the output is the answer; these show a long run how far it is.
+            print(describe_position(row), file=sys.stderr, flush=True)
+    return {"size": size, "memory_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, "rows": rows}
 
 
-def compare(size: float, penalties: list[float]) -> dict:
-    """Solve one position, let CalculiX solve it, and return both tables and wheel angles (arc seconds)."""
+def describe_position(row: dict) -> str:
+    """Return a line about one position of a series."""
+    line = f"{row['position']:>4}{row['unknowns']:>10,}{row['cpu_seconds']:>9.2f}"
+    if "ccx_failed" in row:
+        return f"{line}  CalculiX: {row['ccx_failed']}"
+    return line + (describe_referee(row) if "ccx" in row else "")
+
+
+def describe_referee(row: dict) -> str:
+    """Return processor seconds of CalculiX, their ratio to ours, and the differences."""
+    ccx = row["ccx"]
+    return (
+        f"{ccx['cpu_seconds']:>10.1f}{ccx['cpu_seconds'] / row['cpu_seconds']:>8.0f}"
+        f"{100.0 * ccx['load_difference']:>10.3f}{ccx['wheel_difference']:>+10.3f}"
+    )
+
+
+def ask_referee(solution: FullSolution, folder: Path, keep: Path | None, penalty: float | None = None) -> dict:
+    """Let CalculiX solve the position of a solution, or read what it answered to the same deck before.
+
+    Returns
+    -------
+    dict
+        Its processor and wall seconds, the largest difference of a load (part of the largest of its kind), ours less its
+        wheel angle (arc seconds) and its answer.
+    """
+    import hashlib
+    import resource
+    from dataclasses import asdict
+
+    from fem.referee.calculix import RefereeAnswer, ask_calculix, load_differences
+    from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, write_deck
+    from ltca.output.files import write_json
+
+    deck = write_deck(solution, folder / "deck.inp", penalty=penalty or PENALTY_FACTOR)
+    kept = (keep or folder) / f"{hashlib.sha256(deck.read_bytes()).hexdigest()[:16]}.json"
+    if not kept.exists():
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        found = ask_calculix(solution, deck, find_calculix())
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        write_json(kept, {"cpu_seconds": spent, "answer": asdict(found)})
+    content = json.loads(kept.read_text(encoding="utf-8"))
+    answer = RefereeAnswer(**content["answer"])
+    return {
+        "cpu_seconds": content["cpu_seconds"],
+        "seconds": answer.seconds,
+        "load_difference": max(map(abs, load_differences(solution, answer).values())),
+        "wheel_difference": arcseconds(solution.pose.wheel_angle - answer.wheel_angle),
+        "answer": content["answer"],
+    }
+
+
+def compare(size: float, penalties: list[float], keep: Path | None) -> dict:
+    """Solve one position, let CalculiX solve it, and return times, differences, table and wheel angles (arc seconds)."""
     import tempfile
+    import time
 
     from fem.drive.solution import solve_drive
-    from fem.referee.calculix import ask_calculix, tabulate_answers
-    from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, write_deck
+    from fem.referee.calculix import RefereeAnswer, tabulate_answers
+    from fem.referee.calculix_deck import PENALTY_FACTOR
     from ltca.reading.drive_file import load_drive
 
+    cpu = time.process_time()
     solution = solve_drive(load_drive("paper").cases[CASE], ANGLE, scale=size)
-    row: dict = {"size": size, "ours": arcseconds(solution.pose.wheel_angle)}
+    row: dict = {"size": size, "unknowns": solution.unknowns, "cpu_seconds": time.process_time() - cpu}
+    row["ours"] = arcseconds(solution.pose.wheel_angle)
     row["half_the_pressures"] = [arcseconds(halve_pressures(solution, first)) for first in (1, 2)]
     with tempfile.TemporaryDirectory() as folder:
         for penalty in penalties or [PENALTY_FACTOR]:
-            deck = write_deck(solution, Path(folder) / "deck.inp", penalty=penalty)
-            answer = ask_calculix(solution, deck, find_calculix())
-            row.setdefault("theirs", {})[f"{penalty:g}"] = arcseconds(answer.wheel_angle)
-            row["table"] = tabulate_answers(solution, answer)
+            ccx = ask_referee(solution, Path(folder), keep, penalty)
+            row.setdefault("by_penalty", {})[f"{penalty:g}"] = ccx
+            row["table"] = tabulate_answers(solution, RefereeAnswer(**ccx["answer"]))
     return row
 
 
@@ -193,32 +233,48 @@ def main() -> None:
     parser.add_argument(
         "--refereed", type=int, default=0, metavar="N", help="how many of them CalculiX solves, too (0)"
     )
+    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep CalculiX's answers here and use those kept")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--worker", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    keep = arguments.keep
     if arguments.worker is not None:
+        from ltca.errors import CycloError
+
         task, size = arguments.worker.split(":")
-        if task == "series":
-            done = solve_series(float(size), arguments.series, arguments.refereed)
-        else:
-            done = (
-                compare(float(size), arguments.penalty) if task == "ccx" else measure(float(size), float(size) == 1.0)
-            )
+        try:
+            if task == "series":
+                done = solve_series(float(size), arguments.series, arguments.refereed, keep)
+            elif task == "ccx":
+                done = compare(float(size), arguments.penalty, keep)
+            else:
+                done = measure(float(size), float(size) == 1.0)
+        except CycloError as error:
+            raise SystemExit(f"{task} of size {size}: {error}") from error
         print(json.dumps(done))
         return
+    kept = [] if keep is None else ["--keep", str(keep.resolve())]
+    penalties = ["--penalty", *map(str, arguments.penalty)] if arguments.penalty else []
     rows = time_sizes(arguments.sizes) if arguments.sizes else []
-    compared = [] if arguments.ccx is None else compare_sizes(arguments.ccx or [1.0], arguments.penalty)
-    series = time_series(arguments.series_size, arguments.series, arguments.refereed) if arguments.series else None
+    compared = [] if arguments.ccx is None else compare_sizes(arguments.ccx or [1.0], [*penalties, *kept])
+    series = None
+    if arguments.series:
+        counts = ["--series", str(arguments.series), "--refereed", str(arguments.refereed)]
+        series = time_series(arguments.series_size, [*counts, *kept])
     if arguments.out:
         content = {"load_average": os.getloadavg(), "rows": rows, "calculix": compared, "series": series}
         arguments.out.write_text(json.dumps(content, indent=1) + "\n")
+    if series and any("ccx_failed" in row for row in series["rows"]):
+        raise SystemExit(1)
 
 
-def run_worker(task: str, size: float, penalties: list[float], *options: str) -> dict:
+def run_worker(task: str, size: float, *options: str) -> dict:
     """Do one task in a process of its own."""
     words = [sys.executable, __file__, "--worker", f"{task}:{size}", *options]
-    words += ["--penalty", *map(str, penalties)] if penalties else []
-    done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True)
+    done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        # It has said why.
+        raise SystemExit(done.returncode)
     return json.loads(done.stdout.splitlines()[-1])
 
 
@@ -227,7 +283,7 @@ def time_sizes(sizes: list[float]) -> list[dict]:
     rows = []
     print(f"{'unknowns':>9}{'total s':>9}{'CPU s':>8}{'MB':>7}   " + "".join(f"{stage[:13]:>15}" for stage in STAGES))
     for size in sizes:
-        row = run_worker("time", size, [])
+        row = run_worker("time", size)
         rows.append(row)
         seconds = row["seconds"]
         print(
@@ -241,44 +297,51 @@ def time_sizes(sizes: list[float]) -> list[dict]:
     return rows
 
 
-def time_series(size: float, positions: int, refereed: int) -> dict:
+def time_series(size: float, options: list[str]) -> dict:
     """Time a series and print it, with the ratio to CalculiX where that solved some of it."""
-    row = run_worker("series", size, [], "--series", str(positions), "--refereed", str(refereed))
-    ours, theirs = row["seconds"], row["ccx_seconds"]
-    each = " ".join(f"{seconds:.1f}" for seconds in ours)
+    done = run_worker("series", size, *options)
+    rows = done["rows"]
+    solved = [row for row in rows if "ccx" in row]
+    failed = [row["position"] for row in rows if "ccx_failed" in row]
+    print(f"\n{'':>4}{'unknowns':>10}{'CPU s':>9}" + (f"{'ccx CPU s':>10}{HEADINGS}" if solved or failed else ""))
+    for row in rows:
+        print(describe_position(row))
+    own = sum(row["cpu_seconds"] for row in rows)
     print(
-        f"\n{positions} positions of size {size:g}, {min(row['unknowns']):,} to {max(row['unknowns']):,} unknowns: "
-        f"{sum(ours):.1f} s (CPU {sum(row['cpu_seconds']):.1f} s), {row['memory_MB']:.0f} MB: {each}"
+        f"{len(rows)} positions of size {size:g}: CPU {own:.1f} s, "
+        f"{sum(row['seconds'] for row in rows):.1f} s by the clock, {done['memory_MB']:.0f} MB"
     )
-    if theirs:
-        mean = sum(theirs.values()) / len(theirs)
-        processor = positions * sum(row["ccx_cpu_seconds"].values()) / len(theirs) / sum(row["cpu_seconds"])
+    if solved:
+        theirs = sum(row["ccx"]["cpu_seconds"] for row in solved)
+        same = sum(row["cpu_seconds"] for row in solved)
         print(
-            f"CalculiX: {mean:.1f} s a position (of {len(theirs)}), {positions * mean:.0f} s for {positions}: "
-            f"{positions * mean / sum(ours):.0f} times ours "
-            f"({processor:.0f} in processor time); wheel angles, ours less theirs: "
-            + ", ".join(f"{value:+.3f}″" for value in row["ours_less_ccx"].values())
+            f"CalculiX, {len(solved)} of them: CPU {theirs:.0f} s, {theirs / same:.0f} times ours of the same ones; largest "
+            f"difference of a load {100.0 * max(row['ccx']['load_difference'] for row in solved):.3f} % of the largest of its "
+            f"kind, of the wheel angle {max(abs(row['ccx']['wheel_difference']) for row in solved):.3f}″"
         )
-    return row
+    if failed:
+        print(f"CalculiX failed at {', '.join(map(str, failed))}")
+    return done
 
 
-def compare_sizes(sizes: list[float], penalties: list[float]) -> list[dict]:
-    """Compare every size with CalculiX and print the tables, wheel angles last."""
+def compare_sizes(sizes: list[float], options: list[str]) -> list[dict]:
+    """Compare every size with CalculiX and print the tables, times and differences last."""
     rows = []
     for size in sizes:
-        rows.append(run_worker("ccx", size, penalties))
+        rows.append(run_worker("ccx", size, *options))
         print(f"\nsize {size:g}")
         for line in rows[-1]["table"]:
             print(f"  {line}")
     print(
-        f"\nwheel angle, ″\n{'size':>5}{'ours':>10}{'every other pressure':>22}{'penalty':>9}{'ccx':>10}{'ours − ccx':>12}"
+        f"\n{'size':>5}{'unknowns':>10}{'penalty':>9}{'CPU s':>9}{'ccx CPU s':>10}{HEADINGS}"
+        f"{'wheel, ″':>12}{'every other pressure':>22}"
     )
     for row in rows:
         first, second = row["half_the_pressures"]
-        for penalty, theirs in row["theirs"].items():
+        for penalty, ccx in row["by_penalty"].items():
             print(
-                f"{row['size']:>5g}{row['ours']:>10.3f}{first:>12.3f}{second:>10.3f}{penalty:>9}{theirs:>10.3f}"
-                f"{row['ours'] - theirs:>+12.3f}"
+                f"{row['size']:>5g}{row['unknowns']:>10,}{penalty:>9}{row['cpu_seconds']:>9.2f}"
+                f"{describe_referee(row | {'ccx': ccx})}{row['ours']:>12.3f}{first:>12.3f}{second:>10.3f}"
             )
     return rows
 

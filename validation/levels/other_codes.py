@@ -35,7 +35,7 @@ LIMITS = {
     "wheel": (
         0.3,
         "seconds of arc, as of full FE: two elements for each half-width resolve the contacts, the penalty gives way by "
-        "a fifth of it",
+        "a quarter of it",
     ),
     "pressure": (3e-3, "the other code's uniform cells, 96 across: finer ones halve the difference (0.15 % at worst)"),
     "approach": (3e-3, "its uniform cells at the ends: 0.05 to 0.1 % measured"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem.body.surface import OppositeZone, PressureZone
-from fem.contact.coupling import NO_PARTNER, Pose, gap_to_opposite, integrate_pair
+from fem.contact.coupling import NO_PARTNER, Pose, _segment_ends, gap_to_opposite, integrate_pair
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleCurve, CircleShape, DriveShapes, RingShape
@@ -43,6 +43,28 @@ def test_weighted_gap_is_the_integral_of_the_exact_gap(pair):
     expected = 11.8 * 20.0 * abs(np.trapezoid(weight * exact, fine))
     # The meshed arc is 1e-9 shorter and its hats run along ξ, not along the angle.
     assert abs(integrals.gap[3]) == pytest.approx(expected, rel=1e-5)
+
+
+def test_segments_end_where_vertices_opposite_are_met(pair):
+    """From every end that is no vertex of the zone the bore's normal meets a vertex of the roller, and none is left out.
+
+    Both bodies turned by 0.7 rad, as they stand in a drive: a normal and its conjugate then point apart.
+    """
+    _, _, zone, opposite = pair
+    turn = np.exp(0.7j)
+    pose, opposite_pose = Pose(rotation=0.7), Pose(centre=(15.0 - 0.003 + 0.001j) * turn, rotation=0.7)
+    ends = _segment_ends(zone, pose, opposite_pose, 5.0, opposite)
+    between = ends[ends % 1.0 > 0.0]
+    edge = between.astype(int)
+    exact, normal = zone.exact(zone.points(edge, between - edge)[0])
+    points, normals = exact * turn, normal * turn
+    away = (opposite_pose.centre - points) * normals.conjugate()
+    met = (points + (away.real - np.sqrt(25.0 - away.imag**2)) * normals - opposite_pose.centre) / turn
+    # The roller fills the bore's zone: its zone reaches further on both sides.
+    first, last = sorted(np.angle((np.array([zone.places[0, 0], zone.places[-1, 2]]) - 15.0) / 5.0))
+    vertices = opposite.vertices[(opposite.vertices > first) & (opposite.vertices < last)]
+    # Half-edges of the zone are interpolated between: 1e-4 of an edge. Off the circle by twice the gap it would be a tenth.
+    np.testing.assert_allclose(np.sort(np.angle(met)), vertices, atol=2e-3 * np.diff(opposite.vertices).min())
 
 
 def test_both_sides_feel_the_same_force_on_one_line(pair):

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fem.body.stress import Stress
+from fem.body.surface import PressureZone
 from fem.body.wall_stress import WallStress, stress_along_wall
 from fem.contact.subsurface_shear import largest_shear_below
+from fem.drive.disc_stress import _centre_of_pressure
 from fem.drive.meshes import wall_refinements
 from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
-from fem.mesh.triangulation import mesh_circle
-from fem.shapes import CircleShape, DriveShapes
+from fem.mesh.triangulation import mesh_circle, mesh_ring
+from fem.shapes import CircleCurve, CircleShape, DriveShapes, RingShape
 from ltca.contact.hertz import line_contact_stress
 
 
@@ -72,3 +75,23 @@ def test_fine_walls_follow_every_wall(paper_cases):
         assert np.max(np.min(np.abs(along[:, None] - places), axis=1)) < 1.01 * shape.narrowest_wall / 6.0
     roots = shape.flank.points(2.0 * np.pi * np.arange(13) / 13)
     assert np.max(np.min(np.abs(roots[:, None] - places), axis=1)) < 1e-9
+
+
+def test_the_centre_of_pressure_lies_on_its_own_edge():
+    """On a circle its angle is arc over radius; a neighbour's edge drawn out to it misses it by a hundredth of an edge."""
+    radius = 5.0
+    ring = mesh_ring(RingShape(inner_radius=radius, outer_radius=8.0), coarse_size=1.2)
+    zone = PressureZone.on_boundary(
+        ring, CircleCurve(name="inner", radius=radius, encloses_body=False), radius + 0j, 3.5, thickness=1.0
+    )
+    arc = zone.arc
+    start, end = np.angle(zone.places[0, 0]), np.angle(zone.places[-1, 2])
+    sense = np.sign(end - start)
+    # Both ends, vertices, and places on the first and the last edge; round-off may lead a little over the end.
+    middles = [0.0, 0.3 * arc[1], arc[1], 0.5 * (arc[1] + arc[2]), arc[-2], 0.1 * arc[-2] + 0.9 * arc[-1], arc[-1]]
+    for middle in (*middles, float(np.nextafter(arc[-1], np.inf))):
+        place, normal = _centre_of_pressure(SimpleNamespace(zone=zone), SimpleNamespace(middle=middle))
+        # A quadratic edge of 0.24 of the radius: its arc runs unevenly by (h/R)² / 100 of it within the edge.
+        assert np.angle(place) == pytest.approx(start + sense * middle / radius, abs=1e-3 * np.diff(arc).max() / radius)
+        assert abs(place) == pytest.approx(radius, abs=1e-12)
+        assert normal == pytest.approx(-place / radius, abs=1e-12)

@@ -43,8 +43,13 @@ def test_the_last_increment_is_the_answer():
 def test_contacts_that_pull_are_no_answer():
     with pytest.raises(CycloError, match="contacts that pull: -9440 MPa"):
         last_output(LAST + FIRST)
-    # ccx lets single points at the rim pull a little: 1 % of the largest pressure with four elements for two half-widths.
-    assert read_pressures(last_output(increment([1210.0, -22.9, 2061.3], 0.0, 1.0)))
+    # What the default size ended with: more than half of the largest pressure, among 50,000 points.
+    with pytest.raises(CycloError, match=r"contacts that pull: -913\.4 MPa, largest pressure 1554 MPa"):
+        last_output(increment([1210.0, -913.4, 1554.0], 0.0, 1.0))
+    with pytest.raises(CycloError, match=r"contacts that pull: -22\.9 MPa"):
+        last_output(increment([1210.0, -22.9, 2061.3], 0.0, 1.0))
+    # Single points at the rim that changed sides last.
+    assert read_pressures(last_output(increment([1210.0, -1.3, 2061.3], 0.0, 1.0)))
 
 
 def test_a_file_without_contacts_is_one_error():
