@@ -38,7 +38,7 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 
 from mutation.covered_lines import CoverageMap, fingerprints, map_file, read_part, test_files, write_part
 from mutation.formulas import PACKAGES, Mutant, draw_mutants
-from mutation.processes import in_fork, warm_up
+from mutation.processes import PYTEST_WORDS, in_fork, warm_up
 
 ROOT = Path(__file__).resolve().parents[1]
 EXPLAINED = Path(__file__).parent / "mutation" / "equivalent.toml"
@@ -115,7 +115,7 @@ def run_tests(names: list[str]) -> dict[str, Any]:
 
     chosen = Chosen(names)
     files = list(dict.fromkeys(name.split("::")[0] for name in names))
-    code = int(pytest.main([*files, "-x", "-q", "-p", "no:cacheprovider", "--no-header"], plugins=[chosen]))
+    code = int(pytest.main([*files, "-x", *PYTEST_WORDS], plugins=[chosen]))
     return {"code": code, "failed": chosen.failed[:1]}
 
 
@@ -134,8 +134,8 @@ def try_mutant(job: tuple[Mutant, list[tuple[str, float]]]) -> dict[str, Any]:
             met += len(names)
             if how == "done" and answer["code"] == 0:
                 continue
-            if how == "done" and answer["code"] == 5:
-                outcome, noticed = "error", "no test was found again"
+            if how == "done" and answer["code"] not in (1, 2):  # a test failed, or a file could not be imported
+                outcome, noticed = "error", f"pytest ended with {answer['code']}"
                 break
             outcome = "killed" if how == "done" else f"killed by {how}"
             noticed = "".join(answer["failed"]) if how == "done" else ""

@@ -19,6 +19,7 @@ from typing import Any
 import pytest
 
 from mutation.formulas import PACKAGES, Mutant
+from mutation.processes import PYTEST_WORDS
 
 
 def processor_seconds() -> float:
@@ -92,8 +93,9 @@ def map_file(tree: Path, path: str, *, slow: bool) -> dict[str, Any]:
     watch = coverage.Coverage(data_file=None, source=[str(tree / name) for name in PACKAGES], messages=False)
     watch.start()
     plugin = LineWatch(watch)
-    words = [path, "-q", "-p", "no:cacheprovider", "--no-header", *([] if slow else ["-m", "not slow"])]
-    pytest.main(words, plugins=[plugin])
+    code = int(pytest.main([path, *PYTEST_WORDS, *([] if slow else ["-m", "not slow"])], plugins=[plugin]))
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.NO_TESTS_COLLECTED):
+        raise RuntimeError(f"pytest ended with {code}")
     watch.stop()
     names = list(plugin.tests)
     numbers = {name: number for number, name in enumerate(names)}
