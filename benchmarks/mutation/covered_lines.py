@@ -124,6 +124,31 @@ def test_files(tree: Path) -> list[str]:
     return found
 
 
+def nearest_files(tree: Path, path: str, count: int) -> list[str]:
+    """Return the files of tests nearest to a source: named after it, of its folder, that import it; at most so many.
+
+    Of each kind smaller files come first, which are quicker.
+    """
+    source = Path(path)
+    module = ".".join(source.with_suffix("").parts)
+    imports = re.compile(
+        rf"\b{re.escape(module)}\b|from {re.escape(module.rpartition('.')[0])} import [^\n]*\b{source.stem}\b"
+    )
+    ranked = []
+    for name in test_files(tree):
+        place, text = Path(name), (tree / name).read_text(encoding="utf-8")
+        kinds = (
+            name == path or place.name == f"test_{source.stem}.py",
+            place.is_relative_to("tests") and place.parent == Path("tests") / source.parent,
+            imports.search(text) is not None,
+            place.is_relative_to("tests")
+            and place.parent.is_relative_to(Path("tests") / source.parts[0] / source.parts[1]),
+        )
+        if any(kinds):
+            ranked.append((-8 * kinds[0] - 4 * kinds[2] - 2 * kinds[1] - kinds[3], len(text), name))
+    return [name for _, _, name in sorted(ranked)[:count]]
+
+
 def fingerprints(tree: Path, path: str, ran: Iterable[str]) -> dict[str, str]:
     """Return what a part of the map depends on: the test file, what its folder shares, the sources it ran."""
     folders = list(Path(path).parents)
