@@ -1,11 +1,16 @@
 """Break random formulas one at a time and see whether a test notices: ``python benchmarks/mutants.py --count 100``.
 
 Formulas of `ltca`, `fem` and `validation` are broken in copies of the tree, never in place (``mutation/formulas.py``).
-First a map is made of the lines that every test runs (``mutation/covered_lines.py``; it takes a few times the tests
-themselves and is kept until sources or tests change). Then every mutant meets the tests that run its line, those of its
-own file and quick ones first, until one fails. Survivors are printed with their lines; those that no answer can tell
-from the original are explained in ``mutation/equivalent.toml``. Answers are kept line by line in ``<out>/log.jsonl``: a
-run that was stopped goes on where it was, and ``--again`` asks only the survivors once more.
+Every mutant meets tests until one fails that passes on the original:
+
+1. quick tests of the files nearest to its own: the file named after it, its folder's, those that import it;
+2. what survives, all quick tests that run its line. Which do, tells a map (``mutation/covered_lines.py``) that takes a few
+   times the tests themselves and is kept, test file by test file, until sources or tests change;
+3. what survives, slow tests of the nearest files.
+
+Survivors are printed with their lines; those that no answer can tell from the original are explained in
+``mutation/equivalent.toml``. Answers are kept line by line in ``<out>/log.jsonl``: a run that was stopped goes on where it
+was, and ``--again`` asks only the survivors once more.
 
 Exit status 1 when 3 % survive or more, or one survives without an explanation.
 """
@@ -26,7 +31,8 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -36,30 +42,40 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[_variable] = "1"
 os.environ.setdefault("MPLBACKEND", "Agg")
 
-from mutation.covered_lines import CoverageMap, fingerprints, map_file, read_part, test_files, write_part
+from mutation.covered_lines import (
+    CoverageMap,
+    fingerprints,
+    map_file,
+    nearest_files,
+    read_part,
+    test_files,
+    write_part,
+)
 from mutation.formulas import PACKAGES, Mutant, draw_mutants
-from mutation.processes import in_fork, warm_up
+from mutation.processes import PYTEST_WORDS, in_fork, warm_up
 
 ROOT = Path(__file__).resolve().parents[1]
 EXPLAINED = Path(__file__).parent / "mutation" / "equivalent.toml"
 FIRST_LOOK, SECOND_LOOK = 20.0, 120.0
 """Processor seconds of the tests a mutant meets first, and of those it meets when it survives them."""
 MAP_SECONDS = 3000.0
+NEAREST = 12
+"""Files of tests that a mutant meets before the map is asked."""
+NEAR_SECONDS = 300.0
+"""Processor seconds of one of them; ten times as much where slow tests are asked."""
 ACCEPTED = 0.03
 
 _tree: Path | None = None
 
 
-class Chosen:
-    """Plugin of pytest that keeps some tests, in their order."""
+_passed: dict[tuple[str, bool], bool] = {}
 
-    def __init__(self, names: list[str]) -> None:
-        self.place = {name: number for number, name in enumerate(names)}
+
+class Failures:
+    """Plugin of pytest that remembers what failed."""
+
+    def __init__(self) -> None:
         self.failed: list[str] = []
-
-    def pytest_collection_modifyitems(self, items: list[Any]) -> None:
-        """Keep and sort."""
-        items[:] = sorted((item for item in items if item.nodeid in self.place), key=lambda x: self.place[x.nodeid])
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """Remember who noticed."""
@@ -70,6 +86,18 @@ class Chosen:
         """A file that cannot be imported any more has noticed, too."""
         if report.failed:
             self.failed.append(f"{report.nodeid} (import)")
+
+
+class Chosen(Failures):
+    """Plugin of pytest that keeps some tests, in their order."""
+
+    def __init__(self, names: list[str]) -> None:
+        super().__init__()
+        self.place = {name: number for number, name in enumerate(names)}
+
+    def pytest_collection_modifyitems(self, items: list[Any]) -> None:
+        """Keep and sort."""
+        items[:] = sorted((item for item in items if item.nodeid in self.place), key=lambda x: self.place[x.nodeid])
 
 
 def copy_tree(source: Path, to: Path) -> None:
@@ -115,38 +143,88 @@ def run_tests(names: list[str]) -> dict[str, Any]:
 
     chosen = Chosen(names)
     files = list(dict.fromkeys(name.split("::")[0] for name in names))
-    code = int(pytest.main([*files, "-x", "-q", "-p", "no:cacheprovider", "--no-header"], plugins=[chosen]))
+    code = int(pytest.main([*files, "-x", *PYTEST_WORDS], plugins=[chosen]))
     return {"code": code, "failed": chosen.failed[:1]}
 
 
-def try_mutant(job: tuple[Mutant, list[tuple[str, float]]]) -> dict[str, Any]:
-    """Return what the tests say of a mutant."""
-    mutant, tests = job
-    tree = own_tree()
-    began = time.monotonic()
+def run_file(path: str, *, slow: bool) -> dict[str, Any]:
+    """Run the tests of a file until one fails; to be called in a fork."""
+    import pytest
+
+    chosen = Failures()
+    code = int(pytest.main([path, "-x", *PYTEST_WORDS, "-m", "slow" if slow else "not slow"], plugins=[chosen]))
+    return {"code": code, "failed": chosen.failed[:1]}
+
+
+def try_nearest(job: tuple[Mutant, list[str]], *, slow: bool) -> dict[str, Any]:
+    """Return what the tests of some files say of a mutant."""
+    mutant, files = job
+    tree, began = own_tree(), time.monotonic()
+    seconds = NEAR_SECONDS * (10.0 if slow else 1.0)
+    outcome, noticed, met = "survived", "", 0
+    for path in files:
+        with broken(tree, mutant):
+            how, answer = in_fork(partial(run_file, path, slow=slow), tree, seconds=seconds)
+        met += 1
+        if how == "done" and answer["code"] in (0, 5):  # all passed, or none is that slow
+            continue
+        if not passes(tree, path, answer["failed"][0] if how == "done" and answer["failed"] else "", slow=slow):
+            continue
+        outcome = "killed" if how == "done" else f"killed by {how}"
+        noticed = f"{'slow: ' if slow else ''}{''.join(answer['failed']) if how == 'done' else path}"
+        break
+    return answer_on(mutant, outcome, noticed, met, began)
+
+
+@contextmanager
+def broken(tree: Path, mutant: Mutant) -> Iterator[None]:
+    """Break a formula of this process's tree for a while."""
     place = tree / mutant.path
     original = place.read_text(encoding="utf-8")
-    outcome, noticed, met = ("survived" if tests else "no test runs it"), "", 0
     place.write_text(mutant.apply(tree), encoding="utf-8")
     try:
-        for names, seconds in _looks(tests):
-            how, answer = in_fork(partial(run_tests, names), tree, seconds=30.0 + 4.0 * seconds)
-            met += len(names)
-            if how == "done" and answer["code"] == 0:
-                continue
-            if how == "done" and answer["code"] == 5:
-                outcome, noticed = "error", "no test was found again"
-                break
-            outcome = "killed" if how == "done" else f"killed by {how}"
-            noticed = "".join(answer["failed"]) if how == "done" else ""
-            break
+        yield
     finally:
         place.write_text(original, encoding="utf-8")
+
+
+def passes(tree: Path, path: str, name: str, *, slow: bool) -> bool:
+    """Whether a test, or all of its file, passes on the original: asked once."""
+    key = (name or path, slow)
+    if key not in _passed:
+        work = partial(run_tests, [name]) if "::" in name else partial(run_file, path, slow=slow)
+        how, answer = in_fork(work, tree, seconds=NEAR_SECONDS * (10.0 if slow else 1.0))
+        _passed[key] = how == "done" and answer["code"] in (0, 5)
+    return _passed[key]
+
+
+def answer_on(mutant: Mutant, outcome: str, noticed: str, met: int, began: float) -> dict[str, Any]:
+    """Return the entry of the log on a mutant."""
     fields = {
         name: value for name, value in asdict(mutant).items() if name in ("path", "line", "before", "after", "text")
     }
     seconds = round(time.monotonic() - began, 1)
     return {"key": mutant.key, **fields, "outcome": outcome, "by": noticed, "tests": met, "seconds": seconds}
+
+
+def try_mutant(job: tuple[Mutant, list[tuple[str, float]]]) -> dict[str, Any]:
+    """Return what the tests that run its line say of a mutant."""
+    mutant, tests = job
+    tree, began = own_tree(), time.monotonic()
+    outcome, noticed, met = ("survived" if tests else "no test runs it"), "", 0
+    for names, seconds in _looks(tests):
+        with broken(tree, mutant):
+            how, answer = in_fork(partial(run_tests, names), tree, seconds=30.0 + 4.0 * seconds)
+        met += len(names)
+        if how == "done" and answer["code"] == 0:
+            continue
+        if how == "done" and answer["code"] not in (1, 2):  # a test failed, or a file could not be imported
+            outcome, noticed = "error", f"pytest ended with {answer['code']}"
+            break
+        outcome = "killed" if how == "done" else f"killed by {how}"
+        noticed = "".join(answer["failed"]) if how == "done" else ""
+        break
+    return answer_on(mutant, outcome, noticed, met, began)
 
 
 def _looks(tests: list[tuple[str, float]]) -> Iterable[tuple[list[str], float]]:
@@ -188,9 +266,9 @@ def read_log(path: Path) -> dict[str, dict[str, Any]]:
 
 def explanations() -> dict[str, str]:
     """Return why mutants give the same answers, by their keys."""
-    if not EXPLAINED.exists():
-        return {}
-    return {entry["mutant"]: entry["why"] for entry in tomllib.loads(EXPLAINED.read_text(encoding="utf-8"))["same"]}
+    return {
+        entry["mutant"]: entry["why"] for entry in tomllib.loads(EXPLAINED.read_text(encoding="utf-8")).get("same", [])
+    }
 
 
 def report(entries: list[dict[str, Any]]) -> int:
@@ -218,7 +296,10 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the choice; default 1")
     parser.add_argument("--package", choices=PACKAGES, action="append", help="default: all three")
     parser.add_argument("--processes", type=int, default=2, help="default 2")
-    parser.add_argument("--slow", action="store_true", help="slow tests, too: a longer map, fewer survivors")
+    parser.add_argument("--slow", action="store_true", help="slow tests in the map, too: a longer map, fewer survivors")
+    parser.add_argument(
+        "--near-only", action="store_true", help="no map: the nearest files alone, quick tests, then slow"
+    )
     parser.add_argument("--again", action="store_true", help="ask survivors of the log once more")
     parser.add_argument("--map-only", action="store_true", help="make the map and stop")
     parser.add_argument("--out", type=Path, default=Path("out/mutants"), help="map and log; default out/mutants")
@@ -236,28 +317,40 @@ def main() -> int:
 
 def break_one_by_one(tree: Path, arguments: argparse.Namespace) -> list[dict[str, Any]] | None:
     """Return what the tests say of the mutants drawn; None when only the map was wanted."""
-    log = arguments.out / "log.jsonl"
     drawn = draw_mutants(tree, tuple(arguments.package or PACKAGES), arguments.count, arguments.seed)
     context = multiprocessing.get_context("spawn")
     with context.Pool(arguments.processes, initializer=prepare, initargs=(tree,)) as pool:
-        covered = make_map(tree, arguments.out / "map", pool, slow=arguments.slow)
         if arguments.map_only:
+            make_map(tree, arguments.out / "map", pool, slow=arguments.slow)
             return None
-        known = read_log(log)
+        known = read_log(arguments.out / "log.jsonl")
         if arguments.again:
             known = {key: entry for key, entry in known.items() if entry["outcome"].startswith("killed")}
-        left = [mutant for mutant in drawn if mutant.key not in known]
-        jobs = [(mutant, [(name, covered.seconds[name]) for name in covered.tests_of(mutant, tree)]) for mutant in left]
-        with log.open("a", encoding="utf-8") as stream:
-            for number, entry in enumerate(pool.imap_unordered(try_mutant, jobs), start=1):
-                stream.write(json.dumps(entry, ensure_ascii=False) + "\n")
-                stream.flush()
-                known[entry["key"]] = entry
-                print(
-                    f"{number}/{len(jobs)} {entry['outcome']:<10} {entry['seconds']:>6.1f} s {entry['path']}:{entry['line']} "
-                    f"{entry['before']!r} → {entry['after']!r} {entry['by']}",
-                    flush=True,
-                )
+
+        def alive(stage: int) -> list[Mutant]:
+            """Return those that survive and have not met the tests of a stage."""
+            entries = [(mutant, known.get(mutant.key, {"outcome": "", "stage": 0})) for mutant in drawn]
+            return [m for m, entry in entries if not entry["outcome"].startswith("killed") and entry["stage"] < stage]
+
+        def ask(stage: int, work: Callable[[Any], dict[str, Any]], jobs: list[Any]) -> None:
+            with (arguments.out / "log.jsonl").open("a", encoding="utf-8") as stream:
+                for number, entry in enumerate(pool.imap_unordered(work, jobs), start=1):
+                    known[entry["key"]] = entry | {"stage": stage}
+                    stream.write(json.dumps(known[entry["key"]], ensure_ascii=False) + "\n")
+                    stream.flush()
+                    print(
+                        f"{number}/{len(jobs)} {entry['outcome']:<10} {entry['seconds']:>6.1f} s {entry['path']}:{entry['line']} "
+                        f"{entry['before']!r} → {entry['after']!r} {entry['by']}",
+                        flush=True,
+                    )
+
+        near = {mutant.key: nearest_files(tree, mutant.path, NEAREST) for mutant in drawn}
+        ask(1, partial(try_nearest, slow=False), [(mutant, near[mutant.key]) for mutant in alive(1)])
+        if alive(2) and not arguments.near_only:
+            covered = make_map(tree, arguments.out / "map", pool, slow=arguments.slow)
+            tests = {m.key: [(name, covered.seconds[name]) for name in covered.tests_of(m, tree)] for m in alive(2)}
+            ask(2, try_mutant, [(mutant, tests[mutant.key]) for mutant in alive(2)])
+        ask(3, partial(try_nearest, slow=True), [(mutant, near[mutant.key]) for mutant in alive(3)])
     return [known[mutant.key] for mutant in drawn if mutant.key in known]
 
 

@@ -19,6 +19,7 @@ from typing import Any
 import pytest
 
 from mutation.formulas import PACKAGES, Mutant
+from mutation.processes import PYTEST_WORDS
 
 
 def processor_seconds() -> float:
@@ -92,8 +93,9 @@ def map_file(tree: Path, path: str, *, slow: bool) -> dict[str, Any]:
     watch = coverage.Coverage(data_file=None, source=[str(tree / name) for name in PACKAGES], messages=False)
     watch.start()
     plugin = LineWatch(watch)
-    words = [path, "-q", "-p", "no:cacheprovider", "--no-header", *([] if slow else ["-m", "not slow"])]
-    pytest.main(words, plugins=[plugin])
+    code = int(pytest.main([path, *PYTEST_WORDS, *([] if slow else ["-m", "not slow"])], plugins=[plugin]))
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.NO_TESTS_COLLECTED):
+        raise RuntimeError(f"pytest ended with {code}")
     watch.stop()
     names = list(plugin.tests)
     numbers = {name: number for number, name in enumerate(names)}
@@ -120,6 +122,31 @@ def test_files(tree: Path) -> list[str]:
         sources = sorted((tree / package).rglob("*.py"))
         found += [str(path.relative_to(tree)) for path in sources if ">>> " in path.read_text(encoding="utf-8")]
     return found
+
+
+def nearest_files(tree: Path, path: str, count: int) -> list[str]:
+    """Return the files of tests nearest to a source: named after it, of its folder, that import it; at most so many.
+
+    Of each kind smaller files come first, which are quicker.
+    """
+    source = Path(path)
+    module = ".".join(source.with_suffix("").parts)
+    imports = re.compile(
+        rf"\b{re.escape(module)}\b|from {re.escape(module.rpartition('.')[0])} import [^\n]*\b{source.stem}\b"
+    )
+    ranked = []
+    for name in test_files(tree):
+        place, text = Path(name), (tree / name).read_text(encoding="utf-8")
+        kinds = (
+            name == path or place.name == f"test_{source.stem}.py",
+            place.is_relative_to("tests") and place.parent == Path("tests") / source.parent,
+            imports.search(text) is not None,
+            place.is_relative_to("tests")
+            and place.parent.is_relative_to(Path("tests") / source.parts[0] / source.parts[1]),
+        )
+        if any(kinds):
+            ranked.append((-8 * kinds[0] - 4 * kinds[2] - 2 * kinds[1] - kinds[3], len(text), name))
+    return [name for _, _, name in sorted(ranked)[:count]]
 
 
 def fingerprints(tree: Path, path: str, ran: Iterable[str]) -> dict[str, str]:

@@ -26,6 +26,11 @@ WARM = (
     "h5netcdf", "h5py", "pydantic", "threadpoolctl", "jinja2", "rich.progress", "matplotlib.figure",
     "pytest", "hypothesis",
 )  # fmt: skip
+# Third-party plugins are not loaded in forks, so the project's own options have none of theirs (``--dist``).
+PYTEST_WORDS = (
+    "-q", "-p", "no:cacheprovider", "--no-header",
+    "-o", "addopts=--import-mode=importlib --doctest-modules --strict-markers",
+)  # fmt: skip
 MEMORY = 8 * 2**30
 PARENT_DEATH_SIGNAL = 1  # of prctl, Linux
 

@@ -58,7 +58,7 @@ class CircularCrown:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LogarithmicRelief:
-    """Logarithmic profile of ISO/TS 16281: z = amplitude · D · ln(1/(1 − (2y/L)²)).
+    """Logarithmic profile of ISO 16281:2025: z = amplitude · D · ln(1/(1 − (2y/L)²)).
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class LogarithmicRelief:
     diameter : float
         Diameter D of the roller, mm.
     amplitude : float
-        0.00035 in ISO/TS 16281 (rollers no longer than 2.5 D).
+        0.00035 in ISO 16281:2025 (rollers no longer than 2.5 D).
     """
 
     length: float

@@ -118,7 +118,7 @@ class LengthProfile:
         Parabolic crown, drop at y = ±L/2, mm: ``crown_drop (2y/L)²``.
     logarithmic_factor : float
         Factor of the logarithmic profile ``factor · 0.00035 D ln(1/(1 − (2y/L)²))`` with D the diameter;
-        1 is the profile of ISO/TS 16281.
+        1 is the profile of ISO 16281:2025.
     end_relief_length : float
         Length of the parabolic end relief at each end, mm.
     end_relief_depth : float

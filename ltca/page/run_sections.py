@@ -90,7 +90,7 @@ def lives_of_cases(analyses: Mapping[str, LoadedAnalysis]) -> Section:
     columns = ["case", "shortest of", "C, N", "P, N", "L10r, million turns", "L10r, h", "S0"]
     table = Table(name="life", caption="", columns=columns, rows=rows, words=1)
     notes.append(
-        "Lives by ISO/TS 16281 from the loads of this turn; hours at load.speed or those of the duty. With a maker's rating, "
+        "Lives by ISO 16281:2025 from the loads of this turn; hours at load.speed or those of the duty. With a maker's rating, "
         "a_ISO and more turns: cyclo curves."
     )
     return Section(heading="Life of the crank bearings", notes=notes, tables=[table] if rows else [])

@@ -82,7 +82,7 @@ def test_centre_pressure_and_approach_of_uncrowned_rollers(length, load, counts)
 
 @pytest.mark.slow
 def test_logarithmic_relief_benchmark():
-    """D = L = 20 mm, 40 kN on a flat, ISO/TS 16281 profile, E = 210 GPa: 2710 MPa by Hertz, about 2760 MPa really."""
+    """D = L = 20 mm, 40 kN on a flat, ISO 16281:2025 profile, E = 210 GPa: 2710 MPa by Hertz, about 2760 MPa really."""
     profile = LogarithmicRelief(length=20.0, diameter=20.0)
     radius, load = 10.0, 40e3
     assert float(line_peak_pressure(load / 20.0, radius, MODULUS)) == pytest.approx(2710.0, abs=1.0)

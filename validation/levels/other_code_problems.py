@@ -185,7 +185,7 @@ class PressedRoller:
 ROLLERS = (
     PressedRoller(name="uncrowned roller", length=11.8, radius=2.0, load=1500.0, span=0.173, cells=(96, 512)),
     PressedRoller(
-        name="roller with ISO/TS 16281 profile",
+        name="roller with ISO 16281:2025 profile",
         length=20.0,
         radius=10.0,
         load=40e3,

@@ -3,7 +3,7 @@
 Modules in the order data passes:
 
 ================  ============================================================
-ratings           What a bearing of its size bears: ratings of its races and of the whole (ISO 281, ISO/TS 16281, ISO 76)
+ratings           What a bearing of its size bears: ratings of its races and of the whole (ISO 281, ISO 16281:2025, ISO 76)
 laminae           Load of a roller over slices of its length, by its own profile
 equivalent_load   Equivalent roller load of a race: means over the time at each of its places, and over its places
 modification      Lubricant and contamination: the factor a_ISO of ISO 281

@@ -7,7 +7,7 @@ places of a race, of which each may fail, with the Weibull slope 9/8 of line con
 
 A place that stands still to the load always sees the same one: the mean is that with 4.5 over the places. Where the load
 goes round, all places see the same: the mean is that with 4. Everything between is in it, and places along the length, the
-slices of a roller, are places like others (which is the sum over laminae of ISO/TS 16281).
+slices of a roller, are places like others (which is the sum over laminae of ISO 16281:2025).
 
 **Who turns to what.** Angles are those of the analysis, in the frame of the pin shaft (or carrier). The disc does not turn
 there, so a place of the bore is the angle at which a roller presses on it, seen from the bore's centre; the inner race

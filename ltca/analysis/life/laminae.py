@@ -7,12 +7,12 @@ the ends of what is not relieved there, so no factor comes on top. Straight and 
 and the same sum, and the solution follows the profile continuously: a crown of a nanometre gives the straight roller.
 
 **Where nothing is known along the length** (plane strain: `EvenLaminae`) every slice carries the same, and the stress
-function of ISO/TS 16281 for the ends of plain rollers stands for the edges. Plane strain refuses profiles by name, so no
+function of ISO 16281:2025 for the ends of plain rollers stands for the edges. Plane strain refuses profiles by name, so no
 roller ever changes from one to the other.
 
-The pressure of a straight end is singular, more so in thinner slices: life then belongs to a number of slices. ISO/TS
-16281 asks for at least 30; 31 are taken (of the paper's straight rollers 51 give 9 % less life, 101 a quarter less). Profiles
-that carry no peak at their ends do not feel the number.
+The pressure of a straight end is singular, more so in thinner slices: life then belongs to a number of slices. ISO
+16281:2025 asks for at least 30; 31 are taken (of the paper's straight rollers 51 give 9 % less life, 101 a quarter less).
+Profiles that carry no peak at their ends do not feel the number.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def pair_weights(laminae: int = LAMINAE) -> FloatArray:
 
 
 def edge_factors(laminae: int = LAMINAE) -> FloatArray:
-    """Return the stress risers of the laminae of an unrelieved roller (ISO/TS 16281): 1 inside, more at the ends."""
+    """Return the stress risers of the laminae of an unrelieved roller (ISO 16281:2025): 1 inside, more at the ends."""
     place = np.abs(2.0 * np.arange(1, laminae + 1) - laminae - 1.0) / (2.0 * laminae)
     factors = np.ones(laminae)
     inside = place > 0.0

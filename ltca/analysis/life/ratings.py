@@ -1,4 +1,4 @@
-"""What a row of cylindrical rollers bears by its size: ISO 281, the races apart by ISO/TS 16281, at rest by ISO 76."""
+"""What a row of cylindrical rollers bears by its size: ISO 281, the races apart by ISO 16281:2025, at rest by ISO 76."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from ltca.drive.materials import HARDENED, STEEL
 from ltca.drive.parts import Drive
 
 EDGE_ALLOWANCE = 0.83
-"""λν of ISO/TS 16281: the part of the rating of ISO 281 that allows for edge stress, taken out where it is reckoned."""
+"""λν of ISO 16281:2025: the part of the rating of ISO 281 that allows for edge stress, taken out where it is reckoned."""
 BEARING_STEEL = 1.1
 """b_m of ISO 281 for radial cylindrical roller bearings."""
 INNER_SHARE, OUTER_SHARE = 0.378, 0.364
-"""Radial load by Z times the equivalent roller load of a race that turns and of one that stands (ISO/TS 16281)."""
+"""Radial load by Z times the equivalent roller load of a race that turns and of one that stands (ISO 16281:2025)."""
 STATIC = 44.0
 """Factor of the static rating of radial roller bearings, N/mm² (ISO 76)."""
 FATIGUE = 8.2
@@ -139,7 +139,7 @@ class RollerBearing:
         return float(self.static_load_rating / FATIGUE * size**-0.3)
 
     def race_ratings(self, dynamic_load_rating: float | None = None) -> RaceRatings:
-        """Return Q_ci and Q_ce of ISO/TS 16281: C_r/(0.378 λν Z) and C_r/(0.364 λν Z) with their parts of the joined life.
+        """Return Q_ci and Q_ce of ISO 16281:2025: C_r/(0.378 λν Z) and C_r/(0.364 λν Z) with their parts of the joined life.
 
         Parameters
         ----------

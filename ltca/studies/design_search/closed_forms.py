@@ -313,7 +313,7 @@ def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: Float
     g = diameter / pitch
     races = 1.04 * ((1.0 - g) / (1.0 + g)) ** (143.0 / 108.0)
     shape = g ** (2.0 / 9.0) * (1.0 - g) ** (29.0 / 27.0) / (1.0 + g) ** 0.25
-    # As lives are told by ISO/TS 16281: what allows for edges is taken out, where edges are reckoned.
+    # As lives are told by ISO 16281:2025: what allows for edges is taken out, where edges are reckoned.
     factor = 207.9 * shape * (1.0 + races**4.5) ** (-2.0 / 9.0)
     rating = (
         BEARING_STEEL * factor * sizes.roller_length ** (7.0 / 9.0) * sizes.rollers**0.75 * diameter ** (29.0 / 27.0)

@@ -109,6 +109,19 @@ def test_lost_motion_is_read_in_the_middle_of_the_loop(paper):
     assert np.all(loop.falling >= loop.rising - 1e-12)
 
 
+@pytest.mark.slow
+def test_a_part_of_the_torque_is_the_torque_of_a_lighter_drive(paper):
+    """Half of the rated torque and back is the loop of the same drive rated at half: the amplitude is a part of the torque."""
+    half = replace(paper, load=replace(paper.load, torque=0.5 * paper.load.torque))
+    part = hysteresis_loop(paper, ANGLE, amplitude=0.5, lost_motion=0.05, points=5)
+    whole = hysteresis_loop(half, ANGLE, lost_motion=0.1, points=5)
+    np.testing.assert_allclose(part.torque, whole.torque, rtol=1e-12)
+    assert part.torque[-1] == pytest.approx(0.5 * paper.load.torque, rel=1e-12)
+    # Both walk the same torques; balance holds to 1e-9 of the load.
+    for name in ("rising", "falling", "energy", "lost_motion", "width"):
+        np.testing.assert_allclose(getattr(part, name), getattr(whole, name), rtol=1e-6, err_msg=name)
+
+
 def test_no_friction_no_loop(paper):
     with pytest.raises(DriveError, match="friction: must be given"):
         locked_path(replace(paper, friction=None), ANGLE, [1e5, 2e5])

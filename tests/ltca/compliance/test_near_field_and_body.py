@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import finite_length_approach
@@ -161,3 +162,40 @@ def test_what_a_half_space_holds_is_less_than_under_an_even_load(length, nearest
     separation = half_width**2 / (8.0 * np.pi * half_width**2 / (4.0 * line))
     ratio = finite_length_approach(length, half_width) / (mean - separation)
     assert nearest < ratio < 1.0
+
+
+def test_what_is_taken_off_a_pin_is_the_patch_of_the_steepest_place(mixed, closed_form):
+    """Half the load of the drive on one pin at a quarter of θ = 2π/z_P: there the near field of finite length and its body
+    part add up to the half-planes of plane strain, whatever lies between.
+
+    Of the trochoid where its eccentric is at α = z_C θ from the arm ρ₀ = R S³/(1 + z_P K² − K (1 + z_P) cos α), with
+    S² = 1 + K² − 2 K cos α, and flank and pin have r (1 − r/ρ₀) between them.
+    """
+    drive = mixed["CS-1"]
+    drive = replace(drive, disc=replace(drive.disc, equidistant_offset=0.0, shifting_offset=0.0))
+    model = CoupledCompliance.of_drive(drive, closed_form(drive, depth=DEPTH), "half-space")
+    wheel, thickness = drive.pin_wheel, drive.disc.thickness
+    count, shortening = wheel.number_of_pins, drive.crank.eccentricity * wheel.number_of_pins / wheel.pin_circle_radius
+    cosine = np.cos(0.5 * np.pi * (count - 1.0) / count)
+    speed = (1.0 + shortening**2 - 2.0 * shortening * cosine) ** 1.5
+    turning = 1.0 + count * shortening**2 - shortening * (1.0 + count) * cosine
+    trochoid = wheel.pin_circle_radius * speed / turning
+    radius = wheel.pin_radius * (1.0 - wheel.pin_radius / trochoid)
+    line = 0.5 * abs(drive.wheel_moment()) / (drive.crank.eccentricity * count) / thickness
+    width = width_of("pin", line, radius)
+    # The load at which a patch of finite length is as wide, and what its bodies sink by: less the separation of the surfaces.
+    low, high = 0.5 * width**2 / radius, 4.0 * width**2 / radius
+    law, place = model.near_field.pin, np.array([radius])
+    near = np.array(
+        [brentq(lambda near: float(law.half_width(np.array([near]), place)[0]) - width, low, high, xtol=1e-15)]
+    )
+    load = law.load_and_stiffness(near, place)[0]
+    own = np.diag(model.coefficients.disc)[0] + model.own.pin
+    sunk = near - width**2 / (8.0 * radius) + own * load
+    expected = sum(
+        half_plane_approach(load / thickness, width, DEPTH, *constants(body))
+        - 0.5 * load / thickness / (np.pi * plane_modulus(body))
+        for body in BODIES["pin"]
+    )
+    # round-off of tables and of the logarithms of the patch
+    np.testing.assert_allclose(sunk, expected, rtol=1e-9)

@@ -108,6 +108,26 @@ def test_pins_of_another_drive_are_bounded_by_what_it_differs_in(drives):
     assert max(beyond) > 0.1  # a bound of any use
 
 
+@pytest.mark.parametrize(
+    "changed",
+    [{"turn": np.exp(2e-4j)}, {"centre": 3e-3 - 4e-3j}, {"generating_radius": 88.094}, {"eccentricity": 3.996}],
+    ids=lambda changed: next(iter(changed)),
+)
+def test_the_bound_is_how_far_the_trochoids_are_apart(paper_cases, changed):
+    """Of flanks that differ in one thing it is the largest distance of their generating curves at the same parameter."""
+    geometry = ContactGeometry.of_drive(paper_cases["CS-1"])
+    other = replace(geometry, profile=replace(geometry.profile, **changed))
+    theta = np.linspace(0.0, 2.0 * np.pi, 13 * 200 + 1)  # tips, where a turn moves most, are among them
+
+    def trochoid(profile):
+        radius, e, ratio = profile.generating_radius, profile.eccentricity, profile.reduction_ratio
+        return profile.centre + profile.turn * (radius * np.exp(1j * theta) - e * np.exp(1j * ratio * theta))
+
+    apart = np.max(np.abs(trochoid(other.profile) - trochoid(geometry.profile)))
+    # An arc of 2e-4 is longer than its chord by a part of 2e-9.
+    np.testing.assert_allclose(other.reach_beyond(geometry), apart, rtol=1e-8)
+
+
 def test_a_batch_is_bounded_drive_by_drive(paper_cases):
     random = np.random.default_rng(9)
     others = [with_errors(paper_cases["CS-1"], random, 0.01) for _ in range(3)]

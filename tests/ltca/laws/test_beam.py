@@ -15,35 +15,51 @@ def test_deflection_of_the_handbook():
 
 
 @pytest.mark.parametrize(
-    ("tip", "one_disc", "two_discs"),
-    [("free", 74.468085, None), ("supported", 55.075355, 139.221801), ("clamped", 40.336879, 83.789835)],
+    ("tip", "one_disc", "same_pins", "opposite_pins"),
+    [
+        ("free", 74.468085, None, None),
+        ("supported", 55.075355, 93.531433, 139.221801),
+        ("clamped", 40.336879, 51.031442, 83.789835),
+    ],
 )
-def test_bending_moments_of_tied_tips(tip, one_disc, two_discs):
-    """Case H: six pins in the flange, tips in a floating ring; largest moment at the flange for 1 N·m on each disc.
+def test_bending_moments_of_tied_tips(tip, one_disc, same_pins, opposite_pins):
+    """Case H (ka1e27/Cycloidal-Gearbox-Simulator, scripts/parity/standoff/README.md): six pins clamped in the flange, tips in a
+    floating ring; largest moment along a pin for 1 N·m on each disc, which pushes evenly by the lever.
 
-    The discs push evenly by the lever, each on its half of the pins. Ring and reactions are ours (`tip_shape`,
+    Printed are the rows of one disc and of two that push the *same* pins in opposite senses. Discs at 180° on opposite pins,
+    each on its half of them, are no printed row: they follow from its closed form. Ring and reactions are ours (`tip_shape`,
     `tip_stiffness`); the couple of a clamped tip, F a² (H − a)/H² less 6 E I v/H² of its sway, is Bernoulli's.
     """
     width, gap, pins = 6.35, 0.5, np.pi / 3.0 * np.arange(6)
-    for discs, radius, expected in ((1, 32.9, one_disc), (2, 32.3, two_discs)):
+    for radius, turned, senses, expected in (
+        (32.9, [0.0], [1.0], one_disc),
+        (32.3, [0.0, 0.0], [1.0, -1.0], same_pins),
+        (32.3, [0.0, np.pi], [1.0, 1.0], opposite_pins),
+    ):
         if expected is None:
             continue
+        discs = len(turned)
         span = discs * (width + gap) + gap
         planes = gap + 0.5 * width + (width + gap) * np.arange(discs)
         beam = PinBeam(span=span, ends=("clamped", tip), diameter=4.0, youngs_modulus=2e5)
-        sense = np.array([1.0, -1.0])[:discs, None]
-        loads = sense * np.maximum(0.0, sense * np.cos(pins)) * 1j * 1000.0 / (1.5 * radius)
-        moment = planes @ loads
+        # All loads of a disc are across its eccentric, on the pins on one side of it, in proportion to their levers.
+        eccentric = np.exp(1j * np.array(turned))[:, None]
+        levers = (np.exp(1j * pins) * eccentric.conj()).real
+        loads = np.array(senses)[:, None] * 1j * eccentric * np.maximum(0.0, levers) * 1000.0 / (1.5 * radius)
+        held, couple = np.zeros(6), np.zeros(6)
         if tip != "free":
             tips = np.stack([np.ones(6), np.full(6, 1j), 1j * radius * np.exp(1j * pins)], axis=-1)
             onto = beam.tip_shape(planes.tolist(), 1e-4) @ loads
             ring = beam.tip_stiffness * (tips.conj().T @ tips).real
             sway = tips @ np.linalg.solve(ring, (tips.conj().T @ onto).real)
-            moment = moment - span * (onto - beam.tip_stiffness * sway)
+            held = onto - beam.tip_stiffness * sway
         if tip == "clamped":
             rigidity = 2e5 * np.pi * 4.0**4 / 64.0
-            moment = moment + planes**2 * (span - planes) / span**2 @ loads - 6.0 * rigidity * sway / span**2
-        # printed to 1e-6
+            couple = planes**2 * (span - planes) / span**2 @ loads - 6.0 * rigidity * sway / span**2
+        # Straight between the loads: largest at one of them or at an end.
+        at = np.array([0.0, *planes, span])[:, None]
+        moment = np.maximum(0.0, planes - at) @ loads - (span - at) * held + couple
+        # printed to 1e-6; what is not printed is given so
         assert np.abs(moment).max() == pytest.approx(expected, abs=2e-6)
 
 

@@ -34,7 +34,7 @@ def test_profiles_are_even_start_at_zero_and_know_their_overlap(profile):
 
 
 def test_logarithmic_profile_by_hand():
-    # ISO/TS 16281: at 0.8 of the half-length 0.00035 · 20 · ln(1/0.36) mm = 7.15 µm
+    # ISO 16281:2025: at 0.8 of the half-length 0.00035 · 20 · ln(1/0.36) mm = 7.15 µm
     assert float(LogarithmicRelief(length=20.0, diameter=20.0).relief(8.0)) == pytest.approx(7.1516e-3, rel=1e-4)
 
 

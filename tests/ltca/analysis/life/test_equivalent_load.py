@@ -77,7 +77,7 @@ def test_against_a_count_of_what_passes():
 
 
 def test_places_along_the_length_are_places_like_others():
-    """Shares that all loads have are a factor: their mean with 4.5, as ISO/TS 16281 sums laminae."""
+    """Shares that all loads have are a factor: their mean with 4.5, as ISO 16281:2025 sums laminae."""
     crank, angle = rollers(3)
     factor = np.mean(edge_factors() ** 4.5) ** (1.0 / 4.5)
     for place in (angle, angle - crank[:, None]):

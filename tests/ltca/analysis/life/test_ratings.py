@@ -1,4 +1,4 @@
-"""Ratings of the crank bearing against ISO 281's tables, the integrals behind ISO/TS 16281, and by hand."""
+"""Ratings of the crank bearing against ISO 281's tables, the integrals behind ISO 16281:2025, and by hand."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_rating_of_the_inner_by_that_of_the_outer_race():
     assert bearing(1e-9).race_ratio == pytest.approx(1.038, rel=1e-8)
     part = bearing(0.2, rollers=13)
     found = part.race_ratings()
-    # Q_ci/Q_ce of ISO/TS 16281, (1.18…): (1 + r^4.5)^(2/9) over (1 + r^−4.5)^(2/9) is r
+    # Q_ci/Q_ce of ISO 16281:2025, (1.18…): (1 + r^4.5)^(2/9) over (1 + r^−4.5)^(2/9) is r
     assert found.inner / found.outer == pytest.approx(by_hand * 0.364 / 0.378, rel=1e-12)
     # both by hand: C = 1.1 f_c …, shared by 13 rollers, without the allowance for edges
     share = part.dynamic_load_rating / (0.83 * 13 * 0.378)
@@ -68,7 +68,7 @@ def test_rating_of_the_inner_by_that_of_the_outer_race():
 
 
 def test_race_constants_are_the_integrals_of_the_load_zone():
-    """0.378 and 0.364 of ISO/TS 16281 are J_r/J_1 and J_r/J_2: means of the loads with 4 and 4.5."""
+    """0.378 and 0.364 of ISO 16281:2025 are J_r/J_1 and J_r/J_2: means of the loads with 4 and 4.5."""
 
     def mean(power):
         return quad(lambda psi: np.cos(psi) ** power, -np.pi / 2, np.pi / 2)[0] / (2.0 * np.pi)

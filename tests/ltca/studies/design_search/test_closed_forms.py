@@ -13,7 +13,7 @@ from ltca.studies.design_search.demands import find_demands
 from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
 from ltca.studies.design_search.requirements import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
-from ltca.studies.design_search.sizes import Sizes, drive_of
+from ltca.studies.design_search.sizes import Sizes, drive_of, stack_length
 
 STEEL = "\n[materials]\n" + "\n".join(
     f'{part} = "100Cr6"' for part in ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
@@ -60,6 +60,22 @@ def test_shapes_are_those_of_the_verdict(changed):
     assert told["pin_gap"] == pytest.approx(named.pop("between neighbouring wheel pins"), rel=1e-12)
     # The paper's rollers leave nothing of the bore's own wall to judge here.
     assert told["wall"] == pytest.approx(min(wall for name, wall in named.items() if "hole" in name), rel=1e-9)
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_discs_of_a_design_stand_side_by_side(discs):
+    """As many as are asked, the gap of the shop between neighbours, the stack in the middle of the pins."""
+    text = PAPER.replace("discs = 1", f"discs = {discs}").replace("length = 12.0", "length = 60.0")
+    requirements = parse_requirements(text + "disc_gap = 0.7\n" + STEEL)
+    row = ROW | {"discs": float(discs)}
+    disc = drive_of(row, requirements).disc
+    planes = np.array(disc.disc_planes)
+    assert disc.number_of_discs == planes.size == discs
+    # 11.8 mm thick each
+    np.testing.assert_allclose(np.diff(planes), 11.8 + 0.7, rtol=1e-12)
+    np.testing.assert_allclose(planes, -planes[::-1], atol=1e-12)
+    stack = stack_length(Sizes.of_rows([row]), requirements.asked.shop.disc_gap)
+    assert np.ptp(planes) + 11.8 == pytest.approx(float(stack[0]), rel=1e-12)
 
 
 @pytest.mark.parametrize(
