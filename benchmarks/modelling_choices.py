@@ -91,7 +91,9 @@ def row(name: str, base: Answer, other: Answer) -> str:
         return float(change.flat[np.argmax(np.abs(change))])
 
     loads = 100.0 * farthest((other.load - base.load) / base.load.max(axis=1, keepdims=True))
-    flank, hole = (100.0 * farthest(new / old - 1.0) for new, old in ((other.flank, base.flank), (other.hole, base.hole)))
+    flank, hole = (
+        100.0 * farthest(new / old - 1.0) for new, old in ((other.flank, base.flank), (other.hole, base.hole))
+    )
     turned = farthest(np.abs(other.wheel) - np.abs(base.wheel))
     return f"{name:<44}{loads:>9.2f}{flank:>9.2f}{hole:>9.2f}{turned:>9.2f} of {np.mean(np.abs(base.wheel)):.0f}"
 
@@ -102,16 +104,25 @@ def main() -> None:
     parser.add_argument("--case", default="CS-1", help="case of the paper's drive (default %(default)s)")
     parser.add_argument("--positions", type=int, default=4, help="over a turn of the crank (default %(default)s)")
     parser.add_argument(
-        "--size", type=float, default=2.0, help="multiple of the default element edges, on all meshes (default %(default)s)"
+        "--size",
+        type=float,
+        default=2.0,
+        help="multiple of the default element edges, on all meshes (default %(default)s)",
     )
-    parser.add_argument("--stations", type=float, default=0.5, help="multiple of the default stations (default %(default)s)")
+    parser.add_argument(
+        "--stations", type=float, default=0.5, help="multiple of the default stations (default %(default)s)"
+    )
     arguments = parser.parse_args()
     drive, angles = load_drive("paper").cases[arguments.case], position_angles(arguments.positions)
     shapes = DriveShapes.of_drive(drive)
     core, bore = shapes.wheel_pins[0].core_radius, shapes.inner_race.inner_radius
     start, size, stations = time.process_time(), arguments.size, arguments.stations
-    print(f"paper {arguments.case}, {drive.load_words()}, {angles.size} positions; meshes of {size:g} times the default edge,")
-    print(f"{stations:g} times the default stations; the farthest over the positions, loads of the largest of each position")
+    print(
+        f"paper {arguments.case}, {drive.load_words()}, {angles.size} positions; meshes of {size:g} times the default edge,"
+    )
+    print(
+        f"{stations:g} times the default stations; the farthest over the positions, loads of the largest of each position"
+    )
     print(f"{'':<44}{'load, %':>9}{'flank, %':>9}{'hole, %':>9}{'wheel, ″':>9}", flush=True)
     base = by_coefficients(drive, angles, size, stations)
     choices: list[tuple[str, dict[str, float]]] = [
@@ -121,7 +132,9 @@ def main() -> None:
     for name, chosen in choices:
         print(row(f"{name} (fe)", base, by_coefficients(drive, angles, size, stations, **chosen)), flush=True)
     full = by_full_solution(drive, angles, size)
-    print(row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, state="stress")), flush=True)
+    print(
+        row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, state="stress")), flush=True
+    )
     elastic = with_fields(drive, {"pin_shaft.elastic_contact": True})
     print(row("shaft pins rigid -> elastic (full FE)", full, by_full_solution(elastic, angles, size)), flush=True)
     print(row("the same (fe)", base, by_coefficients(elastic, angles, size, stations)), flush=True)

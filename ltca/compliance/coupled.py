@@ -142,9 +142,7 @@ class CoupledCompliance:
         at_hole = laws.hole if hole_near_field else SpringLaw(stiffness=stiffness)
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
-        own = OwnParts.of_drive(
-            drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare
-        )
+        own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
         race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             geometry=geometry,

@@ -99,7 +99,7 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
 
 
 def _hole_contacts(drive: Drive, pressures: ContactPressures) -> tuple[FloatArray, FloatArray]:
-    """Return pressures and half-widths at the holes; no numbers where full FE has elastic pins and the model rigid ones, or so."""
+    """Return pressures and half-widths at the holes; no numbers where the pins of full FE yield and the model's do not, or so."""
     holes = pressures.holes
     if pressures.rigid_shaft_pins == shaft_pins_yield(drive):
         return np.full(holes.mid.shape, np.nan), np.full(holes.mid.shape, np.nan)

@@ -1,4 +1,4 @@
-"""Shaft pins that yield at their holes: LTCA ``fe``, whose pins are a closed form, against meshed pins of full finite elements."""
+"""Shaft pins that yield at their holes: LTCA ``fe``, whose pins are a closed form, against meshed pins."""
 
 from __future__ import annotations
 
@@ -40,7 +40,12 @@ PLASTIC = {"materials.disc.youngs_modulus": 3000.0, "materials.disc.poisson_rati
 def plastic_joint():
     """One disc of plastic on steel pins, none of which is the paper's."""
     drive = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
-    one = {"disc.number_of_discs": 1, "disc.phases": (), "disc.planes": (), "crank_bearing.roller_length": drive.disc.thickness}
+    one = {
+        "disc.number_of_discs": 1,
+        "disc.phases": (),
+        "disc.planes": (),
+        "crank_bearing.roller_length": drive.disc.thickness,
+    }
     return with_fields(drive, one | PLASTIC)
 
 

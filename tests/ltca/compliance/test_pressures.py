@@ -121,7 +121,10 @@ def test_elastic_shaft_pins_press_their_holes_like_hertz(pins, drive, closed_for
 @pytest.mark.parametrize("engine", [PlaneStrain, Hybrid])
 def test_shaft_pins_that_do_not_yield_are_rigid(engine, drive, closed_form):
     """A million times the modulus of steel: poses, loads and pressures of rigid pins."""
-    stiff, coefficients = with_fields(drive, ELASTIC | {"materials.shaft_pin.youngs_modulus": 2e11}, check=False), closed_form(drive)
+    stiff, coefficients = (
+        with_fields(drive, ELASTIC | {"materials.shaft_pin.youngs_modulus": 2e11}, check=False),
+        closed_form(drive),
+    )
     found, rigid = (analyse(own, ANGLES, engine=engine(coefficients=coefficients)) for own in (stiff, drive))
     # What is left of the pins' own part is a millionth of it.
     np.testing.assert_allclose(found.full.pose, rigid.full.pose, rtol=1e-5, atol=1e-10)
@@ -132,9 +135,7 @@ def test_shaft_pins_that_do_not_yield_are_rigid(engine, drive, closed_form):
 def test_a_shaft_pin_yields_as_one_approach_at_one_load(drive, closed_form):
     """At the loads found, an elastic pin's approach is more than a rigid one's by the closed form of the whole contact."""
     coefficients, own = closed_form(drive), with_fields(drive, ELASTIC)
-    rigid, soft = (
-        CoupledCompliance.of_drive(one, coefficients, "plane-strain") for one in (drive, own)
-    )
+    rigid, soft = (CoupledCompliance.of_drive(one, coefficients, "plane-strain") for one in (drive, own))
     load, radius = np.array([[2000.0]]), float(soft.hole_radius[0])
     nu, modulus = STEEL[1], STEEL[0]
     share = 2.0 * (1.0 - nu**2) / (np.pi * modulus * drive.disc.thickness)
