@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
@@ -322,7 +323,7 @@ class DriveShapes:
     inner_race : RingShape
         "inner_race", the same on every crank.
     shaft_pins : tuple of CircleShape
-        "shaft_pin_0", …, full circles, for the option of elastic shaft pins.
+        "shaft_pin_0", …, full circles whose mean displacement stands on the spring; none where they are rigid.
     """
 
     disc: DiscShape
@@ -370,6 +371,6 @@ class DriveShapes:
             inner_race=RingShape(inner_radius=race_bore_radius, outer_radius=drive.crank_bearing.inner_race_radius),
             shaft_pins=tuple(
                 CircleShape(name=f"shaft_pin_{k}", radius=float(radius))
-                for k, radius in enumerate(placement.shaft_pin_radii)
+                for k, radius in enumerate(placement.shaft_pin_radii if shaft_pins_yield(drive) else ())
             ),
         )

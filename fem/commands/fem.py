@@ -38,9 +38,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--plane", choices=("strain", "stress"), default="strain", help="plane strain (default) or plane stress"
     )
     parser.add_argument(
-        "--elastic-shaft-pins", action="store_true", help="shaft pins yield, too (default: rigid circles on springs)"
-    )
-    parser.add_argument(
         "--fine-walls",
         action="store_true",
         help="mesh the disc's walls for the stress along them: within 1 %% of the largest instead of 3.4 %%",
@@ -73,6 +70,10 @@ def execute(arguments: argparse.Namespace) -> int:
 
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
+    if arguments.export or referee:
+        from ltca.drive.plane_strain import require_rigid_shaft_pins
+
+        require_rigid_shaft_pins(drive, "the CalculiX deck")
     name = file.name
     out = arguments.out or default_folder(name, "fem")
     discs = drive.disc.number_of_discs
@@ -116,7 +117,6 @@ def _solve_and_write(
             torque=arguments.torque,
             scale=arguments.size,
             state=arguments.plane,
-            elastic_shaft_pins=arguments.elastic_shaft_pins,
             fine_walls=arguments.fine_walls,
             progress=show,
         )

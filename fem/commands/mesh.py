@@ -130,9 +130,8 @@ def _draw(
     from ltca.geometry.placement import Placement
 
     placement = Placement.of_drive(drive)
-    shaft_pins = [
-        (complex(centre), shape) for centre, shape in zip(placement.shaft_pin_centres, shapes.shaft_pins, strict=True)
-    ]
+    rigid = [] if shapes.shaft_pins else zip(placement.shaft_pin_centres, placement.shaft_pin_radii, strict=True)
+    shaft_pins = [(complex(centre), float(radius)) for centre, radius in rigid]
     problem = draw_drive_mesh(
         path, place_bodies(meshes, placement, contacts), choose_zooms(contacts, placement), shaft_pins, headline
     )

@@ -6,7 +6,6 @@ Modules in the order data passes:
 expected_contacts  Where contacts are to be expected at a crank angle, with which load and half-width: a guess, for
                    grading meshes
 meshes             Meshes of all bodies of a drive, graded for the contacts expected at a crank angle
-shaft_pins         Elastic shaft pins, an option: full circles whose mean displacement stands on the isotropic spring
 model              Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a
                    pose
 condensed          Condensation of all bodies of a drive: zones on the meshes, one factorisation for each distinct

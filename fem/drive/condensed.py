@@ -38,7 +38,6 @@ def condense_drive(
     meshes: DriveMeshes,
     *,
     state: PlaneState = "strain",
-    shaft_pins: tuple[RoundMesh, ...] = (),
     known: tuple[RoundGroup, ...] = (),
 ) -> DriveModel:
     """Assemble, factorise and condense all bodies.
@@ -55,8 +54,6 @@ def condense_drive(
         Meshes graded for them.
     state : {"strain", "stress"}
         Plane strain or plane stress.
-    shaft_pins : tuple of RoundMesh
-        Meshes of elastic shaft pins, from `fem.drive.shaft_pins.mesh_shaft_pins`; rigid circles without them.
     known : tuple of RoundGroup
         Pins and rollers condensed before; those of the same make are taken as they are.
 
@@ -76,7 +73,7 @@ def condense_drive(
     stock = {group.made_of: group for group in known}
     pins = _condense_round(meshes.unturned_pins, contacts.pins, materials.wheel_pin, slab, stock, held="core")
     rollers = _condense_round(meshes.unturned_rollers, outer, materials.roller, slab, stock)
-    elastic = _condense_round(shaft_pins, holes, materials.shaft_pin, slab, stock)
+    elastic = _condense_round(meshes.unturned_shaft_pins, holes, materials.shaft_pin, slab, stock)
     pairs = _PairList(thickness=slab.thickness)
     groups = (*pins.groups, *rollers.groups, *elastic.groups)
     rollers = rollers.counted_from(len(pins.groups))
@@ -105,7 +102,6 @@ def condense_drive(
         pairs=tuple(pairs.found),
         placement=place,
         race_loads=race_loads,
-        shaft_pins=tuple(mesh.placed(shape.name) for mesh, shape in zip(shaft_pins, shapes.shaft_pins, strict=False)),
     )
 
 

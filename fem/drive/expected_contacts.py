@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 
 from fem.contact.hertz import hertz_half_width
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
+from ltca.drive.plane_strain import (
+    hole_modulus,
+    require_fixed_pins,
+    require_frictionless,
+    require_rigid_members,
+    shaft_pins_yield,
+)
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
@@ -329,7 +335,7 @@ def expect_contacts(
     pin_modulus = contact_modulus(materials.disc, materials.wheel_pin)
     outer_modulus = contact_modulus(materials.disc, materials.roller)
     inner_modulus = contact_modulus(materials.inner_race, materials.roller)
-    hole_modulus = 1.0 / materials.disc.plane_strain_compliance  # against a rigid pin
+    at_hole = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
 
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)
     flank_stiffness = np.pi * pin_modulus * thickness / APPROACH_LOGARITHM
@@ -376,6 +382,6 @@ def expect_contacts(
         rollers_inner=group(1, inner_effective, inner_modulus, roller_length, -rays),
         bore_points=placement.bore_centres[placement.roller_cranks] + placement.bore_radius * rays * turn_back,
         race_points=placement.inner_race_radius * rays,
-        holes=group(2, hole_effective, hole_modulus, thickness, hole_direction),
+        holes=group(2, hole_effective, at_hole, thickness, hole_direction),
         hole_points=placement.hole_centres + hole_radius * hole_direction * turn_back,
     )

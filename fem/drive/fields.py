@@ -123,7 +123,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
     centres: tuple[tuple[str, PairKind, tuple[BodyMesh, ...]], ...] = (
         ("pin", "pin", meshes.wheel_pins),
         ("roller", "roller_outer", meshes.rollers),
-        ("shaft_pin", "hole", model.shaft_pins),
+        ("shaft_pin", "hole", meshes.shaft_pins),
     )
     for kind, pair_kind, bodies in centres:
         for index, body in enumerate(bodies):

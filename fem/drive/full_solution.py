@@ -85,5 +85,4 @@ class FullSolution:
     @property
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies and pressure unknowns."""
-        pins = sum(body.unknowns for body in self.model.shaft_pins)
-        return self.model.meshes.unknowns + pins + self.model.unknown_count
+        return self.model.meshes.unknowns + self.model.unknown_count

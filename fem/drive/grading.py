@@ -18,6 +18,7 @@ from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
 from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.plane_strain import hole_modulus, shaft_pins_yield
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
@@ -107,7 +108,6 @@ def grade_contacts(
     *,
     margin: float,
     smallest_share: float,
-    elastic_shaft_pins: bool = False,
     deformed: DeformedContacts | None = None,
 ) -> ExpectedContacts:
     """Return the contacts to grade meshes for.
@@ -122,8 +122,6 @@ def grade_contacts(
         A contact without load whose gap is below this becomes a candidate, mm.
     smallest_share : float
         Candidates get elements for at least this share of the largest load of their kind.
-    elastic_shaft_pins : bool
-        Whether the shaft pins yield, too.
     deformed : DeformedContacts, optional
         Gaps and places of pressure of a solution at this pose: they count, where known and far enough from those of the
         rigid bodies (`SHIFT`).
@@ -161,9 +159,7 @@ def grade_contacts(
     outer_modulus = contact_modulus(materials.disc, materials.roller)
     inner_modulus = contact_modulus(materials.inner_race, materials.roller)
     pins, rollers, holes = loads
-    hole_modulus = 1.0 / materials.disc.plane_strain_compliance
-    if elastic_shaft_pins:
-        hole_modulus = contact_modulus(materials.disc, materials.shaft_pin)
+    at_hole = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
 
     def pin_group(theta: FloatArray) -> ContactGroup:
         effective = profile.effective_radius(theta, place.wheel_pin_radii)
@@ -177,7 +173,7 @@ def grade_contacts(
     )
     hole_points = place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back
     outer = group(rollers, roller_gaps, outer_effective, outer_modulus, rays)
-    on_holes = group(holes, hole_gaps, hole_effective, hole_modulus, gaps.hole_directions)
+    on_holes = group(holes, hole_gaps, hole_effective, at_hole, gaps.hole_directions)
     if deformed is not None:
         shifted = _is_shifted(flank_points, deformed.flank_points, pin_group(theta))
         theta = np.where(

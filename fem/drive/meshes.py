@@ -117,23 +117,25 @@ class DriveMeshes:
     ----------
     disc, inner_race : BodyMesh
         One each: the race serves every crank, fine where any of them presses on it.
-    wheel_pins, rollers : tuple of BodyMesh
-        In the order of their numbers.
-    unturned_pins, unturned_rollers : tuple of RoundMesh
+    wheel_pins, rollers, shaft_pins : tuple of BodyMesh
+        In the order of their numbers; rigid shaft pins have none.
+    unturned_pins, unturned_rollers, unturned_shaft_pins : tuple of RoundMesh
         Of the same bodies: those of one grading share a mesh.
     """
 
     disc: BodyMesh
     wheel_pins: tuple[BodyMesh, ...]
     rollers: tuple[BodyMesh, ...]
+    shaft_pins: tuple[BodyMesh, ...]
     inner_race: BodyMesh
     unturned_pins: tuple[RoundMesh, ...]
     unturned_rollers: tuple[RoundMesh, ...]
+    unturned_shaft_pins: tuple[RoundMesh, ...]
 
     @property
     def bodies(self) -> tuple[BodyMesh, ...]:
-        """All meshes: disc, pins, rollers, race."""
-        return (self.disc, *self.wheel_pins, *self.rollers, self.inner_race)
+        """All meshes: disc, pins, rollers, elastic shaft pins, race."""
+        return (self.disc, *self.wheel_pins, *self.rollers, *self.shaft_pins, self.inner_race)
 
     @property
     def unknowns(self) -> int:
@@ -304,10 +306,13 @@ def mesh_drive(
     pins = _plan_circles(shapes.wheel_pins, (contacts.pins,), scale, order, growth)
     ends = (contacts.rollers_outer, contacts.rollers_inner)
     rollers = _plan_circles(shapes.rollers, ends, scale, order, growth)
+    shaft_pins = _plan_circles(shapes.shaft_pins, (contacts.holes,), scale, order, growth)
     planned: list[tuple[Shape, tuple[Refinement, ...]]] = [(shapes.disc, disc_spots), (shapes.inner_race, race_spots)]
     planned += [
         (shape, grading.refinements)
-        for shape, (_, grading, _) in zip(shapes.wheel_pins + shapes.rollers, pins + rollers, strict=True)
+        for shape, (_, grading, _) in zip(
+            shapes.wheel_pins + shapes.rollers + shapes.shaft_pins, pins + rollers + shaft_pins, strict=True
+        )
     ]
     total = sum(
         estimate_unknowns(shape, spots, coarse_size=coarse_edge(shape, scale), growth=growth, order=order)
@@ -329,17 +334,20 @@ def mesh_drive(
 
     disc_edge, race_edge = coarse_edge(shapes.disc, scale), coarse_edge(shapes.inner_race, scale)
     disc = announce(mesh_disc(shapes.disc, disc_spots, coarse_size=disc_edge, growth=growth, order=order))
-    unturned_pins = tuple(circle(*item) for item in pins)
-    unturned_rollers = tuple(circle(*item) for item in rollers)
+
+    def placed(meshes: tuple[RoundMesh, ...], plan: list[tuple[str, RoundGrading, float]]) -> tuple[BodyMesh, ...]:
+        return tuple(announce(mesh.placed(name)) for mesh, (name, _, _) in zip(meshes, plan, strict=True))
+
+    unturned = [tuple(circle(*item) for item in plan) for plan in (pins, rollers, shaft_pins)]
     return DriveMeshes(
         disc=disc,
-        wheel_pins=tuple(announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_pins, pins, strict=True)),
-        rollers=tuple(
-            announce(mesh.placed(name)) for mesh, (name, _, _) in zip(unturned_rollers, rollers, strict=True)
-        ),
+        wheel_pins=placed(unturned[0], pins),
+        rollers=placed(unturned[1], rollers),
+        shaft_pins=placed(unturned[2], shaft_pins),
         inner_race=announce(
             mesh_ring(shapes.inner_race, race_spots, coarse_size=race_edge, growth=growth, order=order)
         ),
-        unturned_pins=unturned_pins,
-        unturned_rollers=unturned_rollers,
+        unturned_pins=unturned[0],
+        unturned_rollers=unturned[1],
+        unturned_shaft_pins=unturned[2],
     )

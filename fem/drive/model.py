@@ -176,8 +176,6 @@ class DriveModel:
         Nominal places of the parts.
     race_loads : array of int
         Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
-    shaft_pins : tuple of BodyMesh
-        Meshes of elastic shaft pins; empty for rigid ones.
     """
 
     drive: Drive
@@ -191,7 +189,6 @@ class DriveModel:
     pairs: tuple[ContactPair, ...]
     placement: Placement
     race_loads: NDArray[np.intp]
-    shaft_pins: tuple[BodyMesh, ...] = ()
 
     @property
     def unknown_count(self) -> int:

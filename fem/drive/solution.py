@@ -25,7 +25,6 @@ from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts, meas
 from fem.drive.meshes import mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
-from fem.drive.shaft_pins import mesh_shaft_pins
 from fem.errors import MeshError
 from fem.mesh.element_size import DEFAULT_GROWTH
 from fem.shapes import DriveShapes
@@ -66,7 +65,6 @@ class _Task:
     moment: float
     scale: float
     state: PlaneState
-    elastic_shaft_pins: bool
     approach: float
     say: Callable[[str], None]
 
@@ -133,11 +131,8 @@ class _Task:
     ) -> DriveModel:
         known = {group.made_of.grading: group.body for group in rounds}
         meshes = mesh_drive(self.shapes, contacts, scale=scale, growth=growth, fine_walls=fine_walls, known=known)
-        pins = mesh_shaft_pins(self.shapes, contacts, scale) if self.elastic_shaft_pins else ()
         watch.lap("mesh")
-        return condense_drive(
-            self.drive, self.shapes, contacts, meshes, state=self.state, shaft_pins=pins, known=rounds
-        )
+        return condense_drive(self.drive, self.shapes, contacts, meshes, state=self.state, known=rounds)
 
     def grade(
         self,
@@ -155,7 +150,6 @@ class _Task:
             loads,
             margin=margin * self.approach,
             smallest_share=share,
-            elastic_shaft_pins=self.elastic_shaft_pins,
             deformed=deformed,
         )
 
@@ -179,7 +173,6 @@ def solve_drive(
     torque: float | None = None,
     scale: float = 1.0,
     state: PlaneState = "strain",
-    elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
     rounds: tuple[RoundGroup, ...] = (),
@@ -195,7 +188,7 @@ def solve_drive(
         φ_C, rad.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    scale, state, elastic_shaft_pins, fine_walls, start, rounds, progress
+    scale, state, fine_walls, start, rounds, progress
         As for `solve_disc`.
 
     Returns
@@ -225,7 +218,6 @@ def solve_drive(
         drive.wheel_moment(torque),
         scale=scale,
         state=state,
-        elastic_shaft_pins=elastic_shaft_pins,
         fine_walls=fine_walls,
         start=start,
         rounds=rounds,
@@ -241,7 +233,6 @@ def solve_disc(
     *,
     scale: float = 1.0,
     state: PlaneState = "strain",
-    elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     start: tuple[float, float, float, float] | None = None,
     rounds: tuple[RoundGroup, ...] = (),
@@ -261,8 +252,6 @@ def solve_disc(
         Element edge as a multiple of an eighth of each Hertz half-width.
     state : {"strain", "stress"}
         Plane strain or plane stress.
-    elastic_shaft_pins : bool
-        Whether shaft pins yield, too; rigid circles on their springs by default.
     fine_walls : bool
         Whether the walls of the disc are meshed finely enough for the stress along them, whatever the scale.
     start : tuple of four floats, optional
@@ -302,7 +291,6 @@ def solve_disc(
         moment=wheel_moment,
         scale=scale,
         state=state,
-        elastic_shaft_pins=elastic_shaft_pins,
         approach=_largest_approach(drive, guess),
         say=say,
     )
@@ -396,7 +384,6 @@ def solve_moment(
             wheel_moment,
             scale=previous.scale,
             state=previous.plane_state,
-            elastic_shaft_pins=bool(model.shaft_pins),
             fine_walls=previous.fine_walls,
             rounds=previous.rounds,
             progress=progress,

@@ -22,7 +22,6 @@ from fem.pictures.flat_view import (
     snapshot,
 )
 from fem.pictures.offscreen import rendering_problem
-from fem.shapes import CircleShape
 from ltca.figures.house_style import STYLE
 from ltca.geometry.placement import Placement
 from ltca.output.files import whole_file
@@ -90,6 +89,10 @@ def place_bodies(meshes: DriveMeshes, placement: Placement, contacts: ExpectedCo
         for body, place in zip(meshes.rollers, roller_places, strict=True)
     ]
     placed += [
+        PlacedBody(body=body, centre=complex(place), rotation=0.0, kind="shaft_pin")
+        for body, place in zip(meshes.shaft_pins, placement.shaft_pin_centres, strict=False)
+    ]
+    placed += [
         PlacedBody(body=meshes.inner_race, centre=race, rotation=0.0, kind="inner_race") for race in races.tolist()
     ]
     return placed
@@ -104,7 +107,7 @@ def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]
         ("pin {} on the flank", contacts.pins, disc_centre + contacts.flank_points * turn),
         ("roller {} on the bore", contacts.rollers_outer, disc_centre + contacts.bore_points * turn),
         ("roller {} on the race", contacts.rollers_inner, races + contacts.race_points),
-        ("rigid shaft pin {} in its hole", contacts.holes, disc_centre + contacts.hole_points * turn),
+        ("shaft pin {} in its hole", contacts.holes, disc_centre + contacts.hole_points * turn),
     )
     zooms = []
     for title, group, points in kinds:
@@ -129,7 +132,7 @@ def draw_drive_mesh(
     path: str | Path,
     placed: Sequence[PlacedBody],
     zooms: Sequence[Zoom],
-    shaft_pins: Sequence[tuple[complex, CircleShape]],
+    shaft_pins: Sequence[tuple[complex, float]],
     title: str,
 ) -> str:
     """Draw the mesh of a drive, zooms on the right.
@@ -142,8 +145,8 @@ def draw_drive_mesh(
         Bodies in the fixed frame.
     zooms : sequence of Zoom
         Up to four windows.
-    shaft_pins : sequence of (complex, CircleShape)
-        Centres (fixed frame, mm) and shapes of the rigid shaft pins, drawn as outlines.
+    shaft_pins : sequence of (complex, float)
+        Centres (fixed frame) and radii of rigid shaft pins, drawn as outlines, mm.
     title : str
         Headline.
 
@@ -160,7 +163,7 @@ def draw_drive_mesh(
     import matplotlib as mpl
 
     problem = rendering_problem()
-    circles = [centre + shape.radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721)) for centre, shape in shaft_pins]
+    circles = [centre + radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721)) for centre, radius in shaft_pins]
     with mpl.rc_context({**STYLE, "axes.grid": False}), whole_file(Path(path)) as part:
         paint = _painter_with_matplotlib if problem else _painter_with_pyvista
         figure = _compose(placed, zooms[:4], title, paint(placed, circles))

@@ -21,7 +21,6 @@ def solve_positions(
     torque: float | None = None,
     scale: float = 1.0,
     state: PlaneState = "strain",
-    elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> Iterator[ReducerSolution]:
@@ -33,7 +32,7 @@ def solve_positions(
         The drive in one case, of any number of discs, either member held.
     crank_angles : iterable of float
         φ_C, rad.
-    torque, scale, state, elastic_shaft_pins, fine_walls, progress
+    torque, scale, state, fine_walls, progress
         As for `fem.reducer.solution.solve_reducer`.
 
     Yields
@@ -54,7 +53,6 @@ def solve_positions(
             torque=torque,
             scale=scale,
             state=state,
-            elastic_shaft_pins=elastic_shaft_pins,
             fine_walls=fine_walls,
             rounds=rounds,
             progress=progress,

@@ -135,7 +135,6 @@ class _Task:
     torque: float
     scale: float
     state: PlaneState
-    elastic_shaft_pins: bool
     fine_walls: bool
     say: Callable[[str], None]
     seconds: dict[str, float] = field(default_factory=dict)
@@ -148,7 +147,6 @@ class _Task:
                 moment,
                 scale=self.scale,
                 state=self.state,
-                elastic_shaft_pins=self.elastic_shaft_pins,
                 fine_walls=self.fine_walls,
                 rounds=rounds,
                 progress=self.saying(disc),
@@ -191,7 +189,6 @@ def solve_reducer(
     torque: float | None = None,
     scale: float = 1.0,
     state: PlaneState = "strain",
-    elastic_shaft_pins: bool = False,
     fine_walls: bool = False,
     rounds: tuple[RoundGroup, ...] = (),
     progress: Callable[[str], None] | None = None,
@@ -210,8 +207,6 @@ def solve_reducer(
         Element edge as a multiple of an eighth of each Hertz half-width.
     state : {"strain", "stress"}
         Plane strain or plane stress.
-    elastic_shaft_pins : bool
-        Whether shaft pins yield, too; rigid circles on their springs by default.
     fine_walls : bool
         Whether the walls of the discs are meshed finely enough for the stress along them, whatever the scale.
     rounds : tuple of RoundGroup
@@ -246,7 +241,6 @@ def solve_reducer(
         torque=drive.load.torque if torque is None else torque,
         scale=scale,
         state=state,
-        elastic_shaft_pins=elastic_shaft_pins,
         fine_walls=fine_walls,
         say=progress or _silent,
     )

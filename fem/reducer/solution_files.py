@@ -23,6 +23,7 @@ from fem.reducer.verdict import judge_solution
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.verdict_words import check_content
+from ltca.drive.plane_strain import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
@@ -64,9 +65,6 @@ SUMMARY_NAMES = {
     "roller_pressure_mid_inner": "roller_pressure_max_inner",
     "pin_shaft_pressure_mid": "pin_shaft_pressure_max",
 }
-RIGID_SHAFT_PINS = (
-    "shaft pins are rigid: their material is not used, elastic ones of the disc's steel would read 1/√2 of it"
-)
 MULTI_BLOCK = "fem.vtm"
 
 
@@ -133,7 +131,7 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
         data[name] = (dimensions, array, {"units": unit, "long_name": text})
 
     for name, (attribute, belongs, unit, text) in ARRAYS.items():
-        if name == "pin_shaft_pressure_mid" and not first.model.shaft_pins:
+        if name == "pin_shaft_pressure_mid" and not shaft_pins_yield(solution.drive):
             text = f"{text}; {RIGID_SHAFT_PINS}"
         add(name, [getattr(disc.contacts, attribute) for disc in discs], belongs, unit, text)
     bearings = np.array([disc.bearing_components for disc in discs])
@@ -183,7 +181,7 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
         "held": solution.drive.installation.held,
         "model": f"finite elements, plane {first.plane_state}",
         "plane": first.plane_state,
-        "elastic_shaft_pins": int(bool(first.model.shaft_pins)),
+        "elastic_shaft_pins": int(bool(first.model.meshes.shaft_pins)),
         "size": first.scale,
         "unknowns": solution.unknowns,
     }

@@ -40,6 +40,7 @@ from fem.drive.model import ContactPair, DriveModel
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.mesh.mesh_file import element_nodes
 from ltca.drive.parts import Material
+from ltca.drive.plane_strain import require_rigid_shaft_pins
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
 
@@ -175,12 +176,13 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
     Raises
     ------
     CycloError
-        For plane stress and for elastic shaft pins, which the deck does not have; when the file cannot be written.
+        For plane stress, which the deck does not have; when the file cannot be written.
+    DriveError
+        For elastic shaft pins, which it does not have either.
     """
     if solution.plane_state != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
-    if solution.model.shaft_pins:
-        raise CycloError("the CalculiX deck has rigid shaft pins; solve without --elastic-shaft-pins")
+    require_rigid_shaft_pins(solution.model.drive, "the CalculiX deck")
     model = solution.model
     deck = _Deck()
     deck.lines += [

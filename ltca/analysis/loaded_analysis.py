@@ -22,6 +22,7 @@ from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
+from ltca.drive.plane_strain import hole_words
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
 from ltca.drive.units.table import range_of
@@ -209,6 +210,11 @@ class LoadedAnalysis:
     def transmission_error_light(self) -> FloatArray:
         """The same at the light torque, rad."""
         return np.asarray(self.drive.output_per_wheel_angle * self.light.pose[:, WHEEL_ANGLE])
+
+    @property
+    def hole_words(self) -> str:
+        """What to say beside the pressures of shaft pins and holes; nothing where the pins yield."""
+        return hole_words(self.drive, rigid_shaft_pins=self.pressures.rigid_shaft_pins)
 
     @property
     def warnings(self) -> list[str]:

@@ -29,10 +29,6 @@ from ltca.reading.writing import drive_text
 
 FloatArray = NDArray[np.float64]
 
-RIGID_SHAFT_PINS = (
-    "the shaft pin is rigid on its spring: its material is not used, an elastic one of the disc's own would read 1/√2 "
-    "of it"
-)
 # What a quantity belongs to, and the dimensions behind `case` that follow from it.
 DIMENSIONS = {
     "drive": ("position",),
@@ -407,10 +403,17 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
         ("pin_shaft_pressure_max", first.pressures.holes),
     ):
         dataset[name].attrs["end_cell_mm"] = pressures.end_cell
-    if first.pressures.rigid_shaft_pins:
+    if told := _of_cases({name: analysis.hole_words for name, analysis in analyses.items()}):
         for name in ("pin_shaft_pressure_mid", "pin_shaft_pressure_max"):
-            dataset[name].attrs["comment"] = RIGID_SHAFT_PINS
+            dataset[name].attrs["comment"] = told
     return dataset
+
+
+def _of_cases(words: Mapping[str, str]) -> str:
+    """Return what is told of all cases alike once, else case by case."""
+    if len({*words.values()}) == 1:
+        return next(iter(words.values()))
+    return "; ".join(f"{name}: {told}" for name, told in words.items() if told)
 
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:

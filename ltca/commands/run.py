@@ -219,8 +219,6 @@ def _solve_and_write(
     proportions = _proportions(analyses)
     print(_verdicts(checks, proportions, len(analyses) > 1))
     print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
-    if any(one.pressures.rigid_shaft_pins and one.drive.pin_shaft is not None for one in analyses.values()):
-        print(RIGID_SHAFT_PINS)
     print("\n".join(sampling))
     if wanted.page:
         from ltca.page.run_page import PAGE, Run, run_page
@@ -351,12 +349,6 @@ HEAD = 44
 """Width of the names of the rows."""
 
 
-RIGID_SHAFT_PINS = (
-    "pin-shaft pressures: shaft pins are rigid here, their material is not used; of elastic ones see "
-    "--no-hole-near-field"
-)
-
-
 def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str], yields: bool) -> str:
     from ltca.analysis.summary import refined_value
     from ltca.analysis.summary_rows import rows_of, with_residual_part
@@ -387,6 +379,7 @@ def _sampling(
     many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
+    lines += sorted({analysis.hole_words for analysis in analyses.values()} - {""})
     warnings = {
         warning
         for analysis in analyses.values()

@@ -44,6 +44,7 @@ from ltca.compliance.rollers import RollerState
 from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
 from ltca.geometry.pairs import ContactGeometry
@@ -118,7 +119,7 @@ class CoupledCompliance:
         near_field : {"plane-strain", "half-space"}
             Plane strain, or half-spaces of finite length with the profiles of rollers and pins.
         hole_near_field : bool
-            Whether the hole wall yields like a Hertz contact with a rigid pin.
+            Whether holes and shaft pins yield like a Hertz contact; else the springs of the pins stand for all.
 
         Raises
         ------
@@ -134,11 +135,14 @@ class CoupledCompliance:
             )
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         place = geometry.placement
-        laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field)
+        yields = hole_near_field and shaft_pins_yield(drive)
+        laws = NearFieldLaws.of_drive(drive, near_field, rigid_shaft_pins=hole_near_field and not yields)
         body = coefficients.placed_in(drive).with_roller_length(drive.crank_bearing.roller_length)
         stiffness = shaft_pin_stiffness(drive)
         at_hole = laws.hole if hole_near_field else SpringLaw(stiffness=stiffness)
-        own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum)
+        # A sleeve's own law has all that it yields (`ltca.laws.backed`).
+        bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
+        own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
         race = body.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             geometry=geometry,

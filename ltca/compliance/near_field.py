@@ -21,7 +21,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.contact.hertz import effective_radius, line_half_width
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, Material, contact_modulus
-from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.plane_strain import hole_modulus, require_plane_strain
 from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import Placement
@@ -74,7 +74,7 @@ class NearFieldLaws:
         kind : {"plane-strain", "half-space"}
             Plane strain with a datum, or half-spaces with the lengths and profiles of rollers and pins.
         rigid_shaft_pins : bool
-            Whether shaft pins are rigid.
+            Whether nothing yields at the holes but their walls.
 
         Raises
         ------
@@ -84,10 +84,7 @@ class NearFieldLaws:
         if kind not in get_args(NearField):
             raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
         parts, thickness = drive.materials, drive.disc.thickness
-        wall = 1.0 / parts.disc.plane_strain_compliance
-        # A sleeve yields: only a bare pin is rigid where its own spring follows.
-        rigid_shaft_pins = rigid_shaft_pins and (drive.pin_shaft is None or drive.pin_shaft.seat.kind == "fixed")
-        at_hole = wall if rigid_shaft_pins else contact_modulus(parts.disc, drive.hole_pin)
+        at_hole = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins)
         # Only its logarithm enters, and cancels where the body part is in plane strain, too.
         datum = max(thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
         if kind == "half-space":
@@ -153,6 +150,8 @@ class OwnParts:
         coefficients: InfluenceCoefficients,
         near_field: NearField,
         datum: float,
+        *,
+        elastic_shaft_pins: bool = False,
     ) -> OwnParts:
         """Return the diagonal parts.
 
@@ -168,6 +167,8 @@ class OwnParts:
             What the laws of the contacts hold.
         datum : float
             D, where a near field in plane strain hands over, mm.
+        elastic_shaft_pins : bool
+            Whether bare shaft pins yield where the near field of the holes is.
 
         Notes
         -----
@@ -210,11 +211,16 @@ class OwnParts:
         shaft = drive.pin_shaft
         in_hole = (
             1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
-            1.0 / parts.disc.plane_strain_compliance,
+            hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
         )
         sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
         disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
         whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
+        hole = remove(disc, parts.disc, *in_hole, thickness)
+        if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
+            own = logarithm_factor(parts.shaft_pin, thickness, c.plane)
+            hole += own * carried_cylinder(shaft.pin_radius, parts.shaft_pin.poisson_ratio, c.plane)
+            hole += remove(own, parts.shaft_pin, *in_hole, thickness)
         return cls(
             pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
             outer=remove(disc, parts.disc, *in_bore, thickness)
@@ -223,8 +229,44 @@ class OwnParts:
             inner=remove(race, parts.inner_race, *on_race, thickness)
             + float(c.roller[0, 0])
             + remove(roller, parts.roller, *on_race, length),
-            hole=remove(disc, parts.disc, *in_hole, thickness),
+            hole=hole,
         )
+
+
+def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
+    r"""Return what a cylinder carried by its whole cross-section yields at a contact, beyond the half-plane's logarithm.
+
+    A shaft pin is carried from its ends: each slice by shear over its area, here evenly, and it moves on the spring or beam by
+    the mean over that area. Kolosov's potentials with the particular solution of the even body force,
+    :math:`2\mu(u + iv) \propto z \bar z`, whose mean the other terms undo, give the mean approach of a semi-elliptic patch
+
+    .. math:: A = \kappa_l \left( \ln\frac{2R}{b} + \frac14 - \frac{\kappa + 2}{2(\kappa + 1)} \right), \qquad
+              \kappa_l = \frac{2(1 - \nu^2)}{\pi E t},
+
+    to (b/R)²; :math:`\kappa = 3 - 4\nu` in plane strain, (3 − ν)/(1 + ν) in plane stress (without ν in κ_l).
+
+    Parameters
+    ----------
+    radius : float
+        R, mm.
+    poisson_ratio : float
+        ν.
+    plane : {"strain", "stress"}
+        Plane strain or plane stress.
+
+    Returns
+    -------
+    float
+        A/κ_l + ln(b/2) − 1/4: what is left when the logarithm of a patch on itself is taken off, in mm under the logarithm.
+
+    Examples
+    --------
+    >>> round(carried_cylinder(1.0, 0.3), 6)
+    -0.678571
+    """
+    nu = poisson_ratio
+    kolosov = 3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu)
+    return float(np.log(radius) - 0.5 * (kolosov + 2.0) / (kolosov + 1.0))
 
 
 def finite_length_approach(length: float, half_width: float) -> float:

@@ -5,8 +5,9 @@ disc, Hertz's as long as its half-width is small against the pin. Who yields the
 
 - The pin on a spring alone (half-space models, and the others without the near field of the hole): the spring says
   nothing of the contact, so the pressure is that of the real materials, E* of disc and shaft pin.
-- A rigid pin against the yielding wall (``fe`` and ``hybrid``, as in full FE): E* of the disc alone. For a pin of the
-  disc's material that is √2 of the other at the same load, on the safe side.
+- The pin that yields at its contact, ``pin_shaft.elastic_contact`` (``fe`` and ``hybrid``, as in full FE): E* of both.
+- A rigid pin against the yielding wall, where that field is false: E* of the disc alone. For a pin of the disc's
+  material that is √2 of the other at the same load, on the safe side.
 """
 
 from __future__ import annotations

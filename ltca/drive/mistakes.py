@@ -87,6 +87,8 @@ def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[st
             choices = [name.strip("' ") for name in expected.replace(" or ", ",").split(",")]
             meant = did_you_mean(detail["input"], choices) if isinstance(detail["input"], str) else ""
             return f"{path} = {shortened(detail['input'])}: must be {expected}{meant}"
+        case "bool_type":
+            return f"{path} = {shortened(detail['input'])}: must be true or false"
         case "int_type" | "int_parsing" | "int_from_float" | "int_parsing_size":
             return f"{path} = {shortened(detail['input'])}: must be a whole number"
     message = str(detail["msg"]).replace("Input should be", "must be")

@@ -6,11 +6,21 @@ from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
-from ltca.drive.parts import Drive, LengthProfile
+from ltca.drive.parts import Drive, LengthProfile, contact_modulus
 from ltca.errors import DriveError
 
 ROUNDING = 1e-9
 """Lengths that differ by less than this part of the thickness are one length."""
+RIGID_SHAFT_PINS = (
+    "shaft pins are rigid at their holes (pin_shaft.elastic_contact = false), their material is not used; "
+    "elastic ones of the disc's own would read about 1/√2 of it"
+)
+"""What stands beside the pressure of rigid shaft pins."""
+SPRINGS_ALONE = (
+    "pin_shaft.elastic_contact = false: without effect here, where springs stand for all that yields at the holes and "
+    "pressures there are those of elastic pins; it counts with fe, hybrid and full finite elements"
+)
+"""What stands beside the pressure of shaft pins that should be rigid where the model has no contact at the holes."""
 
 
 def require_plane_strain(drive: Drive, model: str) -> None:
@@ -85,6 +95,45 @@ def pins_are_fixed(drive: Drive) -> bool:
     """Tell whether no pin lies loose, carries a sleeve or bends."""
     parts = (drive.pin_wheel, drive.pin_shaft)
     return all(part is None or (part.seat.kind == "fixed" and part.beam is None) for part in parts)
+
+
+def shaft_pins_yield(drive: Drive) -> bool:
+    """Tell whether what the holes touch yields there, with ``fe``, ``hybrid`` and full finite elements: sleeves always do."""
+    shaft = drive.pin_shaft
+    return shaft is None or shaft.elastic_contact or shaft.seat.kind == "sleeve"
+
+
+def require_rigid_shaft_pins(drive: Drive, model: str) -> None:
+    """Refuse shaft pins that yield at their holes.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    model : str
+        What it is refused by, for the message.
+
+    Raises
+    ------
+    DriveError
+        With the field.
+    """
+    if drive.pin_shaft is not None and shaft_pins_yield(drive):
+        told = f"must be false for {model}, whose shaft pins are rigid circles on springs"
+        raise DriveError([f"pin_shaft.elastic_contact = true (the default): {told}"])
+
+
+def hole_words(drive: Drive, *, rigid_shaft_pins: bool) -> str:
+    """Return what to say beside the pressures at the holes of a model; nothing where shaft pins yield as they should."""
+    if drive.pin_shaft is None or drive.pin_shaft.elastic_contact:
+        return ""
+    return RIGID_SHAFT_PINS if rigid_shaft_pins else SPRINGS_ALONE
+
+
+def hole_modulus(drive: Drive, *, rigid_shaft_pins: bool) -> float:
+    """Return E* of the walls of the holes and what touches them, MPa: of the disc alone where shaft pins are rigid."""
+    disc = drive.materials.disc
+    return 1.0 / disc.plane_strain_compliance if rigid_shaft_pins else contact_modulus(disc, drive.hole_pin)
 
 
 def require_fixed_pins(drive: Drive, model: str) -> None:

@@ -48,6 +48,8 @@ def _literal(value: Any) -> str:
         given = {item.name: getattr(value, item.name) for item in fields(value)}
         entries = [f"{name} = {_literal(own)}" for name, own in given.items() if own is not None and own != ()]
         return "{ " + ", ".join(entries) + " }" if entries else "{}"
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, str):
         escaped = value.replace("\\", "\\\\").replace('"', '\\"')
         return f'"{escaped}"'

@@ -231,10 +231,11 @@ def _factor(path: str, entry: Any, reader: _Reader) -> SweepFactor | None:
 
     def number(value: Any) -> Any:
         if not kind.unit:
-            # Counts and names: a range has numbers at its ends, the field itself says what it takes.
-            if isinstance(value, bool) or not isinstance(value, int | str):
+            # Counts, names, true and false: a range has numbers at its ends, the field itself says what it takes.
+            if not isinstance(value, int | str):
                 raise DriveError(
-                    [f"factors.{path} = {shortened(value)}: must be a whole number or a name"], reader.source
+                    [f"factors.{path} = {shortened(value)}: must be a whole number, a name, true or false"],
+                    reader.source,
                 )
             return value if isinstance(value, str) or abs(value) < 10**9 else 10**9
         return TypeAdapter(Annotated[float, quantity(kind.unit)]).validate_python(value)

@@ -107,21 +107,21 @@ _OF_LIFE = dict.fromkeys(
     "duty and lubricant concern lives of bearings alone, and here none is told",
 )
 _EVERYWHERE = _NAME | _OF_LIFE
-_RIGID_PIN = {
-    f"materials.shaft_pin.{name}": "the shaft pin is rigid on its spring where the hole's wall yields by itself"
-    for name in ("youngs_modulus", "poisson_ratio")
+_SPRINGS = _EVERYWHERE | {
+    "pin_shaft.elastic_contact": "half-spaces have springs in the holes, which stand for all that yields there; said where false"
 }
+_SHAFT_PIN = ("materials.shaft_pin.youngs_modulus", "materials.shaft_pin.poisson_ratio", "pin_shaft.elastic_contact")
 EXCEPTIONS: Mapping[str, Mapping[str, str]] = {
-    "tables": _EVERYWHERE,
-    "direct": _EVERYWHERE | {"load.light_torque": "direct is walked at full load alone"},
-    "paper": _EVERYWHERE | {"load.light_torque": "the paper's iteration is walked at full load alone"},
-    "hybrid": _EVERYWHERE | _RIGID_PIN,
-    "fe": _EVERYWHERE | _RIGID_PIN,
+    "tables": _SPRINGS,
+    "direct": _SPRINGS | {"load.light_torque": "direct is walked at full load alone"},
+    "paper": _SPRINGS | {"load.light_torque": "the paper's iteration is walked at full load alone"},
+    "hybrid": _EVERYWHERE,
+    "fe": _EVERYWHERE,
     "curves": _NAME
     | {"load.light_torque": "curves are those of full load"}
-    | dict.fromkeys(_RIGID_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
-    "studies": _EVERYWHERE,
-    "full FE": _EVERYWHERE | _RIGID_PIN | {"load.light_torque": "a full solution is one of full load"},
+    | dict.fromkeys(_SHAFT_PIN, "curves tell no pressure of the holes, and in half-spaces nothing else sees it"),
+    "studies": _SPRINGS,
+    "full FE": _EVERYWHERE | {"load.light_torque": "a full solution is one of full load"},
 }
 """Fields that may leave the answer of a model alone, each with its reason."""
 
@@ -164,6 +164,8 @@ def sensible_change(drive: Drive, path: str) -> Any:
         return f"{value} too"
     if path in _OTHER_WORD:
         return _OTHER_WORD[path][value]
+    if isinstance(value, bool):
+        return not value
     if path in _COUNTS:
         return value + _COUNTS[path]
     if kind.is_array:

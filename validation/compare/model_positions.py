@@ -12,6 +12,7 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
@@ -73,7 +74,7 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
     full, response, pressures = analysis.full, analysis.full.response, analysis.pressures
     direction = disc.geometry.placement.eccentric_direction(full.crank_angle)
     displacement = disc_displacement(full.pose) * direction.conjugate()
-    hole_pressure, hole_width = _hole_contacts(pressures)
+    hole_pressure, hole_width = _hole_contacts(analysis.drive, pressures)
     columns: dict[Kind, tuple[FloatArray, FloatArray, FloatArray]] = {
         "pin": (response.pin_load, pressures.pins.mid, pressures.pins.half_width),
         "roller_outer": (response.rollers.outer_load, pressures.outer.mid, pressures.outer.half_width),
@@ -97,9 +98,9 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
     ]
 
 
-def _hole_contacts(pressures: ContactPressures) -> tuple[FloatArray, FloatArray]:
-    """Return pressures and half-widths of rigid shaft pins, as full FE has them; no numbers where the pins are elastic."""
+def _hole_contacts(drive: Drive, pressures: ContactPressures) -> tuple[FloatArray, FloatArray]:
+    """Return pressures and half-widths at the holes; no numbers where the pins of full FE yield and the model's do not, or so."""
     holes = pressures.holes
-    if not pressures.rigid_shaft_pins:
+    if pressures.rigid_shaft_pins == shaft_pins_yield(drive):
         return np.full(holes.mid.shape, np.nan), np.full(holes.mid.shape, np.nan)
     return holes.mid, holes.half_width

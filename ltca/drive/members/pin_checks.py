@@ -33,6 +33,8 @@ def find_pin_problems(drive: Drive) -> Iterator[str]:
         if shaft.beam is not None:
             yield from _beam(drive, shaft, shaft.beam, "pin_shaft")
         yield from _one_compliance(shaft)
+        if not shaft.elastic_contact and shaft.seat.kind == "sleeve":
+            yield 'pin_shaft.elastic_contact = false: must be true with sleeves (pin_shaft.seat.kind = "sleeve"), which yield'
     kinds = {wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
     if "slot" not in kinds and drive.materials.wheel_seat != Material() and not _expands(drive, "wheel_seat"):
         yield (

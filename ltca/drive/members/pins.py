@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, AxisOffset, PlacementErrors, PositiveLength
@@ -160,6 +160,9 @@ class PinShaft:
         Nominal radius r_PSH of the holes in the disc (without clearance), mm.
     stiffness : float or None
         Stiffness k_PS of one pin for the full thickness of one disc, N/mm; left out where the pins are beams.
+    elastic_contact : bool
+        Whether pins yield where they touch their holes, in series with ``pin_shaft.stiffness`` or ``pin_shaft.beam``; rigid
+        there when false. Without effect on half-spaces, whose springs stand for all that yields.
     pin_errors : PlacementErrors
         Errors of the shaft pins.
     seat : ShaftPinSeat
@@ -173,6 +176,7 @@ class PinShaft:
     pin_radius: PositiveLength
     hole_radius: PositiveLength
     stiffness: Stiffness | None = None
+    elastic_contact: StrictBool = True
     pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
     seat: ShaftPinSeat = field(default_factory=ShaftPinSeat)
     beam: ShaftPinBeam | None = None

@@ -14,6 +14,7 @@ from inspect import getdoc
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
+from pydantic import StrictBool
 from pydantic.fields import FieldInfo
 from pydantic.functional_validators import BeforeValidator
 
@@ -250,6 +251,8 @@ def _values(hint: Any) -> tuple[str, str, str]:
     """Kind, unit and bounds of a type."""
     if get_origin(hint) is Literal:
         return "choice", "", ", ".join(f'"{word}"' for word in get_args(hint))
+    if hint == StrictBool:
+        return "choice", "", "true, false"
     if hint == Name:
         return "text", "", "what can name a file"
     kind, unit, bounds = "text", "", []
@@ -278,6 +281,8 @@ def _shown(default: Any) -> str:
         return REQUIRED
     if default is None or default == ():
         return LEFT_OUT
+    if isinstance(default, bool):
+        return "true" if default else "false"
     return f'"{default}"' if isinstance(default, str) else f"{default:g}"
 
 

@@ -10,6 +10,7 @@ from fem.drive.solution import solve_disc
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
+from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.testing.practical_drives import practical_drive
 
@@ -63,7 +64,8 @@ def test_candidates_and_their_half_widths(drive):
     off = np.abs(graded.bore_points - guess.bore_points)
     assert off.max() < 1.3 * abs(pose[0])
     np.testing.assert_allclose(np.abs(graded.bore_points), drive.bore_radius, rtol=1e-12)
-    soft = grade_contacts(drive, 0.7, *pose, loads, margin=0.0, smallest_share=0.05, elastic_shaft_pins=True)
+    yielding = with_fields(drive, {"pin_shaft.elastic_contact": True})
+    soft = grade_contacts(yielding, 0.7, *pose, loads, margin=0.0, smallest_share=0.05)
     on = guess.holes.load > 0.0
     np.testing.assert_allclose(soft.holes.half_width[on] / graded.holes.half_width[on], np.sqrt(2.0), rtol=1e-12)
 

@@ -10,8 +10,10 @@ import pytest
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
+from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.laws.series import approach_at_load
 from ltca.reading.changes import with_fields
 
 ANGLES = np.array([0.5, 2.0])
@@ -97,6 +99,66 @@ def test_holes_of_plane_strain_press_rigid_pins(drive, closed_form):
     assert not elastic.pressures.rigid_shaft_pins
     peak, _ = hertz(drive, elastic.full.response.hole_load, 2.0 * compliance(STEEL))
     np.testing.assert_allclose(elastic.pressures.holes.mid, peak, rtol=1e-8)
+
+
+ELASTIC = {"pin_shaft.elastic_contact": True}
+
+
+@pytest.mark.parametrize("pins", [STEEL, ALUMINIUM])
+def test_elastic_shaft_pins_press_their_holes_like_hertz(pins, drive, closed_form):
+    """Both moduli in plane strain, to the last digit; the pins give way, so the wheel turns further than on rigid ones."""
+    made_of = {"materials.shaft_pin.youngs_modulus": pins[0], "materials.shaft_pin.poisson_ratio": pins[1]}
+    coefficients, own = closed_form(drive), with_fields(drive, ELASTIC | made_of)
+    found = analyse(own, ANGLES, engine=PlaneStrain(coefficients=coefficients))
+    peak, width = hertz(own, found.full.response.hole_load, compliance(STEEL) + compliance(pins))
+    assert not found.pressures.rigid_shaft_pins
+    np.testing.assert_allclose(found.pressures.holes.mid, peak, rtol=1e-8)
+    np.testing.assert_allclose(found.pressures.holes.half_width, width, rtol=1e-8)
+    rigid = analyse(drive, ANGLES, engine=PlaneStrain(coefficients=coefficients))
+    assert np.all(np.abs(found.transmission_error) > np.abs(rigid.transmission_error))
+
+
+@pytest.mark.parametrize("engine", [PlaneStrain, Hybrid])
+def test_shaft_pins_that_do_not_yield_are_rigid(engine, drive, closed_form):
+    """A million times the modulus of steel: poses, loads and pressures of rigid pins."""
+    stiff, coefficients = (
+        with_fields(drive, ELASTIC | {"materials.shaft_pin.youngs_modulus": 2e11}, check=False),
+        closed_form(drive),
+    )
+    found, rigid = (analyse(own, ANGLES, engine=engine(coefficients=coefficients)) for own in (stiff, drive))
+    # What is left of the pins' own part is a millionth of it.
+    np.testing.assert_allclose(found.full.pose, rigid.full.pose, rtol=1e-5, atol=1e-10)
+    np.testing.assert_allclose(found.full.response.hole_load, rigid.full.response.hole_load, atol=0.1)
+    np.testing.assert_allclose(found.pressures.holes.mid, rigid.pressures.holes.mid, atol=0.01)
+
+
+def test_a_shaft_pin_yields_as_one_approach_at_one_load(drive, closed_form):
+    """At the loads found, an elastic pin's approach is more than a rigid one's by the closed form of the whole contact."""
+    coefficients, own = closed_form(drive), with_fields(drive, ELASTIC)
+    rigid, soft = (CoupledCompliance.of_drive(one, coefficients, "plane-strain") for one in (drive, own))
+    load, radius = np.array([[2000.0]]), float(soft.hole_radius[0])
+    nu, modulus = STEEL[1], STEEL[0]
+    share = 2.0 * (1.0 - nu**2) / (np.pi * modulus * drive.disc.thickness)
+    yielding = [
+        float(approach_at_load(model.near_field.hole, load, radius)[0][0, 0]) + model.own.hole * 2000.0
+        for model in (rigid, soft)
+    ]
+    line, gap = 2000.0 / drive.disc.thickness, compliance(STEEL)
+    both, alone = (np.sqrt(4.0 * line * radius * total / np.pi) for total in (2.0 * gap, gap))
+    # Wall: its logarithm under the wider contact, separation b²/8ρ = a quarter of the bracket; pin: the closed form.
+    kolosov = 3.0 - 4.0 * nu
+    pin = np.log(2.0 * drive.pin_shaft.pin_radius / both) + 0.25 - 0.5 * (kolosov + 2.0) / (kolosov + 1.0)
+    wall = np.log(alone / both)
+    assert yielding[1] - yielding[0] == pytest.approx(share * 2000.0 * (pin + 0.25 + wall), rel=1e-9)
+
+
+def test_half_spaces_know_no_contact_at_the_holes(drive):
+    """Springs stand for all that yields: the field changes no digit, and its false is said beside the pressures."""
+    soft, rigid = (analyse(own, ANGLES) for own in (with_fields(drive, ELASTIC), drive))
+    np.testing.assert_array_equal(soft.full.pose, rigid.full.pose)
+    np.testing.assert_array_equal(soft.pressures.holes.mid, rigid.pressures.holes.mid)
+    assert soft.hole_words == ""
+    assert "pin_shaft.elastic_contact = false: without effect" in rigid.hole_words
 
 
 def test_plane_strain_has_no_ends(drive, closed_form):

@@ -1,0 +1,145 @@
+"""What choices of the model move that both sides of a comparison share: ``python benchmarks/modelling_choices.py``.
+
+LTCA ``fe`` and full finite elements hold the wheel pins by the same rigid core, the race by the same bore, and are both in plane
+strain; what they differ by is precision. How far such a choice moves the answer is part of accuracy, and is measured here on the
+paper's drive over some positions of a turn:
+
+- the radius of the rigid core of the wheel pins and the fixed bore of the inner race, by ``fe`` on coefficients derived for each,
+- plane stress for plane strain, and shaft pins that yield at their holes, by full finite elements.
+
+Meshes are coarse and stated: both sides of a difference have the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.coefficients.dataset import derive_coefficients
+from fem.reducer.series import solve_positions
+from fem.shapes import DriveShapes
+from ltca.analysis.engines import PlaneStrain
+from ltca.analysis.loaded_analysis import analyse
+from ltca.compliance.coefficients import load_coefficients
+from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCSEC
+from ltca.geometry.placement import position_angles
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive
+
+FloatArray = NDArray[np.float64]
+
+CORES = (0.3, 1.0, 3.5)
+"""Radii of the rigid core of the wheel pins beside the default, mm."""
+BORES = (5.0, 15.0)
+"""Radii of the fixed bore of the inner race beside the default, mm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answer:
+    """Loads of all contacts (N), largest pressures of flank and holes (MPa) and wheel angle (″), position by position."""
+
+    load: FloatArray
+    flank: FloatArray
+    hole: FloatArray
+    wheel: FloatArray
+
+
+def by_coefficients(drive: Drive, angles: FloatArray, size: float, stations: float, **chosen: Any) -> Answer:
+    """Return the answer of ``fe`` on coefficients derived for a choice."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "coefficients.nc"
+        derive_coefficients(drive, stations=stations, size=size, **chosen).to_netcdf(path, engine="h5netcdf")
+        found = analyse(drive, angles, engine=PlaneStrain(coefficients=load_coefficients(path, drive)))
+    contacts = found.full.response
+    return Answer(
+        load=np.concatenate((contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load), axis=1),
+        flank=found.pressures.pins.mid.max(axis=1),
+        hole=found.pressures.holes.mid.max(axis=1),
+        wheel=ARCSEC * found.transmission_error,
+    )
+
+
+def by_full_solution(drive: Drive, angles: FloatArray, scale: float, **chosen: Any) -> Answer:
+    """Return the answer of full finite elements."""
+    loads, flank, hole, wheel = [], [], [], []
+    for solution in solve_positions(drive, angles.tolist(), scale=scale, **chosen):
+        (disc,) = solution.discs
+        contacts = disc.contacts
+        loads.append(np.concatenate((contacts.pin_load, contacts.roller_load_outer, contacts.pin_shaft_load)))
+        flank.append(contacts.pin_pressure_max.max())
+        hole.append(contacts.hole_pressure_max.max())
+        wheel.append(ARCSEC * solution.transmission_error)
+    return Answer(load=np.array(loads), flank=np.array(flank), hole=np.array(hole), wheel=np.array(wheel))
+
+
+def row(name: str, base: Answer, other: Answer) -> str:
+    """Return what a choice moves, the farthest over the positions, each with its sign."""
+
+    def farthest(change: FloatArray) -> float:
+        return float(change.flat[np.argmax(np.abs(change))])
+
+    loads = 100.0 * farthest((other.load - base.load) / base.load.max(axis=1, keepdims=True))
+    flank, hole = (
+        100.0 * farthest(new / old - 1.0) for new, old in ((other.flank, base.flank), (other.hole, base.hole))
+    )
+    turned = farthest(np.abs(other.wheel) - np.abs(base.wheel))
+    return f"{name:<44}{loads:>9.2f}{flank:>9.2f}{hole:>9.2f}{turned:>9.2f} of {np.mean(np.abs(base.wheel)):.0f}"
+
+
+def main() -> None:
+    """Print what each choice moves."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--case", default="CS-1", help="case of the paper's drive (default %(default)s)")
+    parser.add_argument("--positions", type=int, default=4, help="over a turn of the crank (default %(default)s)")
+    parser.add_argument(
+        "--size",
+        type=float,
+        default=2.0,
+        help="multiple of the default element edges, on all meshes (default %(default)s)",
+    )
+    parser.add_argument(
+        "--stations", type=float, default=0.5, help="multiple of the default stations (default %(default)s)"
+    )
+    arguments = parser.parse_args()
+    drive, angles = load_drive("paper").cases[arguments.case], position_angles(arguments.positions)
+    shapes = DriveShapes.of_drive(drive)
+    core, bore = shapes.wheel_pins[0].core_radius, shapes.inner_race.inner_radius
+    start, size, stations = time.process_time(), arguments.size, arguments.stations
+    print(
+        f"paper {arguments.case}, {drive.load_words()}, {angles.size} positions; meshes of {size:g} times the default edge,"
+    )
+    print(
+        f"{stations:g} times the default stations; the farthest over the positions, loads of the largest of each position"
+    )
+    print(f"{'':<44}{'load, %':>9}{'flank, %':>9}{'hole, %':>9}{'wheel, ″':>9}", flush=True)
+    base = by_coefficients(drive, angles, size, stations)
+    choices: list[tuple[str, dict[str, float]]] = [
+        *((f"rigid core of the pins {core:g} -> {one:g} mm", {"core_radius": one}) for one in CORES),
+        *((f"bore of the inner race {bore:g} -> {one:g} mm", {"race_bore_radius": one}) for one in BORES),
+    ]
+    for name, chosen in choices:
+        print(row(f"{name} (fe)", base, by_coefficients(drive, angles, size, stations, **chosen)), flush=True)
+    full = by_full_solution(drive, angles, size)
+    print(
+        row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, state="stress")), flush=True
+    )
+    elastic = with_fields(drive, {"pin_shaft.elastic_contact": True})
+    print(row("shaft pins rigid -> elastic (full FE)", full, by_full_solution(elastic, angles, size)), flush=True)
+    print(row("the same (fe)", base, by_coefficients(elastic, angles, size, stations)), flush=True)
+    print(f"{time.process_time() - start:.0f} s of processor time")
+
+
+if __name__ == "__main__":
+    main()
