@@ -28,7 +28,7 @@ from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
 from ltca.equilibrium.friction.turning import TurningFriction
-from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
 from ltca.equilibrium.partial_balance import PartlyBalanced, balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import (
     bearing_forces,
@@ -138,14 +138,19 @@ class LoadedAnalysis:
 
     @property
     def crank_torques(self) -> FloatArray:
-        """External moment that holds each crank, ccw positive, shape (positions, cranks), N·mm.
+        """External moment that holds each crank by virtual work, ccw positive, shape (positions, cranks), N·mm.
 
-        Of a central crank, which is the input, with what seals and oil take.
+        That of the forces alone is smaller by the cage speed times `cage_moments`. Of a central crank, which is the input, with what seals and oil take.
         """
         found = self.losses
         if found is not None and self.drive.crank.number == 1:
             return found.input_torque[:, None]
         return crank_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+
+    @property
+    def cage_moments(self) -> FloatArray:
+        """External moment that holds the roller cages of each crank, ccw positive, shape (positions, cranks), N·mm."""
+        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
 
     @property
     def losses(self) -> Losses | None:

@@ -88,7 +88,17 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "ring_x": ("drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
     "ring_y": ("drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
     "ring_rotation": ("drive", "rad", "rotation of that ring, ccw positive"),
-    "crank_torque": ("crankshaft", "N mm", "external moment that holds the crank, its cages included, ccw positive"),
+    "crank_torque": (
+        "crankshaft",
+        "N mm",
+        "external moment that holds the crank by virtual work, ∂U/∂φ_C: that of the forces on it plus cage_speed times "
+        "cage_moment, and what rubs there; ccw positive",
+    ),
+    "cage_moment": (
+        "crankshaft",
+        "N mm",
+        "external moment that holds the roller cages of the crank, a part of the balance of all forces; ccw positive",
+    ),
     "crank_deflection_radial": ("crank", "mm", "crank at the disc, along its eccentricity; torsion and tilt left out"),
     "crank_deflection_tangential": ("crank", "mm", "crank at the disc, 90° ahead of its eccentricity"),
     "wheel_x": ("drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
@@ -137,6 +147,7 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
         "crank_torque": analysis.crank_torques.T,
+        "cage_moment": analysis.cage_moments.T,
         **_supports(analysis),
         **rubbed,
         "status": (~analysis.balanced).astype(np.int32),
