@@ -11,6 +11,8 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.half_width_guard import (
     check_half_widths,
+    displacement_warning,
+    pin_deflections,
     separation_warning,
     unborne_warning,
     wide_holes_warning,
@@ -140,7 +142,8 @@ class LoadedAnalysis:
     def crank_torques(self) -> FloatArray:
         """External moment that holds each crank by virtual work, ccw positive, shape (positions, cranks), N·mm.
 
-        That of the forces alone is smaller by the cage speed times `cage_moments`. Of a central crank, which is the input, with what seals and oil take.
+        That of the forces alone is smaller by the cage speed times `cage_moments`. Of a central crank, which is the input,
+        with what seals and oil take.
         """
         found = self.losses
         if found is not None and self.drive.crank.number == 1:
@@ -225,6 +228,7 @@ class LoadedAnalysis:
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
                 "that it is light against"
             )
+        found.append(displacement_warning(self.drive.crank.eccentricity, self._yielding))
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
         if self.back is not None and np.any(lost := np.isnan(self.back.pose[self.balanced, 0])):
             found.append(
@@ -237,6 +241,25 @@ class LoadedAnalysis:
                 told = separation_warning(disc.model, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)
         return [warning for warning in found if warning is not None]
+
+    @property
+    def _yielding(self) -> dict[str, tuple[str, FloatArray]]:
+        """Displacements of what holds the contacts, mm, each with the field that says how it yields."""
+        coordinates, shaft = self.model.coordinates, self.drive.pin_shaft
+        found: dict[str, tuple[str, FloatArray]] = {}
+        bent = [pin_deflections(disc.drive, disc.model, disc.full) for disc in self.discs]
+        for key, name in (("pin_deflection", "wheel"), ("shaft_pin_deflection", "shaft")):
+            if key in bent[0]:
+                field = f"pin_{name}.beam, materials.{name}_pin.youngs_modulus"
+                found[f"{name} pins bend"] = field, np.stack([disc[key] for disc in bent])
+        if shaft is not None and shaft.stiffness is not None:
+            found["shaft pins yield"] = "pin_shaft.stiffness", self.full.response.hole_load / shaft.stiffness
+        if coordinates.cranks:
+            found["cranks yield"] = "crank.support", np.abs(self.crank_deflections)
+        if coordinates.wheel:
+            wheel = self.full.pose[:, coordinates.wheel_place]
+            found["the wheel moves"] = "pin_wheel.support_stiffness", np.hypot(wheel[:, 0], wheel[:, 1])
+        return found
 
     def _lost_play(self) -> str | None:
         """Which plays the warmth has taken."""

@@ -15,15 +15,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.analysis.friction.variables import VARIABLES as FRICTION_VARIABLES, friction_values
+from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.response import ContactPressures, split_shifts
+from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y, disc_displacement
-from ltca.laws.backed import own_flexibility, shaft_pin_beam, shaft_pin_seat, wheel_pin_beam, wheel_pin_seat
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -234,17 +235,7 @@ def seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
             values[f"{name}_seat_load"] = load
             values[f"{name}_seat_arc"] = np.where(load > 0.0, 2.0 * seat.half_angle(load, each), 0.0)
             values[f"{name}_seat_pressure_max"] = np.where(load > 0.0, seat.largest_pressure(load, each), 0.0)
-    geometry = analysis.model.discs[0].geometry
-    moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(analysis.full.pose)
-    for name, beam, load, motion, others in (
-        ("pin_deflection", wheel_pin_beam(drive), contacts.pin_load, contacts.flank, (moved[0], None)),
-        ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_ring)),
-    ):
-        if beam is not None:
-            # The pin yields to its own disc against the direction in which it would be pressed in.
-            own = own_flexibility(drive, beam) * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
-            values[name] = np.abs(sum((part for part in others if part is not None), own))
-    return values
+    return values | pin_deflections(drive, analysis.model, analysis.full)
 
 
 def _wall_values(walls: WallStresses, pressures: ContactPressures) -> dict[str, Any]:
