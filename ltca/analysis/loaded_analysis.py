@@ -25,7 +25,7 @@ from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.single_discs import single_discs
-from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
+from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
@@ -221,12 +221,12 @@ class LoadedAnalysis:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
-        found = [stiffness_warning(self.drive), preload_warning(self.drive), self._lost_play()]
+        found = [*unit_warnings(self.as_written), preload_warning(self.drive), self._lost_play()]
         found.append(strength_warning(self.drive.materials))
         if self.drive.load.light_torque > self.torque:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
-                "that it is light against"
+                "that it is light against: are the two swapped, or is one in N·m?"
             )
         found.append(displacement_warning(self.drive.crank.eccentricity, self._yielding))
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
