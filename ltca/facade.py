@@ -198,7 +198,7 @@ def analyse(
     contacts: str | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
     hole_near_field: bool | None = None,
-    case: str = "nominal",
+    case: str | None = None,
 ) -> AnalysisResult:
     """Analyse a drive over a turn of the crank, or at chosen crank angles.
 
@@ -222,8 +222,8 @@ def analyse(
         Of the bodies, for ``fe`` and ``hybrid``; found in the cache or derived when left out.
     hole_near_field : bool, optional
         Whether hole walls yield like a Hertz contact (``fe`` and ``hybrid``); they do by default.
-    case : str
-        Name of the case in the dataset.
+    case : str, optional
+        Name of the case in the dataset; by default that of the file, which changed drives keep, or ``nominal``.
 
     Returns
     -------
@@ -254,13 +254,14 @@ def analyse(
         if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 1 <= count <= MOST_POSITIONS:
             raise DriveError([f"positions = {count!r}: must be a whole number from 1 to {MOST_POSITIONS}"])
         crank_angle = position_angles(int(count))
+    name = drive.case if case is None else case
     given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
     engine = engine_named(
         compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
     )
     try:
-        return AnalysisResult(case=case, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
+        return AnalysisResult(case=name, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
     except ConvergenceError as error:
         if isinstance(error.partial, LoadedAnalysis):
-            error.partial = AnalysisResult(case=case, loaded=error.partial)
+            error.partial = AnalysisResult(case=name, loaded=error.partial)
         raise

@@ -4,24 +4,32 @@ A cylinder of radius r on a plane, solved with its true boundary (`ltca.testing.
 tables say at b/r = 0.1, 0.6 % at 0.2 and 1.5 % at 0.3; with the true separation, as ``direct`` takes it, these are 0.07, 0.36
 and 0.98 %. A flank whose curvature changes within the contact leaves its parabola at far smaller b/r: there the loads of both
 are compared.
+
+Displacements of pins and supports are small ones, too: what bends or gives way has one stiffness, and bent pins press along the
+normals of straight ones. Where a part yields by a tenth of the eccentricity, the length on which holes lead the disc and flanks
+roll, directions change by a tenth of a radian; from there on it is told.
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ContactPressures, Response
+from ltca.compliance.response import ComplianceModel, ContactPressures, Response, split_shifts
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import pins_are_fixed
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.coordinates import X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.separation import circle_departure
+from ltca.laws.backed import own_flexibility, shaft_pin_beam, wheel_pin_beam
 
 FloatArray = NDArray[np.float64]
 
@@ -35,6 +43,9 @@ LARGE_DEPARTURE = 0.05
 """The same from which it is told where grids cannot say what it does to loads: by the figure above some 1 % of them."""
 DIFFERENCE = 0.01
 """Difference of both by the largest load of their kind from which it is told."""
+SMALL_DISPLACEMENT = 0.1
+"""Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which it is told: directions of
+forces change by about that angle, rad."""
 PIN, OUTER, INNER = "wheel pin", "roller on the bore", "roller on the inner race"
 
 
@@ -222,3 +233,57 @@ def _roller_departure(drive: Drive, pressures: ContactPressures) -> float:
             apart = circle_departure(b, radius) + circle_departure(b, race)
             largest = max(largest, float(apart[0] / (0.5 * b[0] ** 2 * (1.0 / radius + 1.0 / race)) - 1.0))
     return largest
+
+
+def pin_deflections(drive: Drive, model: ComplianceModel, found: Equilibrium) -> dict[str, FloatArray]:
+    """Return how far pins that are beams move at a disc under the forces of all discs, mm, shape (positions, pairs).
+
+    Parameters
+    ----------
+    drive : Drive
+        Of one disc.
+    model : ComplianceModel
+        Of that disc.
+    found : Equilibrium
+        Of that disc.
+
+    Returns
+    -------
+    dict of str to array
+        By name in the dataset; empty where no pins are beams.
+    """
+    contacts, geometry = found.response, model.discs[0].geometry
+    moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(found.pose)
+    values: dict[str, FloatArray] = {}
+    for name, beam, load, motion, others in (
+        ("pin_deflection", wheel_pin_beam(drive), contacts.pin_load, contacts.flank, (moved[0], None)),
+        ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_ring)),
+    ):
+        if beam is not None:
+            # The pin yields to its own disc against the direction in which it would be pressed in.
+            own = own_flexibility(drive, beam) * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
+            values[name] = np.abs(sum((part for part in others if part is not None), own))
+    return values
+
+
+def displacement_warning(eccentricity: float, moved: Mapping[str, tuple[str, FloatArray]]) -> str | None:
+    """Return a warning where displacements are no small ones any more, None elsewhere.
+
+    Parameters
+    ----------
+    eccentricity : float
+        mm.
+    moved : mapping of str to (str, array)
+        What moves by a field: the field that says how it yields, and displacements, mm; not a number where there is no answer.
+    """
+    told = []
+    for name, (field, values) in moved.items():
+        most = float(np.nanmax(values)) if np.any(np.isfinite(values)) else 0.0
+        if most > SMALL_DISPLACEMENT * eccentricity:
+            told.append(f"{name} by {most:.3g} mm, {most / eccentricity:.2g} eccentricities ({field})")
+    if not told:
+        return None
+    return (
+        f"yielding is no small displacement: {'; '.join(told)}; from {SMALL_DISPLACEMENT:g} eccentricities "
+        f"({SMALL_DISPLACEMENT * eccentricity:.3g} mm) on forces turn by a tenth of a radian and more, and the answer is rough"
+    )

@@ -11,6 +11,8 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.half_width_guard import (
     check_half_widths,
+    displacement_warning,
+    pin_deflections,
     separation_warning,
     unborne_warning,
     wide_holes_warning,
@@ -24,12 +26,12 @@ from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.plane_strain import hole_words
 from ltca.drive.single_discs import single_discs
-from ltca.drive.unit_mistakes import names_unit_mistakes, stiffness_warning
+from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.table import range_of
 from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
 from ltca.equilibrium.friction.turning import TurningFriction
-from ltca.equilibrium.output_torque import crank_moments, solve_at_output
+from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
 from ltca.equilibrium.partial_balance import PartlyBalanced, balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import (
     bearing_forces,
@@ -139,14 +141,20 @@ class LoadedAnalysis:
 
     @property
     def crank_torques(self) -> FloatArray:
-        """External moment that holds each crank, ccw positive, shape (positions, cranks), N·mm.
+        """External moment that holds each crank by virtual work, ccw positive, shape (positions, cranks), N·mm.
 
-        Of a central crank, which is the input, with what seals and oil take.
+        That of the forces alone is smaller by the cage speed times `cage_moments`. Of a central crank, which is the input,
+        with what seals and oil take.
         """
         found = self.losses
         if found is not None and self.drive.crank.number == 1:
             return found.input_torque[:, None]
         return crank_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
+
+    @property
+    def cage_moments(self) -> FloatArray:
+        """External moment that holds the roller cages of each crank, ccw positive, shape (positions, cranks), N·mm."""
+        return cage_moments(self.model, self.full.crank_angle, self.full.pose, self.full.response)
 
     @property
     def losses(self) -> Losses | None:
@@ -219,13 +227,14 @@ class LoadedAnalysis:
     @property
     def warnings(self) -> list[str]:
         """What to know of drive and answer before they are used, one sentence each."""
-        found = [stiffness_warning(self.drive), preload_warning(self.drive), self._lost_play()]
+        found = [*unit_warnings(self.as_written), preload_warning(self.drive), self._lost_play()]
         found.append(strength_warning(self.drive.materials))
         if self.drive.load.light_torque > self.torque:
             found.append(
                 f"load.light_torque = {self.drive.load.light_torque:g} N·mm is more than the torque of {self.torque:g} N·mm "
-                "that it is light against"
+                "that it is light against: are the two swapped, or is one in N·m?"
             )
+        found.append(displacement_warning(self.drive.crank.eccentricity, self._yielding))
         found += [wide_holes_warning(self.drive, self.pressures), unborne_warning(self.pressures)]
         if self.back is not None and np.any(lost := np.isnan(self.back.pose[self.balanced, 0])):
             found.append(
@@ -238,6 +247,25 @@ class LoadedAnalysis:
                 told = separation_warning(disc.model, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)
         return [warning for warning in found if warning is not None]
+
+    @property
+    def _yielding(self) -> dict[str, tuple[str, FloatArray]]:
+        """Displacements of what holds the contacts, mm, each with the field that says how it yields."""
+        coordinates, shaft = self.model.coordinates, self.drive.pin_shaft
+        found: dict[str, tuple[str, FloatArray]] = {}
+        bent = [pin_deflections(disc.drive, disc.model, disc.full) for disc in self.discs]
+        for key, name in (("pin_deflection", "wheel"), ("shaft_pin_deflection", "shaft")):
+            if key in bent[0]:
+                field = f"pin_{name}.beam, materials.{name}_pin.youngs_modulus"
+                found[f"{name} pins bend"] = field, np.stack([disc[key] for disc in bent])
+        if shaft is not None and shaft.stiffness is not None:
+            found["shaft pins yield"] = "pin_shaft.stiffness", self.full.response.hole_load / shaft.stiffness
+        if coordinates.cranks:
+            found["cranks yield"] = "crank.support", np.abs(self.crank_deflections)
+        if coordinates.wheel:
+            wheel = self.full.pose[:, coordinates.wheel_place]
+            found["the wheel moves"] = "pin_wheel.support_stiffness", np.hypot(wheel[:, 0], wheel[:, 1])
+        return found
 
     def _lost_play(self) -> str | None:
         """Which plays the warmth has taken."""

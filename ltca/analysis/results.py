@@ -15,15 +15,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.analysis.friction.variables import VARIABLES as FRICTION_VARIABLES, friction_values
+from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.response import ContactPressures, split_shifts
+from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y, disc_displacement
-from ltca.laws.backed import own_flexibility, shaft_pin_beam, shaft_pin_seat, wheel_pin_beam, wheel_pin_seat
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
 from ltca.output.provenance import code_hash, code_version
 from ltca.reading.writing import drive_text
 
@@ -84,7 +85,17 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
     "ring_x": ("drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
     "ring_y": ("drive", "mm", "displacement of the ring that ties the tips of the shaft pins, fixed frame"),
     "ring_rotation": ("drive", "rad", "rotation of that ring, ccw positive"),
-    "crank_torque": ("crankshaft", "N mm", "external moment that holds the crank, its cages included, ccw positive"),
+    "crank_torque": (
+        "crankshaft",
+        "N mm",
+        "external moment that holds the crank by virtual work, ∂U/∂φ_C: that of the forces on it plus cage_speed times "
+        "cage_moment, and what rubs there; ccw positive",
+    ),
+    "cage_moment": (
+        "crankshaft",
+        "N mm",
+        "external moment that holds the roller cages of the crank, a part of the balance of all forces; ccw positive",
+    ),
     "crank_deflection_radial": ("crank", "mm", "crank at the disc, along its eccentricity; torsion and tilt left out"),
     "crank_deflection_tangential": ("crank", "mm", "crank at the disc, 90° ahead of its eccentricity"),
     "wheel_x": ("drive", "mm", "displacement of the wheel on its bearing in the fixed frame"),
@@ -133,6 +144,7 @@ def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
         "equilibrium_residual": full.residual,
         "iterations": full.iterations,
         "crank_torque": analysis.crank_torques.T,
+        "cage_moment": analysis.cage_moments.T,
         **_supports(analysis),
         **rubbed,
         "status": (~analysis.balanced).astype(np.int32),
@@ -219,17 +231,7 @@ def seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
             values[f"{name}_seat_load"] = load
             values[f"{name}_seat_arc"] = np.where(load > 0.0, 2.0 * seat.half_angle(load, each), 0.0)
             values[f"{name}_seat_pressure_max"] = np.where(load > 0.0, seat.largest_pressure(load, each), 0.0)
-    geometry = analysis.model.discs[0].geometry
-    moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(analysis.full.pose)
-    for name, beam, load, motion, others in (
-        ("pin_deflection", wheel_pin_beam(drive), contacts.pin_load, contacts.flank, (moved[0], None)),
-        ("shaft_pin_deflection", shaft_pin_beam(drive), contacts.hole_load, contacts.holes, (moved[1], by_ring)),
-    ):
-        if beam is not None:
-            # The pin yields to its own disc against the direction in which it would be pressed in.
-            own = own_flexibility(drive, beam) * load * (motion.gradient[..., X] + 1j * motion.gradient[..., Y])
-            values[name] = np.abs(sum((part for part in others if part is not None), own))
-    return values
+    return values | pin_deflections(drive, analysis.model, analysis.full)
 
 
 def _wall_values(walls: WallStresses, pressures: ContactPressures) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache, lru_cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_hints
@@ -182,8 +182,11 @@ def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = No
 
 
 def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
+    compared = {item.name for item in fields(owner) if item.compare}
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path = f"{prefix}{name}"
+        if name not in compared:  # the name of a case
+            continue
         if get_origin(hint) in (Union, UnionType):  # what may be left out
             (hint,) = (part for part in get_args(hint) if part is not NoneType)
         if is_dataclass(hint):

@@ -23,6 +23,8 @@ def _given(part: Any) -> dict[str, Any]:
     """Fields of a part that are not at their defaults, by name."""
     given = {}
     for item in fields(part):
+        if not item.compare:  # a name, no part of the definition
+            continue
         value = getattr(part, item.name)
         default = item.default_factory() if item.default_factory is not MISSING else item.default
         if default is MISSING or value != default:

@@ -30,6 +30,8 @@ class Material:
         Largest pressure of a contact that the surface endures, MPa.
     yield_strength : float or None
         Yield strength, of hardened parts that of the core, MPa.
+    bending_fatigue_limit : float or None
+        Amplitude of fully reversed bending that smooth parts endure without end, MPa.
     hardness : float or None
         Hardness of the surface, HV.
     hardness_depth : float or None
@@ -48,6 +50,7 @@ class Material:
     poisson_ratio: Annotated[float, quantity("dimensionless", ge=0.0, lt=0.5)] = 0.3
     allowable_pressure: Annotated[float, quantity("MPa", gt=0.0)] | None = None
     yield_strength: Annotated[float, quantity("MPa", gt=0.0)] | None = None
+    bending_fatigue_limit: Annotated[float, quantity("MPa", gt=0.0)] | None = None
     hardness: Annotated[float, quantity("dimensionless", gt=0.0)] | None = None
     hardness_depth: PositiveLength | None = None
     density: Annotated[float, quantity("kg/m³", gt=0.0)] | None = None
@@ -100,7 +103,7 @@ class Materials:
 
 PARTS = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin", "crankshaft", "wheel_seat", "sleeve")
 """Fields of `Materials`."""
-JUDGED_BY = ("allowable_pressure", "yield_strength", "hardness", "hardness_depth", "density")
+JUDGED_BY = ("allowable_pressure", "yield_strength", "bending_fatigue_limit", "hardness", "hardness_depth", "density")
 """Fields of a material that move no load."""
 MAY_BE_UNKNOWN = (*JUDGED_BY, "thermal_expansion")
 """Fields of a material that may be left out."""

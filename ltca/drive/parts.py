@@ -170,6 +170,8 @@ class Drive:
         What is between rollers and races, for lives alone; unmodified when left out.
     temperature : Temperature or None
         How warm the parts are; lengths of a file are those at 20 °C.
+    case : str
+        Name of the case of a file that the drive is; it names results, and is no part of what is compared or hashed.
     """
 
     name: Name = "drive"
@@ -186,6 +188,7 @@ class Drive:
     duty: tuple[Duty, ...] = ()
     lubricant: Lubricant | None = None
     temperature: Temperature | None = None
+    case: Name = field(default="nominal", compare=False)
 
     @property
     def tooth_number_difference(self) -> int:

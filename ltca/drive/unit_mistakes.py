@@ -1,8 +1,8 @@
 """Likely mistakes of units behind a drive that cannot carry its load: looked for when a solution fails, never before.
 
 A soft drive under a light torque is sound (printed plastics have some 3000 MPa, TPU 30 MPa), so nothing is refused for
-its modulus. Where no balance is found, a modulus as of rubber, a torque that no steel bears or a pin that yields by more
-than its hole is the likelier cause than slipping teeth.
+its modulus, and what no drive has is pointed out, not refused (`unit_warnings`). Where no balance is found, a modulus as of
+rubber, a torque that no steel bears or a pin that yields by more than its hole is the likelier cause than slipping teeth.
 """
 
 from __future__ import annotations
@@ -26,6 +26,10 @@ DIAMOND, STIFF = 1.2e6, 2e6
 """Young's modulus of diamond, and one that nothing has, MPa."""
 METALS = 40e3, 700e3
 """Young's moduli of magnesium and of cemented carbide, MPa."""
+SMALLEST, LARGEST = 1.0, 5000.0
+"""Pin circle radii smaller and larger than those of all drives that are built, mm: micro drives have some 3, the largest 1000."""
+HOTTEST = 200.0
+"""Temperature at which bearing steel softens and plastics are gone, °C; that of a cold room in kelvin is beyond it."""
 BORNE = 10_000.0
 """Pressure that no gear bears: bearing steel yields below 6000 MPa, MPa."""
 
@@ -48,6 +52,8 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
         Output torque, N·mm; the drive's own by default.
     """
     used = drive.load.torque if torque is None else torque
+    if beyond := unit_warnings(drive):
+        return beyond
     modulus = _modulus(drive)
     if modulus:
         return modulus  # what follows from it is no mistake of its own
@@ -195,7 +201,7 @@ def stiffness_warning(drive: Drive) -> str | None:
         if modulus > STIFF:
             return (
                 f"materials.{part}.youngs_modulus = {modulus:g} MPa is stiffer than diamond ({DIAMOND:g} MPa); a plain "
-                "number is MPa, not Pa"
+                f'number is MPa, not Pa: {modulus:g} Pa are written {1e-6 * modulus:g} or "{1e-9 * modulus:g} GPa"'
             )
     stiffest = max(getattr(drive.materials, part).youngs_modulus for part in parts)
     for part in parts:
@@ -206,3 +212,72 @@ def stiffness_warning(drive: Drive) -> str | None:
                 f'is MPa: write "{modulus:g} GPa" for a metal'
             )
     return None
+
+
+def unit_warnings(drive: Drive) -> list[str]:
+    """Return what no drive has and what was probably meant by it, one sentence each.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive, as written.
+    """
+    stiff, size = stiffness_warning(drive), drive.pin_wheel.pin_circle_radius
+    found = [] if stiff is None else [stiff]
+    named = f"pin_wheel.pin_circle_radius = {size:g} mm"
+    if size < SMALLEST:
+        meant = f'lengths in metres are written "{size:g} m" or {1000.0 * size:g}'
+        stiffest = max(getattr(drive.materials, part).youngs_modulus for part in _parts(drive))
+        if stiffest > STIFF:
+            found = []
+            named += f" and youngs_modulus = {stiffest:g} MPa look like a file in SI units (m, Pa, N·m)"
+            meant = (
+                f"plain numbers are mm, MPa and N·mm: {1000.0 * size:g}, {1e-6 * stiffest:g}, torques a thousandfold"
+            )
+        else:
+            named += " is smaller than any drive that is built"
+        found.append(f"{named}; {meant}")
+    elif size > LARGEST:
+        found.append(
+            f"{named} is {0.001 * size:g} m, larger than any drive that is built; a plain number is mm: "
+            f'was {0.001 * size:g} mm meant, "{0.001 * size:g} mm"?'
+        )
+    angles = [("disc.phases", angle) for angle in drive.disc.phases] + [("crank.angle", drive.crank.angle)]
+    angles += [(f"crank.of.{number}.phase_error", one.phase_error) for number, one in enumerate(drive.crank.of)]
+    for path, angle in angles:
+        if abs(angle) > TURN:
+            found.append(
+                f"{path}: {angle:g} rad are {angle / (2.0 * pi):.3g} turns; a plain number is rad, degrees are written "
+                f'"{angle:g} deg"'
+            )
+            break
+    if told := kelvin_words(drive):
+        found.append(told)
+    return found
+
+
+TURN = 2.0 * pi * (1.0 + 1e-6)
+"""Angles of discs and cranks beyond a turn are none, rad; 2π itself may come rounded."""
+
+
+def kelvin_words(drive: Drive) -> str:
+    """Return which temperatures are probably in kelvin; empty where none is.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive, as written.
+    """
+    if drive.temperature is None:
+        return ""
+    hot = {
+        part: value for part in ("housing", "disc", "shaft") if (value := getattr(drive.temperature, part)) > HOTTEST
+    }
+    if not hot:
+        return ""
+    value = next(iter(hot.values()))
+    told = ", ".join(f"temperature.{name} = {each:g} °C" for name, each in hot.items())
+    return (
+        f'{told}: beyond {HOTTEST:g} °C bearing steel softens; a plain number is °C, kelvin are written "{value:g} K" '
+        f"({value - 273.15:g} °C)"
+    )

@@ -4,6 +4,11 @@ With the pin shaft held the output is the wheel, and its moment is the torque. W
 shaft: what holds the wheel then follows from the sum of all moments, :math:`T_W + T_{in} + T_{out} = 0`, with the moment of
 the input at every position: that of a central crank, of the sun of a first stage, or none where the shaft itself turns its
 cranks. Contacts do not care who is held.
+
+The moment of a crank is that of virtual work, with its cages geared to it. The forces on the crank alone have the moment
+:math:`T_C - k M_K` about its axis, with the part k of the crank's angle by which cages turn, and cages are held by the moments
+:math:`M_K` (`cage_moments`): of all forces :math:`T_W + \sum T_C + (1 - k) \sum M_K + T_{PS} = 0` with what holds the pin shaft.
+The output torque of a drive whose wheel is held differs from the forces' by as much.
 """
 
 from __future__ import annotations
@@ -40,11 +45,11 @@ CLOSED = 1e-10
 
 
 def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    r"""Return the external moment that holds each crank, ccw positive, N·mm, shape (positions, cranks).
+    r"""Return the external moment that holds each crank by virtual work, ccw positive, N·mm, shape (positions, cranks).
 
-    It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, and that of its cage, which
-    turns by the part `cage_speed` of the crank's angle: cage and inner race are concentric, so the cage's moment is that of
-    the bearing's force at the displaced centre of the bore. What rubs at the crank comes on top.
+    It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
+    crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they turn.
+    What rubs at the crank comes on top.
 
     Parameters
     ----------
@@ -57,17 +62,33 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
     response : Response
         Contacts there.
     """
-    cranks = model.discs[0].geometry.placement.cranks
-    total, pushes, friction = np.zeros((crank_angle.size, cranks)), [], friction_of(model)
-    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+    cranks, friction = model.discs[0].geometry.placement.cranks, friction_of(model)
+    pushes = [bearing_pushes(part.rollers, cranks) for part in disc_responses(response)]
+    total = model.discs[0].geometry.placement.cage_speed * cage_moments(model, crank_angle, pose, response)
+    for disc, push in zip(model.discs, pushes, strict=True):
         place = disc.geometry.placement
-        push = bearing_pushes(part.rollers, cranks)
         lever = place.race_centres(crank_angle) - place.crank_axes
-        total += (lever.conjugate() * push).imag
-        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
-        total += place.cage_speed * (bores.displacement.conjugate() * push).imag
-        pushes.append(push)
+        total = total + (lever.conjugate() * push).imag
     return total if friction is None else total + friction.of_cranks(pushes)
+
+
+def cage_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+    """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
+
+    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
+    the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
+
+    Parameters
+    ----------
+    model, crank_angle, pose, response : ComplianceModel, array, array, Response
+        As for `crank_moments`.
+    """
+    cranks = model.discs[0].geometry.placement.cranks
+    total = np.zeros((crank_angle.size, cranks))
+    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+        bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
+        total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
+    return total
 
 
 def input_moment(
@@ -85,8 +106,9 @@ def input_moment(
     return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
 
 
-STRENGTHS = (0.25, 0.5, 0.75, 1.0)
-"""Parts of the friction through which positions are followed that do not balance at once."""
+STRENGTH_STEP, LEAST_STRENGTH_STEP = 0.25, 0.01
+"""Part of the friction by which it grows at first where positions do not balance at once, and below which a step that fails is
+taken for the end: a drive that jams is told at which hundredth of its friction it does."""
 
 
 def solve_at_output(
@@ -136,36 +158,52 @@ def solve_at_output(
         return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
     except ConvergenceError as error:
         failure = error
-    found, strengths, loads = smooth, [0.0], [smooth.response.pin_load.sum(axis=1)]
-    for strength in STRENGTHS:
+    found, reached, lost, step, loads = smooth, 0.0, 1.0, STRENGTH_STEP, smooth.response.pin_load.sum(axis=1)
+    while reached < 1.0:
+        strength = min(reached + step, 1.0)
         try:
             part = with_friction(model, friction.scaled(strength))
             found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
         except ConvergenceError:
-            raise _jam(strengths, loads, failure) from None
-        strengths.append(strength)
-        loads.append(found.response.pin_load.sum(axis=1))
+            lost = strength
+            if step <= LEAST_STRENGTH_STEP:
+                raise _jam(drives, reached, lost, loads, found.response.pin_load.sum(axis=1), failure) from None
+            step *= 0.5
+            continue
+        reached = strength
+        if reached >= lost:  # the step was too long, nothing else
+            step = min(2.0 * step, STRENGTH_STEP)
     return found
 
 
-def _jam(strengths: Sequence[float], loads: Sequence[FloatArray], failure: ConvergenceError) -> ConvergenceError:
-    """Return what to say of positions that do not balance with friction: that they jam, where their loads tell so.
+def _jam(
+    drives: Drive | Sequence[Drive],
+    reached: float,
+    lost: float,
+    without: FloatArray,
+    grown: FloatArray,
+    failure: ConvergenceError,
+) -> ConvergenceError:
+    """Return what to say of positions that balance up to a part of their friction: that they jam, and at which coefficients.
 
     Friction goes with the loads. What is left of a unit load's moment falls as friction rises, and the loads grow by its
     inverse; where that comes down to nothing before the whole friction counts no load whatever balances the torque.
     """
-    if len(loads) < 2:
-        return failure
-    (before, last), (less, more) = ((1.0 / np.maximum(load, 1e-300) for load in loads[-2:]), strengths[-2:])
-    ends = more + last * (more - less) / np.where(before > last, before - last, np.nan)
-    if not np.any(ends <= 1.0):
-        return failure
-    row = int(np.nanargmin(ends))
-    return ConvergenceError(
-        f"the drive jams: wheel pins carry {loads[0][row]:.4g} N without friction, {loads[-1][row]:.4g} N at {more:.0%} of its "
-        f"coefficients, and more than any load at some {ends[row]:.0%} (position {row} of {ends.size}); {failure}",
-        failure.history,
+    row = int(np.argmax(grown / np.maximum(without, 1e-300)))
+    each = [drives] if isinstance(drives, Drive) else list(drives)
+    friction = each[row * len(each) // grown.size].friction
+    names = () if friction is None else ("pin", "seat", "hole", "roller", "support_bearing")
+    given = {name: value for name in names if (value := getattr(friction, name))}
+    told = ", ".join(
+        f"friction.{name} = {reached * value:.3g} to {lost * value:.3g} of {value:g}" for name, value in given.items()
     )
+    jammed = ConvergenceError(
+        f"the drive jams between {reached:.1%} and {lost:.1%} of its friction ({told}): wheel pins carry {without[row]:.4g} N "
+        f"without friction, {grown[row]:.4g} N at {reached:.1%} of it (position {row} of {grown.size}), and nothing balances "
+        f"beyond; {failure}"
+    )
+    jammed.history = failure.history
+    return jammed
 
 
 def _solve(

@@ -50,7 +50,8 @@ def drawn_interference(drive: Drive) -> Interference:
     wheel, disc, bearing, shaft = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.pin_shaft
     # Gap of every pin in the nominal position: Δr_P − ΔR_C cos ψ, ψ between 0 and asin(e z_P/R).
     radius = wheel.pin_circle_radius + disc.shifting_offset
-    steepest = sqrt(max(0.0, 1.0 - (drive.crank.eccentricity * drive.reduction_ratio / radius) ** 2))
+    pitch = drive.crank.eccentricity * drive.reduction_ratio  # a flank with loops is refused, and has no such angle
+    steepest = sqrt(1.0 - (pitch / radius) ** 2) if abs(radius) > pitch else 0.0
     return Interference(
         pins=max(disc.shifting_offset, disc.shifting_offset * steepest) - disc.equidistant_offset - wheel.seat_play,
         rollers=bearing.inner_race_radius + 2.0 * bearing.roller_radius - drive.bore_radius,

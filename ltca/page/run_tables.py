@@ -120,6 +120,8 @@ def input_tables(drives: Mapping[str, Drive]) -> list[Table]:
 def _leaves(part: Any, path: str) -> Iterator[tuple[str, Any]]:
     for item in fields(part):
         value, name = getattr(part, item.name), f"{path}.{item.name}" if path else item.name
+        if not item.compare:  # the name of the case, which heads the column
+            continue
         if is_dataclass(value):
             yield from _leaves(value, name)
         elif isinstance(value, tuple) and any(is_dataclass(entry) for entry in value):

@@ -64,7 +64,7 @@ class Cause:
         if self.path in COUNTS:
             return f"{'at least' if least else 'at most'} {self.bound:g}"
         # What fits exactly (races about a roller) is a round number again.
-        for text in (f"{self.bound:.4g}", f"{self.bound * (1.0 + (5e-5 if least else -5e-5)):.4g}"):
+        for text in (f"{self.bound:.4g}", f"{self.bound + (5e-5 if least else -5e-5) * abs(self.bound):.4g}"):
             if float(text) == self.bound or (float(text) > self.bound) == least:
                 break
         return f"{'at least' if least else 'at most'} {text} mm"
@@ -73,7 +73,7 @@ class Cause:
         """Tell whether a like drive is sound with the field at its bound, or a little beyond."""
         if self.path in COUNTS:
             return _sound_with(drive, self.path, self.bound)
-        away = 1.0 if self.bound > self.value else -1.0
+        away = 1.0 if abs(self.bound) > abs(self.value) else -1.0
         return any(_sound_with(drive, self.path, self.bound * exp(away * step)) for step in FARTHER)
 
     def named(self) -> str:
@@ -136,7 +136,7 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
     if not causes:
         return problems, lambda other: False
     large = LARGE_OFFSET * drive.pin_wheel.pin_radius
-    offsets = [cause for cause in causes if cause.path in OFFSETS and cause.bound < cause.value > large]
+    offsets = [cause for cause in causes if cause.path in OFFSETS and abs(cause.bound) < abs(cause.value) > large]
     # A field that is named already and mends everything is said well enough.
     if len(named) == 1 and named <= {cause.path for cause in offsets or causes}:
         (own,) = (cause for cause in causes if cause.path in named)
@@ -169,7 +169,7 @@ def _causes(drive: Drive) -> Iterator[Cause]:
         if not _has(drive, path):
             continue
         value = float(read_field(drive, path))
-        if value <= 0.0:
+        if value == 0.0 or (value < 0.0 and path not in OFFSETS):
             continue
         fitting = _fitting(drive, path)
         if fitting > 0.0 and fitting != value and _sound_with(drive, path, fitting):

@@ -154,7 +154,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
         changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
         if without_files(table)[1]:
             changed.setdefault("disc", table["disc"])
-        drive = _validate({**_parts(base), **changed}, mistakes.setdefault(name, []), measured)
+        drive = _validate({**_parts(base), **changed, "case": name}, mistakes.setdefault(name, []), measured)
         if drive is not None:
             drives[name] = drive
     problems += _once(mistakes, {})
@@ -236,6 +236,8 @@ def _named_cases(cases: Any, problems: list[str]) -> dict[str, dict[str, Any]]:
             problems.append(f"case {number}: name = {shortened(name)}: {NAMING}")
         elif name in named:
             problems.append(f"case {name}: name is used twice; must be unique")
+        elif "case" in case:
+            problems.append(f"case {name}: case: must be left out; `name` is what a case is called")
         else:
             named[name] = {key: value for key, value in case.items() if key != "name"}
     return named

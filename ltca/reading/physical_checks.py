@@ -14,6 +14,7 @@ from ltca.drive.members.pin_checks import find_pin_problems
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, LengthProfile, Material, Temperature
 from ltca.drive.single_discs import single_discs, without_own
+from ltca.drive.unit_mistakes import kelvin_words
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.interference import ROUNDING, drawn_interference, lost_play
@@ -72,7 +73,7 @@ def _find_at_temperatures(drive: Drive) -> list[str]:
     problems = find_contradictions(warm)
     if not problems or drive.temperature is None:
         return problems
-    at = f"temperature: {temperature_words(drive.temperature)}"
+    at = kelvin_words(drive) or f"temperature: {temperature_words(drive.temperature)}"
     if gone := lost_play(cold, warm):
         return [f"{at}: the drive seizes, {'; '.join(gone)}; parts overlap by more than bodies yield elastically"]
     return [f"{at}: {problem}" for problem in problems]

@@ -29,6 +29,8 @@ def _write_table(part: Any, path: str, lines: list[str]) -> None:
         lines.append(f"\n[{path}]")
     for item in fields(part):
         value = getattr(part, item.name)
+        if not item.compare:  # the case is the file's own, not a field of it
+            continue
         if is_dataclass(value):
             inner.append((f"{path}.{item.name}" if path else item.name, value))
         elif value is not None and value != ():

@@ -74,6 +74,7 @@ _LEFT_OUT |= {
     for name, value in {
         "allowable_pressure": 1500.0,
         "yield_strength": 1200.0,
+        "bending_fatigue_limit": 400.0,
         "hardness": 700.0,
         "hardness_depth": 0.8,
         "density": 7850.0,

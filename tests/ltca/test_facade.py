@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,8 @@ from ltca.analysis.engines import engine_named
 from ltca.analysis.results import build_dataset
 from ltca.compliance.coefficients import without_coupling
 from ltca.errors import DriveError
-from ltca.reading.drive_file import load_drive, parse_drive
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
 
 DRIVE = load_drive("paper").cases["CS-3"]
@@ -191,6 +194,31 @@ def test_repr_tells_the_refined_transmission_error():
     told = [float(row.split()[-2]) for row in rows]
     assert told[0] == pytest.approx(told[1], abs=0.02)  # printed to 0.01″, refined to 0.1 %
     assert coarse.summary["ptp_transmission_error_arcsec"] < 0.9 * told[0]
+
+
+def test_cases_keep_their_names_beside_each_other():
+    """Datasets of several cases that were joined read ['nominal', 'nominal']."""
+    cases = ltca.load_drive("paper").cases
+    found = [ltca.analyse(cases[name], 2) for name in ("CS-1", "CS-3")]
+    joined = xr.concat([one.dataset for one in found], "case")
+    assert joined["case"].values.tolist() == ["CS-1", "CS-3"]
+    assert float(joined["pin_load"].sel(case="CS-3").sum()) == float(found[1].dataset["pin_load"].sum())
+    changed = with_fields(replace(cases["CS-3"], name="mine"), {"disc.thickness": 20.0})
+    assert (changed.case, pickle.loads(pickle.dumps(changed)).case) == ("CS-3", "CS-3")
+    assert ltca.analyse(changed, 2, case="mine").dataset["case"].values.tolist() == ["mine"]
+    assert parse_drive(drive_text(changed)).cases["nominal"].case == "nominal"
+
+
+def test_the_name_of_a_case_is_no_field():
+    """Nor does it tell drives apart: coefficients and results of a case are those of the same drive without a name."""
+    drive = ltca.load_drive("paper").cases["CS-3"]
+    plain = replace(drive, case="nominal")
+    assert drive == plain
+    assert (drive.fingerprint(), hash(drive)) == (plain.fingerprint(), hash(plain))
+    with pytest.raises(DriveError, match="case: is not a field"):
+        with_fields(drive, {"case": "CS-1"})
+    with pytest.raises(DriveError, match=r"case A: case: must be left out; `name` is"):
+        parse_drive(shipped_drive("rv") + '\n[[case]]\nname = "A"\ncase = "B"\n')
 
 
 def test_an_engine_class_is_no_engine():

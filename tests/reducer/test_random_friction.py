@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer, friction_of, with_friction
 from ltca.errors import ConvergenceError
+from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance, friction_at, potential_of
 from ltca.testing.pin_drives import friction_drive
 
@@ -130,8 +132,35 @@ def test_a_drive_that_jams_says_so():
     slope, none = np.polyfit(strengths, left, 1)
     np.testing.assert_allclose(none + slope * strengths, left, rtol=0.0, atol=0.03 * left[0])
     assert 0.75 < -none / slope < 0.9
-    with pytest.raises(ConvergenceError, match="the drive jams"):
+    with pytest.raises(ConvergenceError, match="the drive jams") as caught:
         solve_at_output(model, drive, np.array([angle]), torque)
+    least, most = (
+        float(part) for part in re.search(r"friction.pin = (\S+) to (\S+) of 0.5", str(caught.value)).groups()
+    )
+    # Where that line ends, but for the directions that loads turn to on the way there, as above.
+    assert least < most < least + 0.01
+    assert abs(0.5 * (least + most) / 0.5 + none / slope) < 0.1
+
+
+@pytest.mark.slow
+def test_a_drive_that_jams_is_told_at_which_coefficient():
+    """It was 'the teeth slip': at three quarters of μ loads did not tell yet that they would end before the whole of it."""
+    shipped = parse_drive(shipped_drive("rv")).cases["nominal"]
+    torque, angle = shipped.load.torque, np.array([0.3])
+
+    def at(pin):
+        drive = replace(shipped, friction=Friction(pin=pin))
+        return solve_at_output(HalfSpace().prepare(drive).model, drive, angle, torque)
+
+    with pytest.raises(ConvergenceError, match="the drive jams between") as caught:
+        at(0.6)
+    least, most = (
+        float(part) for part in re.search(r"friction.pin = (\S+) to (\S+) of 0.6", str(caught.value)).groups()
+    )
+    assert 0.0 < most - least < 0.01 * 0.6 + 0.001  # the promised hundredth of the whole, both rounded to three digits
+    assert at(least).response.pin_load.sum() > 5.0 * at(0.0).response.pin_load.sum()  # loads grow without bound
+    with pytest.raises(ConvergenceError, match="the drive jams"):
+        at(most)
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,8 @@ BY_LOAD = frozenset(
     (
         "pin_load", "roller_load", "pin_shaft_load", "bearing_load", "pin_pressure_mid", "pin_shaft_pressure_mid",
         "roller_pressure_mid_outer", "roller_pressure_mid_inner", "pin_seat_pressure", "hole_seat_pressure", "disc_shear",
-        "core_shear", "shear_depth", "wheel_pin_bending_stress", "wheel_pin_shear_stress", "shaft_pin_bending_stress",
+        "core_shear", "shear_depth", "wheel_pin_bending_amplitude", "shaft_pin_bending_amplitude",
+        "wheel_pin_bending_stress", "wheel_pin_shear_stress", "shaft_pin_bending_stress",
         "shaft_pin_shear_stress", "root_stress", "bore_stress", "hole_stress", "power_loss", "pin_pv", "pin_shaft_pv",
         "pin_seat_pv", "hole_seat_pv", "half_width_ratio", "contact_strain", "pin_deflection", "shaft_pin_deflection",
         "bearing_deflection", "crank_deflection", "wheel_deflection", "bearing_deflection_by_clearance",

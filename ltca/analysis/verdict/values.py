@@ -17,7 +17,7 @@ from ltca.analysis.summary import refined_value, rubbing_pressures
 from ltca.analysis.verdict.assembly import assembly_values
 from ltca.analysis.verdict.duty import worst_of_duty
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
-from ltca.analysis.verdict.pin_stress import pin_stress
+from ltca.analysis.verdict.pin_stress import PinStress, pin_stress
 from ltca.analysis.verdict.places import largest_value, most_of
 from ltca.analysis.verdict.proportions import odd_proportions
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_contact_shear_at
@@ -157,6 +157,7 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
     """Stress and deflection of pins, pressure of their seats."""
     for pins, name in (("wheel", "wheel pin"), ("shaft", "shaft pin")):
         stress = pin_stress(analysis, "wheel" if pins == "wheel" else "shaft")
+        yield _bending_fatigue(analysis, stress, pins)
         for kind in ("bending", "shear"):
             quantity = f"{pins}_pin_{kind}_stress"
             if stress is None:
@@ -172,6 +173,20 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
     ):
         if variable in each[0]:
             yield largest_value(analysis, quantity, np.concatenate([one[variable] for one in each], axis=1), name)
+
+
+def _bending_fatigue(analysis: LoadedAnalysis, stress: PinStress | None, pins: str) -> Value:
+    from ltca.analysis.life.equivalent_load import covers_whole_turns
+
+    quantity = f"{pins}_pin_bending_amplitude"
+    if stress is None:
+        return Value(quantity=quantity, value=None, reason=f"{pins} pins are no beams (pin_{pins}.beam)")
+    if not (covers_whole_turns(analysis.full.crank_angle) and np.all(analysis.balanced)):
+        return Value(quantity=quantity, value=None, reason="positions cover no whole turns")
+    cycle = stress.cycle
+    told = "it rolls: fully reversed" if stress.rolls else f"stress ratio {cycle.ratio:.2g}"
+    part = f"{pins} pins" if cycle.pin is None else f"{pins} pin {cycle.pin}"
+    return Value(quantity=quantity, value=cycle.equivalent_amplitude, part=f"{part}, {told}")
 
 
 def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:

@@ -42,10 +42,12 @@ TITLES = {
     "disc_shear": "shear below the surface of the disc",
     "shear_depth": "depth of that shear",
     "core_shear": "shear in the core of the disc, below its case",
-    "wheel_pin_bending_stress": "bending of wheel pins",
-    "wheel_pin_shear_stress": "shear of wheel pins",
-    "shaft_pin_bending_stress": "bending of shaft pins",
-    "shaft_pin_shear_stress": "shear of shaft pins",
+    "wheel_pin_bending_stress": "bending of wheel pins, largest (static)",
+    "wheel_pin_bending_amplitude": "bending of wheel pins, fatigue",
+    "wheel_pin_shear_stress": "shear of wheel pins, largest (static)",
+    "shaft_pin_bending_stress": "bending of shaft pins, largest (static)",
+    "shaft_pin_bending_amplitude": "bending of shaft pins, fatigue",
+    "shaft_pin_shear_stress": "shear of shaft pins, largest (static)",
     "root_stress": "stress along lobe roots",
     "bore_stress": "stress along bores",
     "hole_stress": "stress along holes (ligaments)",
@@ -257,6 +259,10 @@ def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
         return ([] if lacking and kept else found), told
     bent = {"wheel": ("wheel_pin", parts.wheel_pin), "shaft": ("shaft_pin", parts.shaft_pin)}
     which, _, rest = quantity.partition("_pin_")
+    if rest == "bending_amplitude":
+        name, part = bent[which]
+        given = [] if part.bending_fatigue_limit is None else [(part.bending_fatigue_limit, name)]
+        return _lowest(value, given, "bending_fatigue_limit"), f"materials.{name} has no bending_fatigue_limit"
     if rest in ("bending_stress", "shear_stress"):
         name, part = bent[which]
         factor, how = (1.0, "yield_strength") if rest.startswith("bending") else (3.0**-0.5, "yield_strength/√3")

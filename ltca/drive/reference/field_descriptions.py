@@ -222,6 +222,8 @@ def _walk(owner: type, prefix: str) -> Iterator[FieldDescription | TableDescript
     defaults = {item.name: item for item in fields(owner)}
     for name, hint in get_type_hints(owner, include_extras=True).items():
         path, meaning, optional = f"{prefix}{name}", told.get(name, ""), False
+        if not defaults[name].compare:  # the name of a case
+            continue
         if get_origin(hint) in (Union, UnionType):
             (hint,) = (part for part in get_args(hint) if part is not NoneType)
             optional = True

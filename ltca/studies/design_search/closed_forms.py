@@ -260,6 +260,8 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
             span = stack_length(sizes, shop.disc_gap) + 2.0 * shop.disc_gap
             diameter = 2.0 * sizes.hole_pin
             found["shaft_pin_bending_stress"] = 4.0 * load * sizes.discs * span / (np.pi * diameter**3)
+            # Pulsating: the equivalent amplitude of Smith, Watson and Topper (`ltca.analysis.verdict.pin_stress`).
+            found["shaft_pin_bending_amplitude"] = found["shaft_pin_bending_stress"] / np.sqrt(2.0)
             found["shaft_pin_shear_stress"] = 8.0 * load * sizes.discs / (3.0 * np.pi * diameter**2)
             beam = 192.0 * setting.pin_modulus * np.pi * diameter**4 / 64.0 / span**3
             spring = 1.0 / (1.0 / spring + sizes.discs / beam)

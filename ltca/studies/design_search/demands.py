@@ -35,7 +35,8 @@ SAFETY = 0.02
 """By which part demands are kept in the search: a fine solution finds larger peaks than a coarse one."""
 OF_MATERIALS = (
     "pin_pressure_mid", "pin_shaft_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "disc_shear",
-    "shaft_pin_bending_stress", "shaft_pin_shear_stress", "contact_strain", "half_width_ratio",
+    "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "contact_strain",
+    "half_width_ratio",
 )  # fmt: skip
 OWN_TITLES = {
     "outer_diameter": ("outer diameter", "mm"),

@@ -44,6 +44,7 @@ SLACK = {
     "bearing_life_hours": 1.8,
     "bearing_life_million_turns": 1.8,
     "shaft_pin_bending_stress": 0.8,
+    "shaft_pin_bending_amplitude": 0.8,
     "shaft_pin_shear_stress": 0.8,
 }
 OTHER_SLACK = 0.4

@@ -13,6 +13,7 @@ COLUMNS = {
     "poisson_ratio": ("ν", 1.0),
     "allowable_pressure": ("allowable pressure, MPa", 1.0),
     "yield_strength": ("yield strength, MPa", 1.0),
+    "bending_fatigue_limit": ("bending fatigue limit, MPa", 1.0),
     "hardness": ("hardness, HV", 1.0),
     "hardness_depth": ("its depth, mm", 1.0),
     "density": ("density, kg/m³", 1.0),

@@ -100,6 +100,19 @@ def test_swapped_fields_are_both_named(part, smaller, larger):
     )
 
 
+@pytest.mark.parametrize("drive", ["paper", "rv", "robot-joint"])
+@pytest.mark.parametrize("offset", [-100.0, -60.0, -20.0])
+def test_a_shifting_offset_far_below_zero_is_named_itself(drive, offset):
+    """It blamed the pin circle; of -60 mm the robot joint's generating circle is a point, which was a division by zero."""
+    text = re.sub(r"(?m)^shifting_offset.*$", "", shipped_drive(drive))
+    with pytest.raises(DriveError) as caught:
+        parse_drive(text.replace("[disc]", f"[disc]\nshifting_offset = {offset}", 1))
+    (told,) = caught.value.problems
+    assert told.startswith(f"disc.shifting_offset = {offset:g} mm: must be at least -")
+    bound = float(re.search(r"at least (\S+) mm", told).group(1))
+    parse_drive(text.replace("[disc]", f"[disc]\nshifting_offset = {bound}", 1))
+
+
 def test_a_case_that_is_wrong_in_another_way_is_told_beside(paper_table):
     """What one field of the common part mends is told once, what it does not mend stays with its case."""
     text = shipped_drive().replace("\nshifting_offset = 0.09 ", "\nshifting_offset = 9 ").partition("[[case]]")[0]
