@@ -89,7 +89,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return _check_file(arguments)
     if arguments.drive is None:
         raise CycloError("derive: give a drive file, or a file of coefficients with --check")
-    from ltca.output.run_folder import claimed_file
+    from ltca.output.locks import claimed_file
     from ltca.reading.coefficient_file import require_replaceable
 
     name, case, drive = chosen_drive(arguments)

@@ -238,11 +238,7 @@ def require_one_disc(drive: Drive) -> None:
     """
     count = drive.disc.number_of_discs
     if count != 1:
-        raise DriveError(
-            [
-                f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc; fem.reducer solves all on one wheel"
-            ]
-        )
+        raise DriveError([f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc alone"])
 
 
 def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:

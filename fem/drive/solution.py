@@ -208,7 +208,7 @@ def solve_drive(
         raise DriveError(
             [
                 f"installation.held = {drive.installation.held}: must be pin-shaft for a moment on the wheel that is known; "
-                "fem.reducer finds it where the wheel is held"
+                "where the wheel is held it follows from the solution"
             ]
         )
     (single,) = single_discs(drive)

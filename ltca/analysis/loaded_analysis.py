@@ -111,13 +111,14 @@ class LoadedAnalysis:
 
     @property
     def discs(self) -> tuple[LoadedAnalysis, ...]:
-        """What each disc takes part in, as the analysis of a drive of that disc alone: itself where there is one.
+        """What each disc takes part in, as the analysis of a drive of that disc alone.
 
         What each carries of the torque is in `disc_torques`.
         """
         singles = single_discs(self.drive)
         if self.model.discs == (self.model,):
-            return (self,)
+            # One disc: all that differs is that errors given as its own (disc.of, crank.of) are those of the drive.
+            return (self if singles[0] is self.drive else replace(self, drive=singles[0]),)
         pressures = disc_pressures(self.pressures, len(singles))
         return tuple(
             replace(

@@ -33,6 +33,9 @@ ComplexArray = NDArray[np.complex128]
 
 SAMPLES = 180
 """Places of each lobe at which the range of effective radii is looked for."""
+ZOOMS = 3
+"""Times they are looked for, from the second time between the neighbours of the outermost: a tip close to undercut is sharper
+than a lobe's 180th part."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -264,11 +267,18 @@ def batch_signature(drive: Drive) -> tuple[object, ...]:
 def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:
     """Smallest and largest effective radius that pins of these radii meet on a flank, mm, outward by what samples miss."""
     ends = []
-    for outermost in (np.min, np.max):
-        radii = profile.effective_radius(turn, outermost(pin_radii, axis=-1, keepdims=True))
-        # Between three samples of a parabola its top is higher than they are by an eighth of their second difference.
-        missed = np.max(np.abs(np.diff(radii, 2, axis=-1))) / 8.0
-        ends += [np.min(radii) - missed, np.max(radii) + missed]
+    for outermost, power in ((np.min, -1.0), (np.max, 1.0)):
+        radius, places, found = outermost(pin_radii, axis=-1, keepdims=True), turn, []
+        for _ in range(ZOOMS):
+            # Tops are looked for, of the curvature and of the radius: outward of either is a positive radius.
+            values = profile.effective_radius(places, radius) ** power
+            # Between three samples of a parabola its top is higher than they are by an eighth of their second difference.
+            values[..., 1:-1] += np.abs(np.diff(values, 2, axis=-1)) / 8.0
+            found.append(np.max(values))
+            top = np.take_along_axis(places, np.argmax(values, axis=-1)[..., None], axis=-1)
+            spacing = places[..., 1:2] - places[..., :1]
+            places = top + spacing * np.linspace(-1.0, 1.0, SAMPLES + 1)
+        ends.append(np.max(found) ** power)
     return np.array(ends)
 
 

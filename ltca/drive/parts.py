@@ -109,8 +109,7 @@ class Disc:
     def phase(self) -> float:
         """ζ of the one disc, rad; DriveError where there are several, or one has something of its own."""
         if self.number_of_discs != 1 or not all(entry.of_bores_alone for entry in self.of):
-            told = f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"
-            raise DriveError([f"{told}, see ltca.drive.single_discs"])
+            raise DriveError([f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"])
         return self.disc_phases[0]
 
     @property
@@ -409,8 +408,9 @@ class Drive:
             When the drive has temperatures.
         """
         if self.temperature is not None:
-            told = "lengths are at 20 °C still, see ltca.drive.members.temperatures.warm_drive"
-            raise DriveError([f"temperature: {told}"])
+            raise DriveError(
+                ["temperature: must be left out here: lengths are those at 20 °C still, warm the drive first"]
+            )
         return self
 
     def shape_fingerprint(self) -> str:

@@ -5,6 +5,8 @@ Modules in the order data passes:
 =============  ============================================================
 terminal       Streams that take every message: any encoding, no stream at all
 resources      Memory and disc a run will need, against what the machine has, before it starts
+regular_files  Files that are named to the program or found in its folders: regular ones of sane size are read, nothing else
+locks          Locks on the folder or file that a run writes: one process at a time, until it ends, however that is
 run_folder     The folder of a run: one process at a time writes to it, and what it holds comes from one run
 processes      Programs that end with the process that started them, and signals that end a command cleanly
 process_pools  Pools of worker processes that end with the process that started them, whatever ends it
@@ -12,6 +14,6 @@ supervisor     Run a program that ends with whoever asked for it, together with 
 progress       Progress: a bar on a terminal, a line every few seconds without one
 provenance     Which code made a result: version and a hash of its sources, the same on every machine that has the same code
 files          Files that are either whole or not there: written beside their place, then moved into it
-netcdf         netCDF files that survive a full disc: the HDF5 library never sees a failed write
+netcdf         netCDF files: read without trust, written so that they survive a full disc
 =============  ============================================================
 """

@@ -1,7 +1,9 @@
-"""netCDF files that survive a full disc: the HDF5 library never sees a failed write.
+"""netCDF files: read without trust, written so that they survive a full disc.
 
-HDF5 ends the process with a segmentation fault when its last write fails. It writes to a stream of ours, which keeps in
-memory what the disc no longer takes; when the file is closed the stream says what went wrong.
+What is read may come from anybody: links to other files are not followed, what a file only declares is refused before
+memory is taken for it, nothing in it is executed. What is written goes to a stream of ours: HDF5 ends the process with a
+segmentation fault when its last write fails. The stream keeps in memory what the disc no longer takes; when the file is
+closed it says what went wrong.
 """
 
 from __future__ import annotations
@@ -13,10 +15,127 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ltca.errors import FaultError
+import numpy as np
+
+from ltca.errors import DamagedFileError, FaultError, one_line
+from ltca.output.regular_files import NotReadableError, regular_file
+from ltca.output.resources import available_memory
 
 if TYPE_CHECKING:
     import xarray as xr
+
+# HDF5's own filters (deflate, shuffle, Fletcher, szip, n-bit, scale-offset); any other is code from elsewhere.
+LARGEST_FILTER = 6
+# Deflate packs no more than 1032 to one; what is declared beyond that is not in the file.
+LARGEST_PACKING = 1100
+SMALL = 1 << 20
+DAMAGE = (
+    OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, OverflowError, MemoryError, IndexError,
+)  # fmt: skip
+"""What HDF5, netCDF and numpy raise on damaged files."""
+
+
+@contextmanager
+def opened_hdf5(path: Path) -> Iterator[Any]:
+    """Open an HDF5 file, of which nothing has been looked at, for reading.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Yields
+    ------
+    h5py.File
+
+    Raises
+    ------
+    OSError
+        When it is no regular file, or no HDF5; `DAMAGE` names what may come while the block runs.
+    """
+    import h5py
+
+    with regular_file(path), h5py.File(path, "r") as file:
+        yield file
+
+
+def require_sound_netcdf(path: Path, what: str, *, whole: bool) -> None:
+    """Refuse a file with links, data that lie elsewhere, filters from elsewhere, or sizes that are not there.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    what : str
+        It should be, for the message: "a coefficient file".
+    whole : bool
+        Whether all of it is going to be read into memory.
+
+    Raises
+    ------
+    DamagedFileError
+        When it is not there, cannot be read, or has one of them.
+    """
+    try:
+        with opened_hdf5(path) as file:
+            problems = list(_foreign(file, path.stat().st_size, whole))
+    except FileNotFoundError as error:
+        raise DamagedFileError(f"{path}: no such file") from error
+    except DAMAGE as error:
+        raise _unreadable(path, what, error) from error
+    if problems:
+        raise DamagedFileError(f"{path}: cannot be read as {what}: {'; '.join(problems[:3])}")
+
+
+def read_netcdf(path: Path, what: str) -> xr.Dataset:
+    """Return a netCDF file of anybody's, read into memory.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    what : str
+        It should be, for the message: "a coefficient file".
+
+    Raises
+    ------
+    DamagedFileError
+        As for `require_sound_netcdf`.
+    """
+    import xarray as xr
+
+    require_sound_netcdf(path, what, whole=True)
+    try:
+        return xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False)
+    except DAMAGE as error:
+        raise _unreadable(path, what, error) from error
+
+
+def _unreadable(path: Path, what: str, error: Exception) -> DamagedFileError:
+    told = error.strerror if isinstance(error, NotReadableError) else one_line(error)
+    return DamagedFileError(f"{path}: cannot be read as {what} (netCDF-4): {told}")
+
+
+def _foreign(file: Any, size: int, whole: bool) -> Iterator[str]:
+    import h5py
+
+    declared = 0
+    for name in file:
+        link = file.get(name, getlink=True)
+        if not isinstance(link, h5py.HardLink):
+            yield f"{name} is a link to {getattr(link, 'filename', None) or 'another place'}, which is not followed"
+            continue
+        item = file[name]
+        if not isinstance(item, h5py.Dataset):
+            continue  # groups are not read
+        if item.external or item.is_virtual:
+            yield f"{name} lies in another file, which is not read"
+        filters = item.id.get_create_plist()
+        if any(filters.get_filter(number)[0] > LARGEST_FILTER for number in range(filters.get_nfilters())):
+            yield f"{name} is packed by a filter that HDF5 does not bring"
+        declared += int(np.prod(item.shape or (1,), dtype=object)) * item.dtype.itemsize
+    if declared > LARGEST_PACKING * size + SMALL or (whole and declared > 0.5 * available_memory()):
+        yield f"it declares {declared:.3g} bytes; the file has {size}"
 
 
 class DiscStream(io.RawIOBase):

@@ -7,7 +7,6 @@ and stays: a run that would write where such a file is ends before its work.
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
 import os
@@ -17,23 +16,23 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from ltca.errors import DamagedFileError, FaultError, PlaceError
-from ltca.output.files import PART, remove_parts_of, told_of_files, whole_file
+from ltca.errors import CycloError, DamagedFileError, PlaceError
+from ltca.output.files import PART, told_of_files, whole_file
+from ltca.output.locks import held
+from ltca.output.regular_files import read_regular, regular_file
 
 MANIFEST = "cyclo-manifest.json"
 LOCK = ".cyclo.lock"
 PLAN, BATCHES = "study.json", "batches"
 """Of a study, the only run that goes on after an interruption: its plan, and the folder of what is finished."""
 FORMAT = 1
+LARGEST_MANIFEST = 200_000_000
+"""Bytes of a manifest; that of a study whose million samples all failed has 100 MB."""
 FOLDERS = ("figures", "samples")
 """Folders of results in the folder of a run."""
-LOCKLESS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)
-"""What a file system answers that knows no locks: two runs are not kept apart there."""
 ELSEWHERE = "move it, or choose another place"
 CHANGED = f"was changed since the last run wrote it (it has not the checksum of {MANIFEST}): {ELSEWHERE}"
 NOT_OURS = f"is there and was not written by the last run ({MANIFEST} does not list it): {ELSEWHERE}"
-FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
-"""What is no fault of whoever chose the folder."""
 
 
 class RunFolder:
@@ -119,6 +118,19 @@ class RunFolder:
             self._clear("")
             self._write(complete=True)
 
+    def withdraw(self) -> None:
+        """Remove what this run has written: its input is refused. What a study has solved stays, for ``--resume``."""
+        written = set(self._files) - self._kept
+        batches = self.path / BATCHES
+        if not written or (batches in self._beside and (written != {PLAN} or any(batches.glob("*.npz")))):
+            return
+        self._remove(written)
+        self._files = {name: self._files[name] for name in self._kept}
+        if self._files:
+            self._write(complete=True)
+        else:
+            (self.path / MANIFEST).unlink(missing_ok=True)
+
     def require_room_for(self, writes: Iterable[str], what: str) -> None:
         """Refuse to start where files of the user are in the way.
 
@@ -179,14 +191,18 @@ class RunFolder:
         """Remove what the last run wrote and nobody changed since, but for the file that is replaced right now."""
         if self._cleared:
             return
-        for old in sorted(set(self._old) - self._kept - {name}):
-            place = self.path / old
-            if place.is_file() and not place.is_symlink() and _checksum(place) in self._checksums(old):
+        self._remove(set(self._old) - self._kept - {name})
+        self._cleared = True
+
+    def _remove(self, names: set[str]) -> None:
+        """Remove files that are as a run wrote them, with folders that are empty then."""
+        for name in sorted(names):
+            place = self.path / name
+            if place.is_file() and not place.is_symlink() and _checksum(place) in self._checksums(name):
                 place.unlink()
                 if place.parent != self.path:
                     with suppress(OSError):  # the folder stays while anything is in it
                         place.parent.rmdir()
-        self._cleared = True
 
     def _write(self, *, complete: bool, replaced: Mapping[str, str] | None = None) -> None:
         content: dict[str, Any] = {
@@ -283,129 +299,26 @@ def claimed_folder(
         When the disc is full or fails.
     """
     require_folder(path)
-    made = [folder for folder in (path, *path.parents) if not folder.exists()]
-    try:
-        with held(path / LOCK, f"--out {path}", command):
-            if BATCHES not in beside:
-                _require_no_interrupted_study(path)
-            _remove_parts(path, beside)
-            folder = RunFolder(path, command, beside, adding, renewing)
-            folder.require_room_for(writes, f"--out {path}")
-            with told_of_files(path, folder.place):
+    with held(path / LOCK, f"--out {path}", command):
+        if BATCHES not in beside:
+            _require_no_interrupted_study(path)
+        _remove_parts(path, beside)
+        folder = RunFolder(path, command, beside, adding, renewing)
+        folder.require_room_for(writes, f"--out {path}")
+        with told_of_files(path, folder.place):
+            try:
                 yield folder
-                folder.finish()
-    finally:
-        with suppress(OSError):  # a run that wrote nothing leaves nothing
-            for empty in made:
-                empty.rmdir()
-
-
-@contextmanager
-def claimed_file(path: Path, command: str) -> Iterator[None]:
-    """Hold one file while a run makes it.
-
-    Parameters
-    ----------
-    path : Path
-        The file; its folder is made.
-    command : str
-        Name of the command, for the message.
-
-    Raises
-    ------
-    PlaceError
-        When another process makes it, or its folder cannot be made or written to.
-    FaultError
-        When the disc is full or fails.
-    """
-    if path.is_dir():
-        raise PlaceError(f"--out {path}: is a folder, not a file")
-    with held(path.with_name(f".{path.name}.lock"), f"--out {path}", command):
-        remove_parts_of(path, 0.0)
-        yield
-
-
-@contextmanager
-def held(lock: Path, what: str, command: str, *, wait: bool = False) -> Iterator[None]:
-    """Hold a lock that ends with the process, however that ends; its file is removed.
-
-    Parameters
-    ----------
-    lock : Path
-        File of the lock; its folder is made.
-    what : str
-        What is locked, for the message.
-    command : str
-        Who holds it.
-    wait : bool
-        Whether to wait for whoever holds it.
-
-    Raises
-    ------
-    PlaceError
-        When another process holds it and it was not to be waited for, or the folder cannot be made or written to.
-    FaultError
-        When the disc is full or fails.
-    """
-    try:
-        lock.parent.mkdir(parents=True, exist_ok=True)
-        descriptor = _take(lock, wait)
-    except BlockingIOError:
-        raise PlaceError(f"{what}: {_holder(lock)} is writing there: wait for it, or choose another place") from None
-    except OSError as error:
-        kind = FaultError if error.errno in FAULTS else PlaceError
-        raise kind(f"{what}: cannot be written to: {error.strerror or error}") from error
-    try:
-        with suppress(OSError):  # a full disc keeps no name, the lock holds all the same
-            os.ftruncate(descriptor, 0)
-            os.pwrite(descriptor, f"cyclo {command} (process {os.getpid()})".encode(), 0)
-        yield
-    finally:
-        with suppress(OSError):
-            lock.unlink(missing_ok=True)
-        os.close(descriptor)
-
-
-def _take(lock: Path, wait: bool) -> int:
-    """Open and lock a file; whoever held it may have removed it meanwhile: then again."""
-    while True:
-        descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
-        try:
-            _lock(descriptor, wait)
-            if os.path.samestat(os.fstat(descriptor), os.stat(lock, follow_symlinks=False)):
-                return descriptor
-        except FileNotFoundError:
-            pass
-        except BaseException:
-            os.close(descriptor)
-            raise
-        os.close(descriptor)
-
-
-def _lock(descriptor: int, wait: bool) -> None:
-    try:
-        import fcntl
-    except ImportError:  # no such locks on this system: two runs are not kept apart
-        return
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-    except OSError as error:
-        if error.errno not in LOCKLESS:
-            raise
-
-
-def _holder(lock: Path) -> str:
-    try:
-        text = lock.read_text(encoding="utf-8", errors="replace")[:80]
-    except OSError:
-        text = ""
-    return text if text.isprintable() and text.startswith("cyclo ") else "another process"
+            except CycloError as error:
+                if error.exit_status == 2 and not isinstance(error, PlaceError):
+                    folder.withdraw()
+                raise
+            folder.finish()
 
 
 def _read_manifest(folder: Path, key: str) -> dict[str, str]:
     """Return files that the last run lists, by name with checksum; nothing where the manifest is damaged or not ours."""
     try:
-        content: Any = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        content: Any = json.loads(read_regular(folder / MANIFEST, LARGEST_MANIFEST).decode())
         files = dict(content.get(key, {})) if content["cyclo"] == FORMAT else {}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
@@ -425,7 +338,7 @@ def _ours(folder: Path, name: object) -> bool:
 def _checksum(path: Path) -> str:
     """Return the checksum of a file; of one that cannot be read, which no manifest lists, it is empty."""
     try:
-        with path.open("rb") as stream:
+        with regular_file(path) as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
     except PermissionError:
         return ""

@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.errors import DriveError, printable, shortened
+from ltca.errors import DamagedFileError, DriveError, one_line, printable, shortened
+from ltca.output.netcdf import DAMAGE, read_netcdf
+from ltca.output.regular_files import read_regular
 from ltca.reading.toml_text import read_text
 
 FloatArray = NDArray[np.float64]
@@ -31,6 +33,10 @@ KINDS = {
     "hole": ("pin_shaft_load", "pin_shaft_pressure_mid", "pin_shaft_half_width"),
 }
 """Variables of ``results.nc`` by kind of contact: load, pressure, half-width."""
+LARGEST_SUMMARY = 50_000_000
+"""Bytes of a ``summary.json``; one of a hundred cases has a megabyte."""
+MOST_MEASURED = 200_000
+"""Values of a measured curve."""
 MOST_POSITIONS = 3600
 """Of a measured curve on a page; every second of more, or every third."""
 
@@ -83,10 +89,8 @@ def read_compared(path: Path) -> Compared:
 
 
 def _of_run(results: Path) -> Compared:
-    import xarray as xr
-
     try:
-        dataset = xr.load_dataset(results, engine="h5netcdf", decode_times=False, decode_timedelta=False)
+        dataset = read_netcdf(results, "results of cyclo run")
         cases = tuple(str(name) for name in dataset["case"].values)
         arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}
         for number in range(len(cases)):
@@ -98,7 +102,10 @@ def _of_run(results: Path) -> Compared:
             arrays[f"{number}/light/te"] = one["transmission_error_light"].values * ARCSEC
             for name in ("radial", "tangential"):
                 arrays[f"{number}/{name}"] = one[f"bearing_{name}"].transpose("disc", "crank", "position").values
-    except (OSError, KeyError, ValueError) as error:
+        _require_positions(arrays)
+    except DamagedFileError as error:
+        raise DriveError([f"--compare = {error}"]) from error
+    except DAMAGE as error:
         raise DriveError([f"--compare = {results}: is no result of cyclo run: {shortened(str(error))}"]) from error
     told = dataset.attrs
     model = printable(str(told.get("compliance", "")))
@@ -116,12 +123,26 @@ def _by_contact(values: Any) -> FloatArray:
     return found.reshape(found.shape[0], -1, found.shape[-1])
 
 
+def _require_positions(arrays: dict[str, FloatArray]) -> None:
+    """Refuse what has not a number for every position."""
+    positions = arrays["angle"].shape
+    for name, values in arrays.items():
+        alone = name == "angle" or name.endswith("/te")
+        if values.dtype.kind != "f" or values.shape[-1:] != positions or values.ndim != (1 if alone else 3):
+            raise ValueError(f"{name} has not one number for each position")
+
+
 def _summaries(folder: Path) -> dict[str, dict[str, float | None]]:
+    path = folder / "summary.json"
     try:
-        content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["cases"]
-    except (OSError, ValueError, KeyError, TypeError):
+        cases = json.loads(read_regular(path, LARGEST_SUMMARY))["cases"]
+        if any(not isinstance(one, int | float | None) for case in cases.values() for one in case.values()):
+            raise ValueError("it holds what is no number")
+    except FileNotFoundError:
         return {}
-    return content if isinstance(content, dict) else {}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise DriveError([f"--compare = {path}: is no summary of cyclo run: {one_line(error)}"]) from error
+    return dict(cases)
 
 
 def _measured(path: Path) -> Compared:
@@ -136,6 +157,9 @@ def _measured(path: Path) -> Compared:
                 f"divided by commas; it has {shortened(', '.join(names))}"
             ]
         )
+    if len(lines) > MOST_MEASURED:
+        told = f"holds {len(lines) - 1} values: must be at most {MOST_MEASURED}; leave some out"
+        raise DriveError([f"--compare = {path}: {told}"])
     places, found = (names.index(angle[0]), names.index(error[0])), []
     for number, row in enumerate(csv.reader(lines[1:]), start=2):
         try:

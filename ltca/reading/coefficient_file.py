@@ -7,17 +7,15 @@ memory is taken for it, nothing in it is executed.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ltca.errors import DamagedFileError, PlaceError, one_line
+from ltca.errors import DamagedFileError, PlaceError
 from ltca.output.files import whole_file
-from ltca.output.netcdf import write_netcdf
-from ltca.output.resources import available_memory
+from ltca.output.netcdf import DAMAGE, opened_hdf5, read_netcdf, write_netcdf
 from ltca.reading.coefficient_laws import STATED_QUALITY, check_coefficients
 from ltca.reading.coefficient_schema import NEEDED, require_schema
 
@@ -25,23 +23,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 CHECKSUM = "checksum"
-# HDF5's own filters (deflate, shuffle, Fletcher, szip, n-bit, scale-offset); any other is code from elsewhere.
-LARGEST_FILTER = 6
-# Deflate packs no more than 1032 to one; what is declared beyond that is not in the file.
-LARGEST_PACKING = 1100
-SMALL = 1 << 20
-# What HDF5, netCDF and numpy raise on damaged files.
-DAMAGE = (
-    OSError,
-    ValueError,
-    KeyError,
-    RuntimeError,
-    TypeError,
-    AttributeError,
-    OverflowError,
-    MemoryError,
-    IndexError,
-)
 
 _LAWFUL: set[str] = set()
 """Checksums of contents whose laws this process has found to hold: a run reads its file more than once."""
@@ -92,7 +73,7 @@ def read_coefficients(path: Path, *, lawful: bool = True) -> xr.Dataset:
     DamagedFileError
         When there is no such file, it holds something else, its checksum is another, or a law is broken.
     """
-    dataset = _read(path)
+    dataset = read_netcdf(path, "a coefficient file")
     require_schema(dataset, str(path))
     stated, checksum = dataset.attrs.get(CHECKSUM), checksum_of(dataset)
     if stated is not None and str(stated) != checksum:
@@ -133,10 +114,8 @@ def require_replaceable(path: Path) -> None:
 
 def _is_written_by_us(path: Path) -> bool:
     """Look at names only, no number is read."""
-    import h5py
-
     try:
-        with h5py.File(path, "r") as file:
+        with opened_hdf5(path) as file:
             return CHECKSUM in file.attrs and all(name in file for name in NEEDED)
     except DAMAGE:
         return False
@@ -171,42 +150,3 @@ def _canonical(value: Any) -> str:
     if isinstance(value, Real):
         return float(value).hex()
     return str(value)
-
-
-def _read(path: Path) -> xr.Dataset:
-    import h5py
-    import xarray as xr
-
-    if not path.is_file():
-        raise DamagedFileError(f"{path}: no such file")
-    try:
-        with h5py.File(path, "r") as file:
-            problems = list(_foreign(file, path.stat().st_size))
-        if not problems:
-            return xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False)
-    except DAMAGE as error:
-        raise DamagedFileError(f"{path}: cannot be read as a coefficient file (netCDF-4): {one_line(error)}") from error
-    raise DamagedFileError(f"{path}: cannot be read as a coefficient file: {'; '.join(problems[:3])}")
-
-
-def _foreign(file: Any, size: int) -> Iterator[str]:
-    """What a file must not have: links, data that lie elsewhere, filters from elsewhere, sizes that are not there."""
-    import h5py
-
-    declared = 0
-    for name in file:
-        link = file.get(name, getlink=True)
-        if not isinstance(link, h5py.HardLink):
-            yield f"{name} is a link to {getattr(link, 'filename', None) or 'another place'}, which is not followed"
-            continue
-        item = file[name]
-        if not isinstance(item, h5py.Dataset):
-            continue  # groups are not read
-        if item.external or item.is_virtual:
-            yield f"{name} lies in another file, which is not read"
-        filters = item.id.get_create_plist()
-        if any(filters.get_filter(number)[0] > LARGEST_FILTER for number in range(filters.get_nfilters())):
-            yield f"{name} is packed by a filter that HDF5 does not bring"
-        declared += int(np.prod(item.shape or (1,), dtype=object)) * item.dtype.itemsize
-    if declared > LARGEST_PACKING * size + SMALL or declared > 0.5 * available_memory():
-        yield f"it declares {declared:.3g} bytes; the file has {size}"

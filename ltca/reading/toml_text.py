@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ltca.errors import DriveError, printable
+from ltca.output.regular_files import read_regular
 
 DEEPEST = 20
 """Tables and arrays in each other; a drive file needs five."""
@@ -33,11 +34,7 @@ def read_text(path: Path, missing: str = "no such file") -> str:
         When it cannot be read.
     """
     try:
-        with path.open("rb") as stream:
-            content = stream.read(LARGEST + 1)
-        if len(content) > LARGEST:
-            raise DriveError([f"is larger than {LARGEST // 1_000_000} MB: no file of cyclo is"], str(path))
-        return content.decode("utf-8")
+        return read_regular(path, LARGEST).decode("utf-8")
     except FileNotFoundError as error:
         raise DriveError([missing], str(path)) from error
     except UnicodeDecodeError as error:

@@ -33,8 +33,9 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
+from ltca.output.locks import held
 from ltca.output.provenance import code_hash
-from ltca.output.run_folder import held
+from ltca.output.regular_files import regular_file
 
 KEPT = 8
 """Shapes whose coefficients a process keeps in memory, some 10 MB each."""
@@ -163,13 +164,14 @@ def coefficients_identity(engine: Engine) -> str:
         return f"given {digest.hexdigest()[:16]}"
     if given is not None:
         files = [given] if isinstance(given, Path) else list(given)
-        return "files " + " ".join(hashlib.sha256(_bytes(path)).hexdigest()[:16] for path in files)
+        return "files " + " ".join(_checksum(path)[:16] for path in files)
     packages = sorted({entry.module.partition(".")[0] for entry in entry_points(group=GROUP)})
     return f"derived {code_hash(*packages)}"
 
 
-def _bytes(path: Path) -> bytes:
+def _checksum(path: Path) -> str:
     try:
-        return path.read_bytes()
+        with regular_file(path) as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError as error:
         raise CycloError(f"{path}: cannot be read as a coefficient file: {error}") from error

@@ -238,7 +238,7 @@ def test_results_that_cannot_be_read_are_told_in_a_line(finished, tmp_path):
     folder.results.write_bytes(folder.results.read_bytes()[:-2000])
     for read in (lambda: read_quantity(folder.results, "max_pin_load"), lambda: folder.failures(None)):
         with pytest.raises(
-            DamagedFileError, match=r"results\.nc: cannot be read as the results of a study: [^\n]*--force"
+            DamagedFileError, match=r"results\.nc: cannot be read as the results of a study \(netCDF-4\): [^\n]*--force"
         ):
             read()
 

@@ -13,7 +13,8 @@ from ltca.commands.program import main
 from ltca.errors import FaultError, PlaceError
 from ltca.output import files
 from ltca.output.files import STALE, whole_file
-from ltca.output.run_folder import LOCK, MANIFEST, claimed_file, claimed_folder, figure_files
+from ltca.output.locks import claimed_file
+from ltca.output.run_folder import LOCK, MANIFEST, claimed_folder, figure_files
 
 FIGURES = ("fig24_pin_load", "fig25_loaded_pins")
 HOLDER = """

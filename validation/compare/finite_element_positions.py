@@ -29,10 +29,13 @@ from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 from ltca.output.files import write_json
 from ltca.output.provenance import code_hash, code_version
+from ltca.output.regular_files import read_regular
 from validation.compare.comparison import KindAnswer, PositionAnswer
 from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content, stress_content
 
 FORMAT = 4
+LARGEST_KEPT = 200_000_000
+"""Bytes of one kept position."""
 PICTURES = ("von_mises", "deformed", "contacts")
 PICTURE_SIDE = 1200
 
@@ -275,7 +278,7 @@ def _key(drive: Drive, case: str, crank_angle: float, settings: Settings) -> dic
 def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
     """Return the content of a file that fits its key; None when it has to be made (again)."""
     try:
-        content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        content: dict[str, Any] = json.loads(read_regular(path, LARGEST_KEPT))
     except (OSError, ValueError):
         return None
     if not isinstance(content, dict) or content.get("key") != key:

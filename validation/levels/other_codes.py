@@ -24,12 +24,15 @@ from ltca.errors import CycloError
 from ltca.output.files import write_json
 from ltca.output.processes import supervised
 from ltca.output.provenance import code_hash
+from ltca.output.regular_files import read_regular
 from validation.compare.comparison import ARCSECONDS, Kind, contact_name
 from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, ROLLERS, Answer
 from validation.rows import Row
 
 COMMAND = "python -m validation.levels.other_codes"
 STORED = "stored/other_codes.json"
+LARGEST_KEPT = 10_000_000
+"""Bytes of the kept answers."""
 LIMITS = {
     "load": (5e-3, "of the largest load of its kind; same mesh in both codes, their contact is a penalty"),
     "wheel": (
@@ -128,7 +131,7 @@ def stored_answer(name: str) -> Answer:
 def read_kept(path: Path) -> dict[str, Answer]:
     """Return the answers, by code, that a file keeps for today's problems and today's code; none when it is damaged."""
     try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        content: Any = json.loads(read_regular(path, LARGEST_KEPT))
         return fitting_answers(content["answers"]) if content["code"] == _code() else {}
     except (OSError, ValueError, KeyError, TypeError):
         return {}

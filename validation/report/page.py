@@ -30,9 +30,9 @@ PICTURE_TITLES = {
 SHARED = (
     (
         "Profile",
-        "the modified flank of Eq. 1 (ltca.geometry.flank), with tests of its own: envelope condition, curvature",
+        "the modified flank of Eq. 1, with tests of its own: envelope condition, curvature",
     ),
-    ("Placement", "nominal places and clearances of all parts (ltca.geometry.placement)"),
+    ("Placement", "nominal places and clearances of all parts"),
     ("Material", "Young's modulus and Poisson's ratio of each part"),
     ("Elasticity assembly", "stiffness of quadratic triangles: full solutions and coefficients use the same routine"),
     (

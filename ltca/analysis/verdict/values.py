@@ -34,10 +34,10 @@ DEMANDED = {
         WHOLE,
         Limit(
             quantity="half_width_ratio", sense="max", value=HALF_WIDTH_BOUND,
-            source="theory of half-spaces (ltca.analysis.half_width_guard)",
+            source="theory of half-spaces",
         ),
         Limit(
-            quantity="distinct_mesh_phases", sense="min", value=float(RESOLVED), source="sampling (ltca.analysis.extremes)"
+            quantity="distinct_mesh_phases", sense="min", value=float(RESOLVED), source="sampling of the mesh"
         ),
     )
 }  # fmt: skip

@@ -13,6 +13,7 @@ import numpy as np
 
 from ltca.errors import DamagedFileError, one_line
 from ltca.output.files import whole_file
+from ltca.output.regular_files import regular_file
 from ltca.studies.study import BatchResult, Study
 
 NAME = re.compile(r"[0-9]{8}\.npz")
@@ -69,11 +70,11 @@ def read_batch(path: Path, study: Study) -> BatchResult:
     """
     try:
         # Opened here: of a file that is no archive numpy leaves its own stream open.
-        with path.open("rb") as stream, zipfile.ZipFile(stream) as archive:
+        with regular_file(path, LARGEST) as stream, zipfile.ZipFile(stream) as archive:
             declared = sum(entry.file_size for entry in archive.infolist())
         if declared > LARGEST:
             raise DamagedFileError(f"{path}: declares {declared:,} bytes, which no batch has")
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
+        with regular_file(path, LARGEST) as stream, np.load(stream, allow_pickle=False) as stored:
             found = {name: stored[name] for name in PARTS}
         result = BatchResult(
             number=int(found["number"]),

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from ltca.drive.fields import field_kind, with_whose
 from ltca.errors import CycloError, DamagedFileError, one_line
 from ltca.output.files import whole_file, write_json
-from ltca.output.netcdf import DiscStream, netcdf_stream
+from ltca.output.netcdf import DiscStream, netcdf_stream, require_sound_netcdf
 from ltca.output.provenance import code_hash, code_version
+from ltca.output.regular_files import read_regular
 from ltca.output.run_folder import BATCHES, PLAN
 from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
@@ -30,6 +31,8 @@ from ltca.studies.study import BatchResult, Study
 FloatArray = NDArray[np.float64]
 
 WHAT_DIFFERS = "drive, tolerances, samples, positions, seed, quantities, compliance, coefficients or the code differ"
+LARGEST_PLAN = 1_000_000
+"""Bytes of a plan, which has five short entries."""
 CHUNK = 4096
 """Samples of one chunk of the final files."""
 
@@ -56,8 +59,11 @@ def opened_results(path: Path) -> Iterator[Any]:
     import h5netcdf
 
     try:
+        require_sound_netcdf(path, "the results of a study", whole=False)
         with h5netcdf.File(path, "r") as file:
             yield file
+    except DamagedFileError as error:
+        raise DamagedFileError(f"{error}; solve it again with --force") from error
     except (*DAMAGE, AttributeError, IndexError) as error:
         raise DamagedFileError(
             f"{path}: cannot be read as the results of a study: {one_line(error)}; solve it again with --force"
@@ -170,7 +176,7 @@ class StudyFolder:
 
     def _held(self) -> str | None:
         try:
-            return str(json.loads(self._plan.read_text(encoding="utf-8"))["fingerprint"])
+            return str(json.loads(read_regular(self._plan, LARGEST_PLAN))["fingerprint"])
         except FileNotFoundError:
             return None
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:

@@ -1,0 +1,92 @@
+"""Files that are named to the program or found in its folders: regular ones of sane size are read, nothing else.
+
+A pipe nobody writes to would be waited for without end, a device such as ``/dev/zero`` read without end.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BufferedReader
+from pathlib import Path
+
+KINDS = {
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFDIR: "a folder",
+}
+"""What lies where a file should."""
+
+
+class NotReadableError(OSError):
+    """A file is not one that is read; ``strerror`` says why."""
+
+
+@contextmanager
+def regular_file(path: Path, largest: int | None = None) -> Iterator[BufferedReader]:
+    """Open a regular file for reading; every reader of the program opens its files here.
+
+    Parameters
+    ----------
+    path : Path
+        The file; links are followed.
+    largest : int, optional
+        Bytes that no such file has more of.
+
+    Yields
+    ------
+    file
+        Of bytes.
+
+    Raises
+    ------
+    OSError
+        When there is none, it is a pipe, a device, a socket or a folder, or larger; ``strerror`` says which.
+    """
+    # Not blocking: to open a pipe for reading waits for somebody who writes. On regular files it has no effect.
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        found = os.fstat(descriptor)
+        if not stat.S_ISREG(found.st_mode):
+            kind = KINDS.get(stat.S_IFMT(found.st_mode), "something else")
+            raise NotReadableError(errno.EINVAL, f"not a regular file but {kind}", str(path))
+        if largest is not None and found.st_size > largest:
+            told = f"it has {found.st_size / 1e6:,.0f} MB, such files have at most {largest / 1e6:,.0f} MB"
+            raise NotReadableError(errno.EFBIG, told, str(path))
+        with os.fdopen(descriptor, "rb", closefd=False) as stream:
+            yield stream
+    finally:
+        os.close(descriptor)
+
+
+def read_regular(path: Path, largest: int) -> bytes:
+    """Return the content of a regular file; see `regular_file`, whose errors it raises.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    largest : int
+        Bytes that no such file has more of; one that grows meanwhile is cut there.
+    """
+    with regular_file(path, largest) as stream:
+        return stream.read(largest)
+
+
+def require_regular(path: Path, largest: int | None = None) -> None:
+    """Refuse what a library is not to open by its name; see `regular_file`, whose errors it raises.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    largest : int, optional
+        Bytes that no such file has more of.
+    """
+    with regular_file(path, largest):
+        pass
