@@ -348,11 +348,12 @@ def analyse(
     start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
     start[full.rows] = full.found.pose
     try:
-        light = balance_what_can_be(at_light_torque, angle.size, start)
+        same = drive.load.light_torque == torque
+        light = full if same else balance_what_can_be(at_light_torque, angle.size, start)
     except ConvergenceError as error:
         light = nothing_balanced(full.found, angle.size, error)
     back = _turned_back(prepared.model, drive, full, angle, torque)
-    if light.failure is not None:
+    if light.failure is not None and light is not full:
         light.failure.add(f"load.light_torque = {drive.load.light_torque:g} N·mm")
     push = bearing_forces(prepared.model, angle[full.rows], full.found.response)
     analysis = LoadedAnalysis(

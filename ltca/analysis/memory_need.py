@@ -14,6 +14,30 @@ MEMORY_PER_PAIR = 900.0
 DISC_PER_PAIR = 60.0
 
 
+TOGETHER = 2e8
+"""Memory of an analysis that is done part by part, bytes: all turns of the paper's drive are one part."""
+
+
+def positions_together(drive: Drive) -> int:
+    """Return how many positions of a drive are solved at once where they are solved part by part.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    return max(1, int(TOGETHER / (MEMORY_PER_PAIR * _pairs(drive))))
+
+
+def _pairs(drive: Drive) -> int:
+    """Pairs of contacts of all discs."""
+    return drive.disc.number_of_discs * (
+        drive.pin_wheel.number_of_pins
+        + drive.crank.number * drive.crank_bearing.number_of_rollers
+        + drive.number_of_holes
+    )
+
+
 def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, option: str) -> None:
     """Refuse an analysis that would not fit into memory or on the disc.
 
@@ -33,15 +57,7 @@ def require_room_for(drives: Iterable[Drive], positions: int, folder: Path, opti
     PlaceError
         With the numbers.
     """
-    pairs = sum(
-        drive.disc.number_of_discs
-        * (
-            drive.pin_wheel.number_of_pins
-            + drive.crank.number * drive.crank_bearing.number_of_rollers
-            + drive.number_of_holes
-        )
-        for drive in drives
-    )
+    pairs = sum(map(_pairs, drives))
     require_room(
         DISC_PER_PAIR * pairs * positions, memory=MEMORY_PER_PAIR * pairs * positions, folder=folder, option=option
     )

@@ -10,7 +10,7 @@ by least squares in place of a Fourier transform over a period.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ FloatArray = NDArray[np.float64]
 
 APART = 1e-3
 """Of the largest singular value the least that orders told apart leave."""
+TOGETHER = 20_000
+"""Positions whose columns are in memory at once."""
 
 
 class Order(NamedTuple):
@@ -161,11 +163,18 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
         When the positions cannot tell the orders apart (too few, or over too few turns).
     """
     values = np.array([order.value for order in orders])
-    columns = _columns(np.asarray(crank_angle), values)
-    solution, _, rank, singular = np.linalg.lstsq(columns, error, rcond=None)
-    if rank < columns.shape[1] or singular[-1] < APART * singular[0]:
+    angle, error = np.asarray(crank_angle), np.asarray(error)
+    # The triangle of columns and error side by side, block by block: its solution and its last corner are theirs.
+    triangle: Any = np.zeros((0, 2 * len(orders) + 2))
+    for first in range(0, angle.size, TOGETHER):
+        few = slice(first, first + TOGETHER)
+        block = np.column_stack([_columns(angle[few], values), error[few]])
+        triangle = np.linalg.qr(np.vstack([triangle, block]), mode="r")
+    count = 2 * len(orders) + 1
+    solution, _, rank, singular = np.linalg.lstsq(triangle[:, :count], triangle[:, count], rcond=None)
+    if rank < count or singular[-1] < APART * singular[0]:
         raise ValueError(
-            f"{columns.shape[0]} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
+            f"{angle.size} positions cannot tell {len(orders)} orders apart; give more of them over more turns"
         )
     cosine, sine = solution[1 : len(orders) + 1], solution[len(orders) + 1 :]
     return Spectrum(
@@ -173,5 +182,5 @@ def fit_orders(crank_angle: FloatArray, error: FloatArray, orders: tuple[Order, 
         amplitude=np.hypot(cosine, sine),
         phase=np.arctan2(sine, cosine),
         mean=float(solution[0]),
-        residual=float(np.sqrt(np.mean((columns @ solution - error) ** 2))),
+        residual=float(np.linalg.norm(triangle[:, :count] @ solution - triangle[:, count]) / np.sqrt(angle.size)),
     )

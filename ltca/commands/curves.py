@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,6 +12,7 @@ from ltca.commands.compliance_arguments import add_compliance_arguments
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
+    add_figures_argument,
     add_out_argument,
     add_page_argument,
     count_argument,
@@ -18,7 +21,7 @@ from ltca.reading.arguments import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from ltca.analysis.engines import Engine
     from ltca.analysis.friction.hysteresis import HysteresisLoop
@@ -87,7 +90,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_compliance_arguments(parser)
     add_out_argument(parser, "curves")
-    parser.add_argument("--no-figures", action="store_true", help="write no pictures")
+    add_figures_argument(parser)
     add_page_argument(parser)
 
 
@@ -121,23 +124,26 @@ class CaseCurves(NamedTuple):
         Of the whole drive.
     turns : int
         Crank turns behind everything below.
-    crank_angle : array, shape (positions,)
-        Their positions, rad.
+    positions : int
+        In all of them.
     spectrum : Spectrum
         Orders of the transmission error.
     lives : BearingLives
         Of all crank bearings.
-    pressure : array, shape (positions, pins)
-        At mid-width, MPa.
+    crank_angle : array, shape (positions of a turn,)
+        φ_C in the turn that holds the largest pressure of all, rad.
+    pressure : array, shape (positions of a turn, pins)
+        At mid-width in that turn, MPa.
     safety : PressureSafety
-        Over all positions.
+        Over all positions; its position is one of that turn.
     """
 
     curve: TorqueCurve
     turns: int
-    crank_angle: FloatArray
+    positions: int
     spectrum: Spectrum
     lives: BearingLives
+    crank_angle: FloatArray
     pressure: FloatArray
     safety: PressureSafety
 
@@ -156,7 +162,7 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select_warm(arguments.case)
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)
-    from ltca.analysis.memory_need import require_room_for
+    from ltca.analysis.memory_need import positions_together, require_room_for
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
     limits, engine = Limits(*asked), compliance_of(arguments)
@@ -164,13 +170,14 @@ def execute(arguments: argparse.Namespace) -> int:
         if drive.duty and limits.speed is not None:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])
         turns = arguments.turns or drive.pin_wheel.number_of_pins
-        require_room_for([drive], turns * positions_per_turn(drive), out, f"--turns {turns}")
+        positions = turns * positions_per_turn(drive)
+        require_room_for([drive], min(positions, positions_together(drive)), out, f"--turns {turns}")
         if turns < drive.pin_wheel.number_of_pins:
             _require_turns(drive, turns)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
-    figures = figure_files(*(name + ending for name in FIGURES for ending in endings))
+    figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
     writes = ["curves.json", *([] if arguments.no_page else ["report.html"])]
-    with claimed_folder(out, "curves", writes=[*writes, *([] if arguments.no_figures else figures)]):
+    with claimed_folder(out, "curves", writes=[*writes, *figures]):
         find_coefficients_of(cases, arguments)
         return _solve_and_write(file, cases, limits, engine, arguments, out)
 
@@ -212,23 +219,26 @@ def _solve_and_write(
 
     contents, figures = {}, []
     sections: list[Section] = []
-    with progress("cases", len(cases)) as advance:
+    turns_of = {name: arguments.turns or drive.pin_wheel.number_of_pins for name, drive in cases.items()}
+    total = sum(turns * positions_per_turn(cases[name]) for name, turns in turns_of.items())
+    with progress("positions", total) as advance:
         for name, drive in cases.items():
             title = f"{file.name} {name}"
             own = (
                 limits if limits.pressure is not None else limits._replace(pressure=_allowed(drive, file.limits[name]))
             )
-            found = _solve(drive, arguments.turns or drive.pin_wheel.number_of_pins, own, engine)
+            found = _solve(drive, turns_of[name], own, engine, partial(advance, name))
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, own)
             if not arguments.no_page:
                 sections += _sections(found, drive, own, f"{name}: " if len(cases) > 1 else "")
-            if not arguments.no_figures:
+            if arguments.figures:
                 ending = f"_{name}" if len(cases) > 1 else ""
-                figures += _draw(found, title, drive.disc.number_of_discs, out / "figures", ending)
-            advance(name)
+                figures += _draw(
+                    found, title, drive.disc.number_of_discs, out / "figures", f"{ending}.{arguments.figures}"
+                )
     if figures:
-        print(f"figures: {out / 'figures'} ({len(figures)} as SVG and PNG)")
+        print(f"figures: {out / 'figures'} ({len(figures)} as {arguments.figures.upper()})")
     (first, *others) = contents.values()
     write_json(out / "curves.json", {"drive": file.name, "cases": contents} if others else first)
     files = [out / "curves.json"]
@@ -249,21 +259,13 @@ def _sections(found: CaseCurves, drive: Drive, limits: Limits, of: str) -> list[
     from ltca.analysis.life.life_text import life_lines
     from ltca.page.studies.curves import life_section, orders_section, pressure_section, torque_section
 
-    turn = _worst_turn(found)
-    over = f"over {found.turns} turns, {found.crank_angle.size} positions"
+    over = f"over {found.turns} turns, {found.positions} positions"
     return [
         torque_section(found.curve, of),
         orders_section(found.spectrum, over, of),
         life_section(life_lines(found.lives, drive, _life_speed(drive, limits)), of),
-        pressure_section(found.crank_angle[turn], found.pressure[turn], found.safety, of),
+        pressure_section(found.crank_angle, found.pressure, found.safety, of),
     ]
-
-
-def _worst_turn(found: CaseCurves) -> slice:
-    """Positions of the turn that holds the largest pressure of all: what is drawn is what is printed."""
-    each = found.crank_angle.size // found.turns
-    first = found.safety.position - found.safety.position % each
-    return slice(first, first + each)
 
 
 def _life_speed(drive: Drive, limits: Limits) -> str | None:
@@ -288,12 +290,13 @@ def _crank_speed(drive: Drive, limits: Limits) -> float | None:
     return drive.load.speed * (1.0 if drive.crank.number == 1 else abs(drive.crank_turns_per_input))
 
 
-def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurves:
+def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine, advance: Callable[[int], None]) -> CaseCurves:
+    """Solve a case, a part of its positions at a time: what is kept of them is little."""
     import numpy as np
 
     from ltca.analysis import loaded_analysis
-    from ltca.analysis.life.bearing_lives import bearing_lives
-    from ltca.analysis.pressure_safety import pressure_safety
+    from ltca.analysis.life.bearing_lives import lives_over, passages_of_duty
+    from ltca.analysis.memory_need import positions_together
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders
     from ltca.errors import DriveError
@@ -305,25 +308,66 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine) -> CaseCurv
     curve = torque_curve(drive, angles, engine=engine, lost_motion=limits.lost_motion)
     each = positions_per_turn(drive)
     angle = 2.0 * np.pi * np.arange(turns * each) / each
-    analysis = loaded_analysis.analyse(drive, angle, engine=engine)
+    # Of the light torque nothing is told here: at the whole one it is not solved again.
+    loaded = replace(drive, load=replace(drive.load, light_torque=drive.load.torque))
+    error, passages, pressures = [], [], _PressureOfTurns(each)
+    for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
+        analysis = loaded_analysis.analyse(loaded, rows, engine=engine)
+        error.append(analysis.transmission_error)
+        passages.append(passages_of_duty(analysis))
+        pressures.add(analysis.pressures.pins.mid)
+        advance(rows.size)
     try:
-        spectrum = fit_orders(angle, analysis.transmission_error, _orders(drive))
-    except ValueError as error:
-        raise DriveError([f"--turns = {turns}: {error}"]) from error
+        spectrum = fit_orders(angle, np.concatenate(error), _orders(drive))
+    except ValueError as problem:
+        raise DriveError([f"--turns = {turns}: {problem}"]) from problem
     # The disc does not turn against the pin shaft: a bearing turns as the crank does against that one.
     turning = abs(drive.output_per_wheel_angle) if drive.crank.number == 1 else 1.0
     speed = None if limits.speed is None else limits.speed * turning
+    turn = pressures.turn * each
     return CaseCurves(
         curve=curve,
         turns=turns,
-        crank_angle=angle,
+        positions=angle.size,
         spectrum=spectrum,
-        lives=bearing_lives(analysis, dynamic_load_rating=limits.load_rating, speed=speed),
-        pressure=analysis.pressures.pins.mid,
-        safety=pressure_safety(
-            analysis.pressures.pins.mid, float("inf") if limits.pressure is None else limits.pressure
-        ),
+        lives=lives_over(passages, dynamic_load_rating=limits.load_rating, speed=speed),
+        crank_angle=angle[turn : turn + each],
+        pressure=pressures.worst,
+        safety=pressures.safety(float("inf") if limits.pressure is None else limits.pressure),
     )
+
+
+class _PressureOfTurns:
+    """Flank pressures turn by turn, of which the turn with the largest is kept: what is drawn is what is printed."""
+
+    def __init__(self, each: int) -> None:
+        self._each, self._complete = each, 0
+        self._open: FloatArray | None = None
+        self._largest: Any = None
+        self.turn = 0
+        self.worst: Any = None
+
+    def add(self, pressure: FloatArray) -> None:
+        """Take the pressures of the next positions, shape (positions, pins), MPa."""
+        import numpy as np
+
+        self._open = pressure if self._open is None else np.concatenate([self._open, pressure])
+        while len(self._open) >= self._each:
+            one, self._open = self._open[: self._each], self._open[self._each :]
+            if self.worst is None or one.max() > self.worst.max():
+                self.turn, self.worst = self._complete, one.copy()
+            largest = one.max(axis=0)
+            self._largest = largest if self._largest is None else np.maximum(self._largest, largest)
+            self._complete += 1
+
+    def safety(self, limit: float) -> PressureSafety:
+        """Safety over all turns against a limit, MPa."""
+        import numpy as np
+
+        from ltca.analysis.pressure_safety import pressure_safety
+
+        # The largest of each pin in all turns stands behind the worst turn, whose position is found first.
+        return pressure_safety(np.vstack([self.worst, self._largest]), limit)
 
 
 def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: Limits) -> None:
@@ -335,7 +379,7 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
 
     curve, spectrum, safety = found.curve, found.spectrum, found.safety
     discs, output = drive.disc.number_of_discs, "output" if drive.wheel_is_held else "wheel"
-    over = f"over {found.turns} turns, {found.crank_angle.size} positions"
+    over = f"over {found.turns} turns, {found.positions} positions"
     print(
         f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh"
     )
@@ -377,17 +421,13 @@ def _range(values: Any) -> str:
 
 
 def _draw(found: CaseCurves, title: str, discs: int, folder: Path, ending: str) -> list[Path]:
-    from dataclasses import replace
-
     from ltca.figures import curve_figures as figures
 
-    turn = _worst_turn(found)
-    shown = replace(found.safety, position=found.safety.position - turn.start)
     return [
         figures.draw_torque_curve(found.curve, title, folder / f"torque_curve{ending}"),
         figures.draw_spectrum(found.spectrum, title, folder / f"transmission_error_orders{ending}"),
         figures.draw_pressure(
-            found.crank_angle[turn], found.pressure[turn], shown, title, folder / f"flank_pressure{ending}", discs
+            found.crank_angle, found.pressure, found.safety, title, folder / f"flank_pressure{ending}", discs
         ),
     ]
 
@@ -428,7 +468,7 @@ def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
         },
         "transmission_error_orders": {
             "turns": found.turns,
-            "positions": found.crank_angle.size,
+            "positions": found.positions,
             "orders": [
                 {"order": entry.value, "name": entry.name, "amplitude_rad": float(size), "phase_rad": float(phase)}
                 for entry, size, phase in zip(spectrum.orders, spectrum.amplitude, spectrum.phase, strict=True)

@@ -11,6 +11,7 @@ from ltca.commands.study_arguments import add_positions_argument, add_seed_argum
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
+    add_figures_argument,
     add_out_argument,
     add_page_argument,
     count_argument,
@@ -64,7 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_compliance_arguments(parser)
     add_out_argument(parser, "optimise")
     add_page_argument(parser)
-    parser.add_argument("--no-figures", action="store_true", help="write the drive and the candidates only")
+    add_figures_argument(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -80,7 +81,7 @@ def execute(arguments: argparse.Namespace) -> int:
     require_folder(out)
     engine = compliance_of(arguments)
     problem = _problem(file.cases[case], arguments)
-    figures = [] if arguments.no_figures else figure_files("pareto" if len(problem.aims) == 2 else "search")
+    figures = figure_files(arguments.figures, "pareto" if len(problem.aims) == 2 else "search")
     page = [] if arguments.no_page else ["report.html"]
     writes = ["optimum.toml", "optimum.json", "candidates.parquet", *page, *figures]
     with claimed_folder(out, "optimise", writes=writes):
@@ -122,10 +123,10 @@ def _search_and_write(
     print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
     _print(optimum, fine, arguments.positions)
     print("results: " + ", ".join(str(out / name) for name in ("optimum.toml", "optimum.json", "candidates.parquet")))
-    if not arguments.no_figures:
+    if arguments.figures:
         from ltca.figures.optimum_figures import write_optimum_figure
 
-        print(f"figure: {write_optimum_figure(optimum, arguments.positions, out)}")
+        print(f"figure: {write_optimum_figure(optimum, arguments.positions, out, arguments.figures)}")
     return 0
 
 

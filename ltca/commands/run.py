@@ -12,6 +12,7 @@ from ltca.errors import ConvergenceError
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
+    add_figures_argument,
     add_out_argument,
     add_page_argument,
     count_argument,
@@ -86,10 +87,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="φ",
         nargs="*",
         type=quantity_argument("--pressure", "rad"),
-        help="pressure fields of all loaded contacts at these crank angles (default 0) into pressure.nc, with figures",
+        help="pressure fields of all loaded contacts at these crank angles (default 0) into pressure.nc; --figures draws them",
     )
     add_out_argument(parser, "run")
-    parser.add_argument("--no-figures", action="store_true", help="write no pictures")
+    add_figures_argument(parser)
     add_page_argument(parser)
     parser.add_argument(
         "--compare",
@@ -126,7 +127,7 @@ def execute(arguments: argparse.Namespace) -> int:
     with claimed_folder(out, "run", writes=_files(arguments, cases)):
         find_coefficients_of(cases, arguments)
         chosen = _Chosen(file=file, cases=cases, engine=engine, torque=torque)
-        wanted = _Wanted(figures=not arguments.no_figures, page=not arguments.no_page, compared=compared)
+        wanted = _Wanted(figures=arguments.figures, page=not arguments.no_page, compared=compared)
         return _solve_and_write(chosen, angles, pressure_angles, out, wanted)
 
 
@@ -143,14 +144,14 @@ def _files(arguments: argparse.Namespace, cases: Mapping[str, Drive]) -> Iterato
     yield from ("results.nc", "summary.json", *(() if arguments.no_page else ("report.html",)))
     if arguments.pressure is not None:
         yield "pressure.nc"
-    if not arguments.no_figures:
+    if arguments.figures:
         from ltca.figures.pressure_figures import PRESSURE_FIGURES
         from ltca.figures.run_figures import figure_names
         from ltca.output.run_folder import figure_files
 
-        yield from figure_files(*figure_names(*_parts(cases)))
+        yield from figure_files(arguments.figures, *figure_names(*_parts(cases)))
         if arguments.pressure is not None:
-            yield from figure_files(*PRESSURE_FIGURES)
+            yield from figure_files(arguments.figures, *PRESSURE_FIGURES)
             yield from (f"figures/fig31_roller_pressure_{escape(name)}.png" for name in cases)
 
 
@@ -166,7 +167,7 @@ class _Chosen(NamedTuple):
 class _Wanted(NamedTuple):
     """What is written beside the numbers."""
 
-    figures: bool
+    figures: str | None
     page: bool
     compared: Compared | None
 
@@ -239,7 +240,7 @@ def _solve_and_write(
         told = f"case {name}: partial: {left} of {2 * angles.size} states have no answer"
         print(f"cyclo: error: {told}: {failure}", file=sys.stderr)
     if wanted.figures:
-        _draw(dataset, fields, cases, out / "figures")
+        _draw(dataset, fields, cases, out / "figures", wanted.figures)
     return ConvergenceError.exit_status if failures else 0
 
 
@@ -311,21 +312,21 @@ def _analyse(
     return analyses, failures
 
 
-def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path) -> None:
+def _draw(dataset: Dataset, fields: Dataset | None, cases: dict[str, Drive], folder: Path, kind: str) -> None:
     from ltca.figures.run_figures import figure_names, write_figures
     from ltca.output.progress import progress
 
     names = figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"])
     with progress("figures", len(names)) as advance:
-        for path in write_figures(dataset, folder):
+        for path in write_figures(dataset, folder, kind):
             advance(path.name)
-    print(f"figures: {folder} ({len(names)} as SVG and PNG)")
+    print(f"figures: {folder} ({len(names)} as {kind.upper()})")
     if fields is None:
         return
     from ltca.figures.pressure_figures import write_pressure_figures
 
     with progress("pressure figures", 3 + len(cases)) as advance:
-        for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), folder):
+        for path in write_pressure_figures(dataset, fields, next(iter(cases.values())), folder, kind):
             advance(path.name)
 
 

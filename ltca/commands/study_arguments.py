@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
-from ltca.reading.arguments import add_out_argument, add_page_argument, count_argument
+from ltca.reading.arguments import add_figures_argument, add_out_argument, add_page_argument, count_argument
 
 if TYPE_CHECKING:
     from ltca.studies.execution.storage import StudyFolder
@@ -65,7 +65,7 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
     add_out_argument(parser, command)
     parser.add_argument("--resume", action="store_true", help="continue an interrupted study in --out")
     parser.add_argument("--force", action="store_true", help="replace another study in --out")
-    parser.add_argument("--no-figures", action="store_true", help="write no pictures")
+    add_figures_argument(parser)
     add_page_argument(parser)
     parser.add_argument(
         "--sample",
@@ -133,7 +133,7 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
     columns = len(study.design.names) + len(study.quantities)
     size = COPIES * 8.0 * columns * study.design.samples
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")
-    figures = [] if arguments.no_figures else figure_files("responses", "distributions", "sensitivity")
+    figures = figure_files(arguments.figures, "responses", "distributions", "sensitivity")
     writes = [*(path.name for path in folder.files), "summary.json", sample_file("[0-9]" * 8), *figures]
     writes += [] if arguments.no_page else ["report.html"]
     # Of its own files that are not as it wrote them a study tells what to do, or it was told to replace them.
@@ -174,11 +174,11 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
         from ltca.page.study_page import write_study_page
 
         print(f"page: {write_study_page(samples_page(study, found), folder.path)}")
-    if found.quantities and not arguments.no_figures:
+    if found.quantities and arguments.figures:
         from ltca.figures.study_figures import write_study_figures
 
-        paths = list(write_study_figures(folder, study, found.ranking, found.nominal))
-        print(f"figures: {folder.path / 'figures'} ({len(paths)} as SVG and PNG)")
+        paths = list(write_study_figures(folder, study, found.ranking, found.nominal, arguments.figures))
+        print(f"figures: {folder.path / 'figures'} ({len(paths)} as {arguments.figures.upper()})")
     if found.failures:
         # Said last and as `run` says it: what stands above is that of the samples that have an answer.
         tell(f"cyclo: error: partial: {len(found.failures)} of {study.design.samples} samples failed")

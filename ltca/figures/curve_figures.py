@@ -30,12 +30,12 @@ STIFF = 0.5
 """Part of the rated torque from which on the stiffness is read."""
 
 
-def _save(figure: Figure, stem: Path) -> Path:
-    return save_figure(figure, stem)
+def _save(figure: Figure, path: Path) -> Path:
+    return save_figure(figure, path)
 
 
-def draw_torque_curve(curve: TorqueCurve, title: str, stem: Path) -> Path:
-    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the PNG.
+def draw_torque_curve(curve: TorqueCurve, title: str, path: Path) -> Path:
+    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the file.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ def draw_torque_curve(curve: TorqueCurve, title: str, stem: Path) -> Path:
         Of one case.
     title : str
         Drive and case.
-    stem : Path
-        Of the files, without suffix.
+    path : Path
+        Of the file, whose suffix says what is written.
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
@@ -84,7 +84,7 @@ def draw_torque_curve(curve: TorqueCurve, title: str, stem: Path) -> Path:
         axes.set_title(shortened_name(title, 48))
         if curve.loop is not None:
             axes.text(0.98, 0.02, f"mean and range\nover {angles}", transform=axes.transAxes, ha="right", fontsize=7.5)
-        return _save(figure, stem)
+        return _save(figure, path)
 
 
 def _from_to(low: float, high: float) -> str:
@@ -119,8 +119,8 @@ def _mark_stiffness(axes: Any, curve: TorqueCurve) -> None:
     )  # fmt: skip
 
 
-def draw_spectrum(spectrum: Spectrum, title: str, stem: Path) -> Path:
-    """Draw the amplitudes of the orders, the largest by name; return the PNG."""
+def draw_spectrum(spectrum: Spectrum, title: str, path: Path) -> Path:
+    """Draw the amplitudes of the orders, the largest by name; return the file."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         axes = figure.subplots()
@@ -145,7 +145,7 @@ def draw_spectrum(spectrum: Spectrum, title: str, stem: Path) -> Path:
         axes.set_xlabel("order per turn of the crank")
         axes.set_ylabel("amplitude [″]")
         axes.set_title(f"{shortened_name(title, 48)}; unexplained {spectrum.residual * ARCSEC:.2g}″ rms")
-        return _save(figure, stem)
+        return _save(figure, path)
 
 
 def _without_overlap(x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
@@ -160,9 +160,9 @@ def _without_overlap(x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
 
 
 def draw_pressure(
-    crank_angle: FloatArray, pressure: FloatArray, safety: PressureSafety, title: str, stem: Path, discs: int = 1
+    crank_angle: FloatArray, pressure: FloatArray, safety: PressureSafety, title: str, path: Path, discs: int = 1
 ) -> Path:
-    """Draw the largest flank pressure over the crank angle with the limit; return the PNG."""
+    """Draw the largest flank pressure over the crank angle with the limit; return the file."""
     disc, number = divmod(safety.pin, pressure.shape[1] // discs)
     pin = f"pin {number}" if discs == 1 else f"pin {number} on disc {disc}"
     with mpl.rc_context(STYLE):
@@ -189,4 +189,4 @@ def draw_pressure(
             else f"{safety.largest:.0f} MPa, no limit"
         )
         axes.set_title(f"{shortened_name(title, 40)}: {told} ({pin})")
-        return _save(figure, stem)
+        return _save(figure, path)

@@ -53,7 +53,7 @@ def draw_drive(drive: Drive, analysis: LoadedAnalysis, position: int, path: Path
     case : str
         Its name, where there are several.
     """
-    save_figure(drive_figure(drive, analysis, position, case), path.with_name(path.stem), (path.suffix,))
+    save_figure(drive_figure(drive, analysis, position, case), path)
 
 
 def drive_figure(drive: Drive, analysis: LoadedAnalysis, position: int, case: str = "") -> Figure:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +38,7 @@ STYLE: Any = {
     "text.parse_math": False,
     "svg.fonttype": "none",
     "svg.hashsalt": "cyclo",
+    "pdf.fonttype": 42,
     "figure.constrained_layout.use": True,
 }
 CRANK_ANGLE = r"$\varphi_\mathrm{C}$"
@@ -67,32 +67,28 @@ def shortened_name(name: str, letters: int) -> str:
     return f"{name[:head]}…{name[len(name) - (letters - 1 - head) :]}"
 
 
-def save_figure(figure: Figure, stem: Path, suffixes: Sequence[str] = (".svg", ".png")) -> Path:
+def save_figure(figure: Figure, path: Path) -> Path:
     """Write a figure; same input, same bytes: no clock in it, and identifiers from a fixed salt.
 
     Parameters
     ----------
     figure : Figure
         Drawn with `STYLE`.
-    stem : Path
-        Without suffix, whatever points are in its name.
-    suffixes : sequence of str
-        Of the files.
+    path : Path
+        Its suffix says what is written.
 
     Returns
     -------
     Path
-        The last file.
+        The file.
     """
+    clock: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with mpl.rc_context(STYLE):
-        # One layout serves all files: to find it takes as long as to draw.
+        # To find the layout takes as long as to draw, and saving would find it twice.
         layout = figure.get_layout_engine()
         if layout is not None:
             layout.execute(figure)
         figure.set_layout_engine("none")
-        for suffix in suffixes:
-            path = stem.with_name(stem.name + suffix)
-            metadata = {"Date": None} if suffix == ".svg" else None
-            with whole_file(path) as part:
-                figure.savefig(part, dpi=DOTS_PER_INCH, metadata=metadata)
+        with whole_file(path) as part:
+            figure.savefig(part, dpi=DOTS_PER_INCH, metadata=clock.get(path.suffix))
     return path

@@ -17,13 +17,13 @@ from ltca.studies.optimiser import Optimum, describe_limit
 from ltca.studies.quantities import QUANTITIES
 
 
-def write_optimum_figure(optimum: Optimum, positions: int, folder: Path) -> Path:
-    """Write the figure of candidates solved at a number of positions as SVG and PNG and return the PNG."""
+def write_optimum_figure(optimum: Optimum, positions: int, folder: Path, kind: str = "svg") -> Path:
+    """Write the figure of candidates solved at a number of positions, as ``svg``, ``png`` or ``pdf``, and return the file."""
     two = len(optimum.problem.aims) == 2
     with mpl.rc_context(STYLE):
         title = _title(optimum, positions)
         figure, name = (_front(optimum, title), "pareto") if two else (_search(optimum, title), "search")
-    return save_figure(figure, folder / "figures" / name)
+    return save_figure(figure, folder / "figures" / f"{name}.{kind}")
 
 
 def _title(optimum: Optimum, positions: int) -> str:

@@ -308,8 +308,10 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     return figure
 
 
-def write_pressure_figures(results: xr.Dataset, fields: xr.Dataset, drive: Drive, folder: Path) -> Iterator[Path]:
-    """Write Fig. 27 and 31–33; sections as SVG and PNG, surfaces as PNG.
+def write_pressure_figures(
+    results: xr.Dataset, fields: xr.Dataset, drive: Drive, folder: Path, kind: str = "svg"
+) -> Iterator[Path]:
+    """Write Fig. 27 and 31–33; surfaces as PNG always: as lines they would take megabytes.
 
     Parameters
     ----------
@@ -321,19 +323,21 @@ def write_pressure_figures(results: xr.Dataset, fields: xr.Dataset, drive: Drive
         Any of the cases, for the flank.
     folder : Path
         Where to write; made when missing.
+    kind : str
+        ``svg``, ``png`` or ``pdf``, of the sections.
 
     Yields
     ------
     Path
-        The PNG of each figure when it is written.
+        Each figure when it is written.
     """
     with mpl.rc_context(STYLE):
         zone = Figure(figsize=(10.4, 4.6))
         draw_contact_zone(zone, results, drive)
         drawn = zone, draw_sections(fields, major=True), draw_sections(fields, major=False)
     for name, figure in zip(PRESSURE_FIGURES, drawn, strict=True):
-        yield save_figure(figure, folder / name)
+        yield save_figure(figure, folder / f"{name}.{kind}")
     for case in (str(name) for name in fields["case"].values):
         with mpl.rc_context(STYLE):
             surface = draw_roller_pressure(fields, case)
-        yield save_figure(surface, folder / f"fig31_roller_pressure_{case}", (".png",))
+        yield save_figure(surface, folder / f"fig31_roller_pressure_{case}.png")

@@ -312,8 +312,8 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.isel(position=known) if np.any(known) and not np.all(known) else dataset
 
 
-def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
-    """Write every figure as SVG and PNG.
+def write_figures(dataset: xr.Dataset, folder: Path, kind: str = "svg") -> Iterator[Path]:
+    """Write every figure.
 
     Parameters
     ----------
@@ -321,11 +321,13 @@ def write_figures(dataset: xr.Dataset, folder: Path) -> Iterator[Path]:
         Of `ltca.analysis.results.build_dataset`.
     folder : Path
         Where to write; made when missing.
+    kind : str
+        ``svg``, ``png`` or ``pdf``.
 
     Yields
     ------
     Path
-        The PNG of each figure when both files are written.
+        Each figure when it is written.
     """
     for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
-        yield save_figure(draw_figure(name, dataset), folder / name)
+        yield save_figure(draw_figure(name, dataset), folder / f"{name}.{kind}")

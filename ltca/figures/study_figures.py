@@ -31,9 +31,9 @@ by the variance of its coefficient."""
 
 
 def write_study_figures(
-    folder: StudyFolder, study: Study, ranking: Mapping[str, Any], nominal: Mapping[str, float]
+    folder: StudyFolder, study: Study, ranking: Mapping[str, Any], nominal: Mapping[str, float], kind: str = "svg"
 ) -> Iterator[Path]:
-    """Write the figures of a finished study as SVG and PNG.
+    """Write the figures of a finished study.
 
     Parameters
     ----------
@@ -45,15 +45,17 @@ def write_study_figures(
         Of `ltca.studies.study_results.rank`.
     nominal : mapping of str to float
         Quantities of the drive without deviations, drawn where known.
+    kind : str
+        ``svg``, ``png`` or ``pdf``.
 
     Yields
     ------
     Path
-        The PNG of each figure when both files are written.
+        Each figure when it is written.
     """
     values = {name: read_quantity(folder.results, name) for name in study.quantities}
     for name, figure in study_figures(study, values, ranking, nominal):
-        yield save_figure(figure, folder.path / "figures" / name)
+        yield save_figure(figure, folder.path / "figures" / f"{name}.{kind}")
 
 
 def study_figures(

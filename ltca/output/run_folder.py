@@ -217,20 +217,22 @@ class RunFolder:
             part.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def figure_files(*names: str) -> list[str]:
+def figure_files(kind: str | None, *names: str) -> list[str]:
     """Return what figures are written as, for ``writes`` of `claimed_folder`.
 
     Parameters
     ----------
+    kind : str or None
+        Of the files; None where no figures are asked for.
     *names : str
         Of the figures.
 
     Examples
     --------
-    >>> figure_files("search")
-    ['figures/search.svg', 'figures/search.png']
+    >>> figure_files("svg", "search")
+    ['figures/search.svg']
     """
-    return [f"figures/{name}{suffix}" for name in names for suffix in (".svg", ".png")]
+    return [] if kind is None else [f"figures/{name}.{kind}" for name in names]
 
 
 def require_folder(path: Path) -> None:

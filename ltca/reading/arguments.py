@@ -105,6 +105,23 @@ def add_page_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-page", action="store_true", help="write no report.html")
 
 
+FIGURE_KINDS = ("svg", "png", "pdf")
+"""Files that figures are written as."""
+
+
+def add_figures_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the argument that asks for figures, and the one that asks for none, which is the default."""
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument(
+        "--figures",
+        nargs="?",
+        const=FIGURE_KINDS[0],
+        choices=FIGURE_KINDS,
+        help=f"write figures for print into figures/, as {FIGURE_KINDS[0]} unless another kind is named",
+    )
+    which.add_argument("--no-figures", action="store_true", help="write no figures, the default")
+
+
 def default_folder(name: str, command: str) -> Path:
     """Return where a command writes when it is not told: ``out/<name>`` for ``run``, ``out/<name>_<command>`` else.
 

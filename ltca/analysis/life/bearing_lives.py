@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,16 +168,29 @@ def bearing_lives(
     >>> found.shortest.disc, found.shortest.crank
     (0, 0)
     """
-    drive = analysis.drive
-    if not drive.duty:
-        own = abs(drive.crank_turns_per_input) * drive.load.speed if drive.load.speed is not None else None
-        return lives_of_entries(
-            drive, [entry_loads(analysis, own if speed is None else speed, 1.0)], dynamic_load_rating
-        )
-    entries = []
-    for number, entry in enumerate(drive.duty):
-        solved = analysis if entry.torque == analysis.torque else at_entry(analysis, number)
-        entries.append(entry_loads(solved, abs(drive.crank_turns_per_input) * entry.speed, entry.share))
+    return lives_over([passages_of_duty(analysis)], dynamic_load_rating=dynamic_load_rating, speed=speed)
+
+
+def lives_over(
+    parts: Sequence[Sequence[RollerPassages]], *, dynamic_load_rating: float | None = None, speed: float | None = None
+) -> BearingLives:
+    """Return the lives of all crank bearings from positions that were solved part by part.
+
+    Parameters
+    ----------
+    parts : sequence of sequence of RollerPassages
+        Of each part of the positions, in their order, `passages_of_duty`.
+    dynamic_load_rating, speed : float, optional
+        As for `bearing_lives`.
+    """
+    drive, ratio = parts[0][0].drive, abs(parts[0][0].drive.crank_turns_per_input)
+    turning: list[tuple[float | None, float]]
+    if drive.duty:
+        turning = [(ratio * entry.speed, entry.share) for entry in drive.duty]
+    else:
+        own = None if drive.load.speed is None else ratio * drive.load.speed
+        turning = [(own if speed is None else speed, 1.0)]
+    entries = [entry_loads(each, *turns) for each, turns in zip(zip(*parts, strict=True), turning, strict=True)]
     return lives_of_entries(drive, entries, dynamic_load_rating)
 
 
@@ -196,7 +210,9 @@ def at_entry(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
         Where the entry has no answer; it is named.
     """
     drive, torque = analysis.drive, analysis.drive.duty[number].torque
-    load = replace(drive.load, torque=torque, speed=drive.duty[number].speed)
+    # Where no light torque was solved apart, none is here.
+    light = torque if drive.load.light_torque == analysis.torque else drive.load.light_torque
+    load = replace(drive.load, torque=torque, speed=drive.duty[number].speed, light_torque=light)
     try:
         return analyse(replace(drive, load=load), analysis.full.crank_angle, torque, analysis.engine)
     except DriveError as error:
@@ -234,13 +250,101 @@ class EntryLoads:
     largest_force: FloatArray
 
 
-def entry_loads(analysis: LoadedAnalysis, speed: float | None, share: float) -> EntryLoads:
-    """Return what all crank bearings carry in one entry of the duty.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollerPassages:
+    """Which roller presses where on its races, position by position: all that lives need of an analysis.
+
+    Attributes
+    ----------
+    drive : Drive
+        Whose they are.
+    torque : float
+        At the output, N·mm.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    inner_load, outer_load : array, shape (positions, discs, rollers)
+        N.
+    on_inner, in_bore : array, shape (positions, discs, rollers)
+        Places of the rollers in the frames of the races, rad.
+    largest_force : array, shape (discs, cranks)
+        Largest radial force over the positions, N.
+    laminae : tuple of Laminae
+        How rollers spread their loads on the inner race and in the bore.
+    """
+
+    drive: Drive
+    torque: float
+    crank_angle: FloatArray
+    inner_load: FloatArray
+    outer_load: FloatArray
+    on_inner: FloatArray
+    in_bore: FloatArray
+    largest_force: FloatArray
+    laminae: tuple[Laminae, Laminae]
+
+
+def passages_of_duty(analysis: LoadedAnalysis) -> list[RollerPassages]:
+    """Return the passages of each entry of the duty at the positions of an analysis; its own without duty.
 
     Parameters
     ----------
     analysis : LoadedAnalysis
-        At its torque, at positions evenly spread over whole turns of the crank, all balanced.
+        All its positions balanced.
+
+    Raises
+    ------
+    ValueError
+        When one has no answer.
+    """
+    duty = analysis.drive.duty
+    return [
+        roller_passages(analysis if entry.torque == analysis.torque else at_entry(analysis, number))
+        for number, entry in enumerate(duty)
+    ] or [roller_passages(analysis)]
+
+
+def roller_passages(analysis: LoadedAnalysis) -> RollerPassages:
+    """Return which rollers press where at the positions of an analysis.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        All its positions balanced.
+
+    Raises
+    ------
+    ValueError
+        When one has no answer.
+    """
+    if not np.all(analysis.balanced):
+        raise ValueError("life needs an answer at every position")
+    angle = analysis.full.crank_angle
+    rollers = [single.full.response.rollers for single in analysis.discs]
+    turned = [single.full.pose[:, DISC_ROTATION, None] for single in analysis.discs]
+    places = [model.geometry.placement.roller_angles(angle) for model in analysis.model.discs]
+    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
+    return RollerPassages(
+        drive=analysis.drive,
+        torque=analysis.torque,
+        crank_angle=angle,
+        inner_load=np.stack([each.inner_load for each in rollers], axis=1),
+        outer_load=np.stack([each.outer_load for each in rollers], axis=1),
+        on_inner=np.stack([place - angle[:, None] for place in places], axis=1),
+        in_bore=np.stack(
+            [np.angle(each.outer_direction) - turn for each, turn in zip(rollers, turned, strict=True)], axis=1
+        ),
+        largest_force=force.max(axis=0),
+        laminae=laminae_of(analysis),
+    )
+
+
+def entry_loads(parts: Sequence[RollerPassages], speed: float | None, share: float) -> EntryLoads:
+    """Return what all crank bearings carry in one entry of the duty.
+
+    Parameters
+    ----------
+    parts : sequence of RollerPassages
+        At its torque; together their positions are evenly spread over whole turns of the crank.
     speed : float or None
         Of the cranks against the discs, turns a minute.
     share : float
@@ -249,26 +353,27 @@ def entry_loads(analysis: LoadedAnalysis, speed: float | None, share: float) -> 
     Raises
     ------
     ValueError
-        When positions do not cover whole turns evenly, or one has no answer.
+        When they do not cover whole turns evenly.
     """
-    angle, drive = analysis.full.crank_angle, analysis.drive
-    if not covers_whole_turns(angle):
+    drive, (on_race, on_bore) = parts[0].drive, parts[0].laminae
+    if not covers_whole_turns(np.concatenate([part.crank_angle for part in parts])):
         raise ValueError("life needs positions evenly spread over whole turns of the crank")
-    if not np.all(analysis.balanced):
-        raise ValueError("life needs an answer at every position")
     cranks = drive.crank.number
     inner, outer = np.zeros((2, drive.disc.number_of_discs, cranks))
-    inner_laminae, outer_laminae = laminae_of(analysis)
-    for number, (single, model) in enumerate(zip(analysis.discs, analysis.model.discs, strict=True)):
-        rollers = single.full.response.rollers
-        on_inner = model.geometry.placement.roller_angles(angle) - angle[:, None]
-        in_bore = np.angle(rollers.outer_direction) - single.full.pose[:, DISC_ROTATION, None]
-        for crank, own in enumerate(np.split(np.arange(on_inner.shape[1]), cranks)):
-            inner[number, crank] = race_load(rollers.inner_load[:, own], on_inner[:, own], inner_laminae)
-            outer[number, crank] = race_load(rollers.outer_load[:, own], in_bore[:, own], outer_laminae)
-    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
-    return EntryLoads(
-        torque=analysis.torque, speed=speed, share=share, inner=inner, outer=outer, largest_force=force.max(axis=0)
+    rollers = np.split(np.arange(parts[0].on_inner.shape[2]), cranks)
+    for disc, crank in np.ndindex(*inner.shape):
+        own = np.s_[:, disc, rollers[crank]]
+        inner[disc, crank] = race_load(*_of_bearing(parts, "inner_load", "on_inner", own), on_race)
+        outer[disc, crank] = race_load(*_of_bearing(parts, "outer_load", "in_bore", own), on_bore)
+    force = np.max([part.largest_force for part in parts], axis=0)
+    return EntryLoads(torque=parts[0].torque, speed=speed, share=share, inner=inner, outer=outer, largest_force=force)
+
+
+def _of_bearing(parts: Sequence[RollerPassages], load: str, place: str, own: Any) -> tuple[FloatArray, FloatArray]:
+    """Loads and places of one bearing at all positions."""
+    return (
+        np.concatenate([getattr(part, load)[own] for part in parts]),
+        np.concatenate([getattr(part, place)[own] for part in parts]),
     )
 
 

@@ -35,6 +35,8 @@ HARMONICS = 24
 _PLACES = 4 * HARMONICS
 DAMAGE = 4.0
 """Exponent of the load over the time at one place."""
+TOGETHER = 50_000
+"""Loads that are summed at once: each takes a kilobyte meanwhile."""
 WEIBULL = 9.0 / 8.0
 """Slope of line contact: exponent of the damage over the places."""
 
@@ -56,9 +58,13 @@ def race_load(load: FloatArray, place: FloatArray, laminae: Laminae) -> float:
         return 0.0
     size, at = load[pressed], place[pressed]
     largest = float(np.max(size))
-    damage = ((size / largest)[:, None] * laminae.shares(size)) ** DAMAGE
     order = np.arange(HARMONICS + 1)
-    series = np.exp(-1j * np.outer(order, at)) @ damage / load.size
+    series = np.zeros((order.size, laminae.weights.size), dtype=complex)
+    for first in range(0, size.size, TOGETHER):
+        few = slice(first, first + TOGETHER)
+        shares = laminae.shares(np.append(size[few], largest))[:-1]  # solved around the largest of all
+        damage = ((size[few] / largest)[:, None] * shares) ** DAMAGE
+        series += np.exp(-1j * np.outer(order, at[few])) @ damage / load.size
     series[1:] *= 2.0
     around = np.exp(2j * np.pi * np.outer(np.arange(_PLACES), order) / _PLACES)
     over_time = np.maximum((around @ series).real, 0.0)  # a cut series may dip below zero where nothing presses

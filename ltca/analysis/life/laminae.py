@@ -133,26 +133,38 @@ class SolvedLaminae:
     def _solved(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Loads and shares of the contacts around [LIGHTEST, 1] of the largest load, ascending."""
         # An approach of any power of the rung: every load of a drive is served by the same contacts.
-        scale = self.length**2 / self.effective_radius
         rough = largest / (self.contact_modulus * self.length)
-        first = int(np.floor(np.log(rough / scale) / np.log(RUNG)))
-        found = {first: self._at(scale * RUNG**first)}
+        first = int(np.floor(np.log(rough / self._height) / np.log(RUNG)))
+        found = {first: self._at(first)}
         while found[max(found)][0] < largest:
-            found[max(found) + 1] = self._at(scale * RUNG ** (max(found) + 1))
+            found[max(found) + 1] = self._at(max(found) + 1)
         while found[min(found)][0] > LIGHTEST * largest:
-            found[min(found) - 1] = self._at(scale * RUNG ** (min(found) - 1))
+            found[min(found) - 1] = self._at(min(found) - 1)
         rungs = [found[number] for number in sorted(found)]
         return np.array([load for load, _ in rungs]), np.array([row for _, row in rungs])
 
-    def _at(self, approach: float) -> tuple[float, FloatArray]:
-        return solve_laminae(self.profile, self.length, self.effective_radius, self.contact_modulus, approach)
+    @property
+    def _height(self) -> float:
+        """What approaches are counted in, L²/ρ, mm."""
+        return self.length**2 / self.effective_radius
+
+    def _at(self, number: int) -> tuple[float, FloatArray]:
+        """Load and shares at a rung."""
+        approach, unit = RUNG**number, self.contact_modulus
+        if self.profile is not None:
+            load, row = solve_laminae(self.profile, self.length, self.effective_radius, self._height * approach)
+        else:
+            # Lengths counted in L and heights in L²/ρ, straight rollers of all sizes are one: it is solved once.
+            load, row = solve_laminae(None, 1.0, 1.0, approach)
+            unit *= self.length * self._height
+        return unit * load, row
 
 
 @lru_cache(maxsize=512)
 def solve_laminae(
-    profile: Relief | None, length: float, effective_radius: float, contact_modulus: float, approach: float
+    profile: Relief | None, length: float, effective_radius: float, approach: float
 ) -> tuple[float, FloatArray]:
-    """Solve one contact and return its load, N, and n_s q_k/Q from the middle slice outward.
+    """Solve one contact and return its load by E*, mm², and n_s q_k/Q from the middle slice outward.
 
     Parameters
     ----------
@@ -160,8 +172,6 @@ def solve_laminae(
         Relief along the length.
     length, effective_radius : float
         mm.
-    contact_modulus : float
-        MPa.
     approach : float
         At mid-length, mm.
 
@@ -183,7 +193,7 @@ def solve_laminae(
         separation = grid.cell_means(
             lambda x, along: x**2 / (2.0 * effective_radius) + (0.0 if profile is None else _relief(profile, along))
         )
-        return solve_patch(grid, separation, contact_modulus, approach)
+        return solve_patch(grid, separation, 1.0, approach)
 
     guess = solve(expected_half_width(length, effective_radius, approach), _GUESS_CELLS).half_width
     found = solve(guess, _CELLS)
