@@ -46,6 +46,12 @@ ROUNDS, SHRINKING, PIVOTS = 60, 12, 400
 """Programmes, those after which steps get shorter, pivots of each."""
 KEPT = 8
 """Programmes of which the tangents of arcs are kept."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+"""Part of a turn between positions."""
+POSITIONS, REFINEMENTS, PLACES = 48, 3, 4
+"""Positions of a turn, rounds of more of them, and largest ones about which these lie."""
+BESIDE = np.array([-0.75, -0.5, -0.25, 0.25, 0.5, 0.75])
+"""Where these lie, by the mean distance of positions in the first round."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +76,61 @@ class Play:
         return np.asarray(self.forward - self.backward)
 
 
-def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray) -> Play:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TurnPlay:
+    """Free play of the wheel over one turn of the crank.
+
+    Attributes
+    ----------
+    largest, least : float
+        rad.
+    crank_angle : float
+        φ_C of the largest, rad.
+    preloaded : float
+        Part of the positions looked at where parts overlap in every pose.
+    """
+
+    largest: float
+    least: float
+    crank_angle: float
+    preloaded: float
+
+
+def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
+    """Return the largest and the least free play of the wheel over one turn of the crank.
+
+    Flank, holes and rollers pass with periods of their own: positions of equal steps see few phases of some of them. So they lie
+    at multiples of the golden section, and more of them about the largest and the least until these are within some 0.2 %.
+
+    Parameters
+    ----------
+    discs : sequence of ContactGeometry
+        Of every disc of one drive.
+
+    Raises
+    ------
+    ConvergenceError
+        As `free_play`.
+    """
+    angle = 2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0)
+    found = free_play(discs, angle)
+    play, preloaded, spread = found.play, float(found.preloaded.mean()), 2.0 * np.pi / POSITIONS
+    for _ in range(REFINEMENTS):
+        order = np.argsort(play, kind="stable")
+        near = np.concatenate([order[:1], order[-PLACES:]])
+        between = (angle[near][:, None] + spread * BESIDE).ravel()
+        angle, play = np.append(angle, between), np.append(play, free_play(discs, between).play)
+        spread *= 0.3
+    most = int(np.argmax(play))
+    return TurnPlay(
+        largest=float(play[most]),
+        least=float(play.min()),
+        crank_angle=float(angle[most] % (2.0 * np.pi)),
+        preloaded=preloaded,
+    )
+
+
+def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, overlap: FloatArray | float = 0.0) -> Play:
     """Return the free play of the wheel with every clearance, the crank held.
 
     Parameters
@@ -79,6 +139,8 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray) -> Play
         Of every disc on the wheel: of one drive, or of as many positions.
     crank_angle : array, shape (positions,)
         Held φ_C, rad.
+    overlap : float or array, shape (positions,)
+        How far parts may overlap, mm.
 
     Raises
     ------
@@ -88,9 +150,9 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray) -> Play
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
     forward, backward = np.full(angle.size, np.inf), np.full(angle.size, -np.inf)
-    preloaded = np.zeros(angle.size, dtype=bool)
+    preloaded, room = np.zeros(angle.size, dtype=bool), np.broadcast_to(np.asarray(overlap, dtype=float), angle.shape)
     for disc in discs:
-        pose, left = _Programme(disc.take(rows), angle[rows]).farthest(sense)
+        pose, left = _Programme(disc.take(rows), angle[rows], room[rows]).farthest(sense)
         turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
         preloaded |= np.any(left.reshape(2, -1) > CLOSED, axis=0)
@@ -98,9 +160,24 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray) -> Play
     preloaded |= (backward - forward) * max(_reach(disc) for disc in discs) > GAIN
     shut = preloaded | (forward < backward)
     middle = 0.5 * (forward + backward)
-    return Play(
-        forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded
-    )
+    return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
+
+
+def largest_overlap(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray) -> FloatArray:
+    """Return how far parts of one disc overlap in poses, mm, shape (positions,); negative: the least gap.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        Of one disc.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, 4)
+        q of `ltca.geometry.pairs`.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    gap, _, _ = _Programme(geometry, angle).gaps(np.arange(angle.size), pose)
+    return np.asarray(RELIEF - gap.min(axis=1))
 
 
 def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
@@ -152,9 +229,10 @@ def _reach(geometry: ContactGeometry) -> float:
 class _Programme:
     """The gaps of a disc at a batch of positions, and the farthest wheel angle that they leave."""
 
-    def __init__(self, geometry: ContactGeometry, angle: FloatArray) -> None:
+    def __init__(self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None) -> None:
         place = geometry.placement
         self.geometry, self.angle = geometry, angle
+        self.room = RELIEF + (np.zeros(angle.size) if room is None else room)
         self.lever = np.array([1.0, 1.0, _reach(geometry), _reach(geometry)])
         self.bound = STEP * min(float(place.wheel_pin_radii.min()), float(place.eccentricity.min()))
         self.pitch = np.pi / place.reduction_ratio
@@ -173,9 +251,9 @@ class _Programme:
         holes = geometry.holes(angle, pose)
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=self.known.take(rows))
-        gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1) + RELIEF
+        gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
         slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever
-        return gap, slope, gap.shape[1] - flank.approach.shape[1]
+        return gap + self.room[rows, None], slope, gap.shape[1] - flank.approach.shape[1]
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and what parts overlap there, mm."""
@@ -209,7 +287,9 @@ class _Programme:
             if not stay.any():
                 return pose, left
             chosen = _tangents_of(slope, gap, place, np.where(active < arcs, active, -1))
-            kept = np.concatenate([tangents[:, -KEPT * (RIGID + 1) + RIGID + 1 :], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1)
+            kept = np.concatenate(
+                [tangents[:, -KEPT * (RIGID + 1) + RIGID + 1 :], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1
+            )
             kept[going, -(RIGID + 1) :] = chosen
             tangents = kept
             if turn >= SHRINKING:
