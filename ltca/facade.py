@@ -33,7 +33,7 @@ _SHOWN = (
     ("largest roller load", "max_roller_load_N", "N", "{:.1f}"),
     ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
     ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
-    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
+    ("backlash at the output, all clearances", "backlash_output_arcmin", "′", "{:z.2f}"),
 )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,14 @@ from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, samp
 from ltca.analysis.friction.variables import friction_scalars
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
+from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.reducer import geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import play_over_a_turn
 
 FloatArray = NDArray[np.float64]
 
@@ -31,6 +34,8 @@ OF_RANGES = (
 """What needs more than one position."""
 OF_LOADS = ("pin_shaft_loaded_range_deg", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
 """Counts of loaded contacts."""
+FREE_PLAY = ("backlash_output_arcmin", "min_backlash_output_arcmin", "preloaded_part_of_turn")
+"""Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
 REFINED = {
     "ptp_tangential_bearing_load_N": ("ptp_tangential_bearing_load", 1.0),
     "max_bearing_load_N": ("max_bearing_load", 1.0),
@@ -78,7 +83,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     values = {
         "backlash_disc_arcmin": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
         "backlash_wheel_arcmin": play * ARCMIN,
-        "backlash_output_arcmin": play * abs(analysis.drive.output_per_wheel_angle) * ARCMIN,
+        **_free_play(geometry, analysis.drive),
         "interference_mm": max(np.max(interference(disc, angle)) for disc in geometry),
         "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
         "mean_radial_bearing_load_N": np.mean(radial),
@@ -129,6 +134,16 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
     return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, float]:
+    """Free play of the output with every clearance over a turn: the largest, which is what is judged, and the least."""
+    try:
+        found = play_over_a_turn(discs)
+    except ConvergenceError:  # nothing stops the wheel: there is no play to tell
+        return dict.fromkeys(FREE_PLAY, np.nan)
+    scale = abs(drive.output_per_wheel_angle) * ARCMIN
+    return dict(zip(FREE_PLAY, (scale * found.largest, scale * found.least, found.preloaded), strict=True))
 
 
 def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:

@@ -30,15 +30,16 @@ ROWS = (
     ("loaded pin-shaft pins, mean", "mean_loaded_pin_shaft_pins", "", "{:.2f}"),
     ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
     ("  at the light torque", "ptp_transmission_error_light_arcsec", "″", "{:.2f}"),
-    ("backlash at the disc", "backlash_disc_arcmin", "′", "{:z.2f}"),
-    ("backlash at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
+    ("backlash at the output, all clearances, largest", "backlash_output_arcmin", "′", "{:z.2f}"),
+    ("  of the flank alone, at the disc", "backlash_disc_arcmin", "′", "{:z.2f}"),
+    ("  of the flank alone, at the wheel", "backlash_wheel_arcmin", "′", "{:z.2f}"),
 )
 RESIDUAL_PART = "residual_part"
 RESIDUAL_ROWS = (
     ("largest residual", "max_equilibrium_residual_N", "N", "{:.1e}"),
     ("  as a part of the largest bearing load", RESIDUAL_PART, "", "{:.1e}"),
 )
-OUTPUT_ROWS = (("  at the output", "backlash_output_arcmin", "′", "{:z.2f}"),)
+PRELOAD_ROWS = (("  part of the turn where parts overlap in every pose", "preloaded_part_of_turn", "", "{:.2f}"),)
 INTERFERENCE_ROWS = (("  pins and flank overlap at rest by", "interference_mm", "mm", "{:.4f}"),)
 SEAT_ROWS = (
     ("largest pressure in wheel-pin seats", "max_pin_seat_pressure_MPa", "MPa", "{:.1f}"),
@@ -80,16 +81,12 @@ def rows_of(summaries: Mapping[str, Mapping[str, float | None]], *, yields: bool
     """
     walls = WALL_ROWS if all(key in case for case in summaries.values() for _, key, _, _ in WALL_ROWS) else ()
     shares = (*_share_rows(summaries), *_compliance_rows(summaries, yields))
-    output = (
-        OUTPUT_ROWS
-        if any(row["backlash_output_arcmin"] != row["backlash_wheel_arcmin"] for row in summaries.values())
-        else ()
-    )
+    preload = PRELOAD_ROWS if any(row["preloaded_part_of_turn"] for row in summaries.values()) else ()
     pressed = INTERFERENCE_ROWS if any(case["interference_mm"] for case in summaries.values()) else ()
     seats = [
         row for row in (*SEAT_ROWS, *FRICTION_ROWS) if any(case.get(row[1]) is not None for case in summaries.values())
     ]
-    return [*ROWS, *output, *seats, *shares, *RESIDUAL_ROWS, *pressed, *walls]
+    return [*ROWS, *preload, *seats, *shares, *RESIDUAL_ROWS, *pressed, *walls]
 
 
 def with_residual_part(case: Mapping[str, float | None]) -> dict[str, float | None]:

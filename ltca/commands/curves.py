@@ -378,12 +378,12 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     from ltca.drive.units.quantities import ARCMIN, ARCSEC
 
     curve, spectrum, safety = found.curve, found.spectrum, found.safety
-    discs, output = drive.disc.number_of_discs, "output" if drive.wheel_is_held else "wheel"
+    output = "output" if drive.wheel_is_held else "wheel"
     over = f"over {found.turns} turns, {found.positions} positions"
     print(
         f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh"
     )
-    floating = f"backlash at the {output}, disc{'s' * (discs > 1)} floating"
+    floating = f"backlash at the {output}, all clearances"
     print(f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′")
     print(
         f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′"
@@ -391,7 +391,7 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: 
     if curve.loop is not None:
         print(f"  width of the loop there                   {_range(curve.loop.width * ARCMIN)}′")
         print(f"  energy lost in a loop at the rated torque {_range(curve.loop.energy / 1e3)} J")
-    print(f"  torsional stiffness, 50 … 100 %           {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
+    print(f"  stiffness of the cycloid stage, 50…100 %  {_range(curve.stiffness / ARCMIN / 1e3)} N m/′")
     print(f"orders of the transmission error {over}")
     for number in np.argsort(-spectrum.amplitude)[:8]:
         entry = spectrum.orders[number]

@@ -110,7 +110,7 @@ def _mark_stiffness(axes: Any, curve: TorqueCurve) -> None:
     for at in ends:
         axes.plot([axes.get_xlim()[0], first if at == ends[0] else last], [at, at], color=MARK, linewidth=0.5)
     low, high = (float(pick(curve.stiffness)) / ARCMIN / 1e3 for pick in (np.min, np.max))
-    told = f"stiffness, 50 … 100 %\n{_from_to(low, high)} N m/′"
+    told = f"cycloid stage, 50 … 100 %\n{_from_to(low, high)} N m/′"
     # Below the chord, on the side to which the curve leaves room.
     axes.annotate(
         told, xy=(0.5 * (first + last), ends.mean()), xycoords="data", xytext=(0.98, 0.30), textcoords="axes fraction",

@@ -1,51 +1,192 @@
-r"""How far the wheel can turn while no body gives: the play of all clearances together, disc floating.
+r"""How far the wheel can turn while no body gives: the free play of all clearances together, crank held, discs floating.
 
-The farthest wheel angle at which no pair interferes is a programme with curved bounds. A corner of them alone would be
-a linear one; but the pins that lead the disc in holes without clearance hold it by arcs, and the farthest pose then
-lies where an arc and the turning have one tangent: no sequence of corners ends there. It is found by augmented
-Lagrangians instead, which is mechanics: a unit load turns the wheel against pairs that yield on springs,
+Of each disc the farthest wheel angle at which no pair interferes is a programme of four unknowns, the pose of the disc and the
+wheel's angle, with curved bounds. It is solved by linear programmes in turn: gaps are taken as linear about a pose,
 
-.. math:: F_i = \max(0, \lambda_i + k \delta_i),
+.. math:: g_i - \nabla\delta_i \cdot d \ge -t,
 
-the disc moves until everything balances (Newton's method with the curvature of the gaps), and the loads found become
-the :math:`\lambda_i` with which the pairs carry without yielding. Each round divides the interference by some hundreds;
-where it does not the springs get stiffer. It is what the loaded analysis tends to as torque goes to zero.
+the wheel is turned as far as they allow and t, what parts overlap there, is made least before that; the exact gaps at the new
+pose give the next programme. Corners of flanks are reached as by Newton's method. Races and holes hold a disc by arcs, and a
+farthest pose may lie where an arc and the turning have one tangent, which is no corner: arcs are convex, so their tangents of
+earlier poses stay bounds and close it in. The programmes are solved by the dual simplex method, all positions at once.
+
+The wheel is common to all discs: the play is what the angles of all of them have in common. Where parts overlap in every pose the
+drive is preloaded and has no free play; what it yields is the loaded analysis's.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-from ltca.geometry.pair_motion import FlankMotion, PairMotion, RollerRays
+from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
+from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
+Rows = NDArray[np.intp]
 
-FIRST_YIELD = 1e-4
-"""What a unit load presses a pair together in the first round, as a part of e z_P."""
-TOUCHING = 1e-12
-"""Interference that counts as touching, as a part of the pin circle radius: some thousand times the round-off."""
-STEP_BOUND = 2e-3
-"""Largest step of a mode as a part of e z_P."""
-ROUNDS, ITERATIONS, LINE_TRIALS = 40, 200, 12
-STUCK = 6
-"""Rounds without gain, each on springs ten times stiffer, after which parts interfere for good."""
-SLOPE_LEFT = 0.3
-"""A step is short enough when the slope at its end is at most this part of the slope at its beginning."""
+CLOSED = 1e-9
+"""Overlap that counts as none, mm: a thousandth of what tells a clearance from none."""
+RELIEF = 1e-10
+"""Overlap that is always allowed, so that parts without any clearance leave a place to be in, mm."""
+GAIN = 1e-7
+"""Way of the wheel at e z_P that a programme has to promise to be followed, mm: some 1e-5 arcmin."""
+PENALTY = 1e6
+"""What overlap costs against way of the wheel: wedges of arcs gain some thousand mm for each mm of overlap."""
+NUDGE = 1e-8
+"""Cost of the disc's own movements, different ones, so that no two corners of a programme are equally good."""
+STEP = 0.25
+"""Largest step of a programme as a part of the smaller of pin radius and eccentricity: gaps are nearly linear within it."""
+ROUNDS, SHRINKING, PIVOTS = 60, 12, 400
+"""Programmes, those after which steps get shorter, pivots of each."""
+KEPT = 8
+"""Programmes of which the tangents of arcs are kept."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+"""Part of a turn between positions."""
+POSITIONS, REFINEMENTS, PLACES = 48, 3, 4
+"""Positions of a turn, rounds of more of them, and largest ones about which these lie."""
+BESIDE = np.array([-0.75, -0.5, -0.25, 0.25, 0.5, 0.75])
+"""Where these lie, by the mean distance of positions in the first round."""
 
 
-def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
-    """Return the poses in which the wheel is turned as far as rigid bodies allow.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Play:
+    """Free play of the wheel at held crank angles.
+
+    Attributes
+    ----------
+    forward, backward : array, shape (positions,)
+        Wheel angles at which it stops, counter-clockwise and clockwise, rad; alike where it is not free.
+    preloaded : array of bool, shape (positions,)
+        Whether parts overlap in every pose.
+    """
+
+    forward: FloatArray
+    backward: FloatArray
+    preloaded: NDArray[np.bool_]
+
+    @property
+    def play(self) -> FloatArray:
+        """Between the stops, rad, shape (positions,)."""
+        return np.asarray(self.forward - self.backward)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TurnPlay:
+    """Free play of the wheel over one turn of the crank.
+
+    Attributes
+    ----------
+    largest, least : float
+        rad.
+    crank_angle : float
+        φ_C of the largest, rad.
+    preloaded : float
+        Part of the positions looked at where parts overlap in every pose.
+    """
+
+    largest: float
+    least: float
+    crank_angle: float
+    preloaded: float
+
+
+def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
+    """Return the largest and the least free play of the wheel over one turn of the crank.
+
+    Flank, holes and rollers pass with periods of their own: positions of equal steps see few phases of some of them. So they lie
+    at multiples of the golden section, and more of them about the largest and the least until these are within some 0.2 %.
+
+    Parameters
+    ----------
+    discs : sequence of ContactGeometry
+        Of every disc of one drive.
+
+    Raises
+    ------
+    ConvergenceError
+        As `free_play`.
+    """
+    angle = 2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0)
+    found = free_play(discs, angle)
+    play, preloaded, spread = found.play, float(found.preloaded.mean()), 2.0 * np.pi / POSITIONS
+    for _ in range(REFINEMENTS):
+        order = np.argsort(play, kind="stable")
+        near = np.concatenate([order[:1], order[-PLACES:]])
+        between = (angle[near][:, None] + spread * BESIDE).ravel()
+        angle, play = np.append(angle, between), np.append(play, free_play(discs, between).play)
+        spread *= 0.3
+    most = int(np.argmax(play))
+    return TurnPlay(
+        largest=float(play[most]),
+        least=float(play.min()),
+        crank_angle=float(angle[most] % (2.0 * np.pi)),
+        preloaded=preloaded,
+    )
+
+
+def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, overlap: FloatArray | float = 0.0) -> Play:
+    """Return the free play of the wheel with every clearance, the crank held.
+
+    Parameters
+    ----------
+    discs : sequence of ContactGeometry
+        Of every disc on the wheel: of one drive, or of as many positions.
+    crank_angle : array, shape (positions,)
+        Held φ_C, rad.
+    overlap : float or array, shape (positions,)
+        How far parts may overlap, mm.
+
+    Raises
+    ------
+    ConvergenceError
+        When nothing stops the wheel within half a pin pitch.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
+    forward, backward = np.full(angle.size, np.inf), np.full(angle.size, -np.inf)
+    preloaded, room = np.zeros(angle.size, dtype=bool), np.broadcast_to(np.asarray(overlap, dtype=float), angle.shape)
+    for disc in discs:
+        pose, left = _Programme(disc.take(rows), angle[rows], room[rows]).farthest(sense)
+        turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
+        forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
+        preloaded |= np.any(left.reshape(2, -1) > CLOSED, axis=0)
+    # Of discs that are free by themselves no angle may suit all.
+    preloaded |= (backward - forward) * max(_reach(disc) for disc in discs) > GAIN
+    shut = preloaded | (forward < backward)
+    middle = 0.5 * (forward + backward)
+    return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
+
+
+def largest_overlap(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray) -> FloatArray:
+    """Return how far parts of one disc overlap in poses, mm, shape (positions,); negative: the least gap.
 
     Parameters
     ----------
     geometry : ContactGeometry
-        One drive.
+        Of one disc.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, 4)
+        q of `ltca.geometry.pairs`.
+    """
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    gap, _, _ = _Programme(geometry, angle).gaps(np.arange(angle.size), pose)
+    return np.asarray(RELIEF - gap.min(axis=1))
+
+
+def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
+    """Return the poses of one disc in which the wheel is turned as far as rigid bodies allow.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        Of one disc.
     crank_angle : array, shape (positions,)
         Held φ_C, rad.
     sense : {+1, −1}
@@ -62,160 +203,181 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
         When parts interfere in every pose (a drive that cannot be put together without force), or nothing stops the
         wheel within half a pin pitch.
     """
-    return _Programme(geometry, np.atleast_1d(np.asarray(crank_angle, dtype=float)), sense).solve()
+    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    pose, left = _Programme(geometry, angle).farthest(np.full(angle.size, float(sense)))
+    worst = int(np.argmax(left))
+    if left[worst] > CLOSED:
+        raise ConvergenceError(
+            f"parts interfere in every rigid pose at crank angle {angle[worst]:.6g} rad, by {left[worst]:.3g} mm where they "
+            "do so least; interference by positions in mm",
+            left.tolist(),
+        )
+    return pose
 
 
 def rigid_play(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
-    """Return the play of the wheel with the crank held and the disc floating, rad, shape (positions,)."""
+    """Return the play of the wheel with the crank held and one disc floating, rad, shape (positions,)."""
     forward = rigid_poses(geometry, crank_angle, 1)[:, WHEEL_ANGLE]
     return forward - rigid_poses(geometry, crank_angle, -1)[:, WHEEL_ANGLE]
 
 
-class _Pairs(NamedTuple):
-    """All pairs at poses: pins, holes, rollers on the inner race against the bore."""
-
-    flank: FlankMotion
-    holes: PairMotion
-    length: FloatArray
-    across: FloatArray
-    arm: FloatArray
-    approach: FloatArray
-    gradient: FloatArray
-
-    @classmethod
-    def at(cls, geometry: ContactGeometry, rays: RollerRays, angle: FloatArray, pose: FloatArray) -> _Pairs:
-        flank, holes = geometry.flank(angle, pose), geometry.holes(angle, pose)
-        # A roller on the inner race presses on the bore with |s n − d| less the bore play.
-        bores, rollers = geometry.bores(angle, pose), rays.direction.shape[1]
-        arm = rays.outermost * rays.direction - bores.each(bores.displacement, rollers)
-        length = np.abs(arm)
-        outward = arm / length
-        moved = outward.conjugate()[..., None] * bores.each(bores.gradient, rollers)
-        return cls(
-            flank=flank,
-            holes=holes,
-            length=length,
-            across=moved.imag,
-            arm=(outward.conjugate() * bores.each(bores.arm, rollers)).real,
-            approach=np.concatenate([flank.approach, holes.approach, length - rays.bore_play], axis=1),
-            gradient=np.concatenate([flank.gradient, holes.gradient, -moved.real], axis=1),
-        )
-
-    def bend(self, load: FloatArray) -> FloatArray:
-        """Σ F ∂²δ/∂q²."""
-        pins, holes = self.flank.approach.shape[1], self.holes.approach.shape[1]
-        total = self.flank.bend(load[:, :pins]) + self.holes.bend(load[:, pins : pins + holes])
-        rollers = load[:, pins + holes :]
-        total += np.einsum("bi,bij,bik->bjk", rollers / self.length, self.across, self.across)
-        total[:, DISC_ROTATION, DISC_ROTATION] += (rollers * self.arm).sum(axis=1)
-        return total
+def _reach(geometry: ContactGeometry) -> float:
+    """Lever of the rotations, e z_P, mm."""
+    return float(geometry.placement.eccentricity.max()) * geometry.placement.reduction_ratio
 
 
 class _Programme:
-    """The farthest wheel angle of a batch of positions of one drive."""
+    """The gaps of a disc at a batch of positions, and the farthest wheel angle that they leave."""
 
-    def __init__(self, geometry: ContactGeometry, angle: FloatArray, sense: int) -> None:
+    def __init__(self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None) -> None:
         place = geometry.placement
-        self.geometry, self.angle, self.sense = geometry, angle, sense
-        self.rays = geometry.rollers(angle)
-        reach = float(place.mean_eccentricity[0]) * place.reduction_ratio
-        self.lever = np.array([1.0, 1.0, reach, reach])
-        self.touching = TOUCHING * float(np.max(np.abs(place.wheel_pin_centres)))
+        self.geometry, self.angle = geometry, angle
+        self.room = RELIEF + (np.zeros(angle.size) if room is None else room)
+        self.lever = np.array([1.0, 1.0, _reach(geometry), _reach(geometry)])
+        self.bound = STEP * min(float(place.wheel_pin_radii.min()), float(place.eccentricity.min()))
         self.pitch = np.pi / place.reduction_ratio
-        self.stiffness = np.full(angle.size, 1.0 / (FIRST_YIELD * reach))
-        self.held = np.zeros((angle.size, place.wheel_pin_radii.size + place.hole_radii.size + place.roller_radii.size))
-        self.pose = np.zeros((angle.size, 4))
+        motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
+        self.known, self.parameter = KnownPins.of(motion), motion.parameter
 
-    def solve(self) -> FloatArray:
+    def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+        """Exact gaps of all pairs, mm, their slopes by scaled coordinates, and how many of them are arcs, which stand first."""
+        geometry, angle = self.geometry.take(rows), self.angle[rows]
+        rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
+        # A roller on the inner race presses on the bore with |s n − d| less the bore play.
+        count = rays.direction.shape[1]
+        arm = rays.outermost * rays.direction - bores.each(bores.displacement, count)
+        length = np.abs(arm)
+        moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, count)
+        holes = geometry.holes(angle, pose)
+        turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
+        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=self.known.take(rows))
+        gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
+        slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever
+        return gap + self.room[rows, None], slope, gap.shape[1] - flank.approach.shape[1]
+
+    def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the poses of the farthest wheel angles in these senses, and what parts overlap there, mm."""
+        size = self.angle.size
+        pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), np.full(size, self.bound)
+        going = np.arange(size)
+        tangents = np.zeros((size, 0, RIGID + 1))
         history: list[float] = []
-        before, stuck = np.full(self.angle.size, np.inf), np.zeros(self.angle.size, dtype=np.intp)
-        for _ in range(ROUNDS):
-            pairs, load = self.balance()
-            # What a pair still yields under its load, and what others interfere.
-            yielding = np.max(np.maximum(pairs.approach, np.abs(load - self.held) / self.stiffness[:, None]), axis=1)
-            history.append(float(np.max(yielding)))
-            if history[-1] <= self.touching:
-                return self.pose
-            going = yielding > self.touching
-            stuck = np.where(going & (yielding > 0.9 * before), stuck + 1, 0)
-            if np.max(stuck) >= STUCK:
-                break
-            self.held = np.where(going[:, None], load, self.held)
-            self.stiffness = np.where(going & (yielding > 0.1 * before), 10.0 * self.stiffness, self.stiffness)
-            before = yielding
-        worst = int(np.argmax(stuck))
-        raise ConvergenceError(
-            f"parts interfere in every rigid pose at crank angle {self.angle[worst]:.6g} rad, by {yielding[worst]:.3g} mm "
-            "where springs between them balance; interference by rounds in mm",
-            history,
-        )
-
-    def evaluate(self, pose: FloatArray) -> tuple[_Pairs, FloatArray, FloatArray]:
-        """Return the pairs, their loads and the slope of the potential by scaled coordinates."""
-        pairs = _Pairs.at(self.geometry, self.rays, self.angle, pose)
-        load = np.maximum(self.held + self.stiffness[:, None] * pairs.approach, 0.0)
-        slope = np.einsum("bi,bij->bj", load, pairs.gradient) / self.lever
-        slope[:, WHEEL_ANGLE] -= self.sense
-        return pairs, load, slope
-
-    def balance(self) -> tuple[_Pairs, FloatArray]:
-        """Move every position to the minimum of its potential."""
-        bound = np.full(self.angle.size, STEP_BOUND * self.lever[WHEEL_ANGLE])
-        pairs, load, slope = self.evaluate(self.pose)
-        history: list[float] = []
-        for _ in range(ITERATIONS):
-            # The load is one; round-off of the loads, and of the approaches times the springs.
-            accepted = np.maximum(1e-10 + 1e-13 * np.max(load, axis=1), 1e-3 * self.touching * self.stiffness)
-            residual = np.max(np.abs(slope), axis=1)
-            history.append(float(np.max(residual)))
-            if np.all(residual <= accepted):
-                return pairs, load
-            closed = np.where(load > 0.0, self.stiffness[:, None], 0.0)
-            tangent = pairs.gradient.swapaxes(1, 2) @ (closed[..., None] * pairs.gradient) + pairs.bend(load)
-            tangent /= self.lever[:, None] * self.lever
-            step = _bounded_step(tangent, slope, bound)
-            step[residual <= accepted] = 0.0
-            fraction, pairs, load, slope = self.walk(step, slope)
-            bound *= np.where(fraction < 0.1, 0.5, 1.0)
-            if np.max(np.abs(self.pose[:, WHEEL_ANGLE])) > self.pitch:
-                worst = int(np.argmax(np.abs(self.pose[:, WHEEL_ANGLE])))
+        for turn in range(ROUNDS):
+            place = pose[going] * self.lever
+            gap, slope, arcs = self.gaps(going, pose[going])
+            overlap = np.maximum(-gap.min(axis=1), 0.0)
+            # −slope · d ≤ gap + t; tangents of earlier poses are told from the origin.
+            before = tangents[going]
+            room = before[..., RIGID] + np.einsum("bij,bj->bi", before[..., :RIGID], place)
+            step, least, active = _farthest(
+                np.concatenate([-slope, -before[..., :RIGID]], axis=1),
+                np.concatenate([gap, room], axis=1),
+                sense[going],
+                bound[going],
+            )
+            gain = sense[going] * step[:, WHEEL_ANGLE]
+            left[going] = np.maximum(RELIEF - gap.min(axis=1), 0.0)
+            found = np.where(
+                least > CLOSED,
+                overlap - least <= CLOSED + 1e-3 * least,
+                (overlap <= CLOSED - RELIEF) & (np.abs(gain) <= GAIN),
+            )
+            history.append(float(np.max(np.abs(np.where(found[:, None], 0.0, step)))))
+            stay = ~found
+            if not stay.any():
+                return pose, left
+            chosen = _tangents_of(slope, gap, place, np.where(active < arcs, active, -1))
+            kept = np.concatenate(
+                [tangents[:, -KEPT * (RIGID + 1) + RIGID + 1 :], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1
+            )
+            kept[going, -(RIGID + 1) :] = chosen
+            tangents = kept
+            if turn >= SHRINKING:
+                bound[going] = 0.7 * np.minimum(bound[going], np.abs(step).max(axis=1))
+            going, step = going[stay], step[stay]
+            pose[going] += step / self.lever
+            if np.max(np.abs(pose[:, WHEEL_ANGLE])) > self.pitch:
+                worst = int(np.argmax(np.abs(pose[:, WHEEL_ANGLE])))
                 raise ConvergenceError(
                     f"nothing stops the wheel within half a pin pitch at crank angle {self.angle[worst]:.6g} rad",
                     history,
                 )
-        worst = int(np.argmax(np.max(np.abs(slope), axis=1)))
         raise ConvergenceError(
-            f"no rigid pose found at crank angle {self.angle[worst]:.6g} rad, parts still interfere by "
-            f"{np.max(pairs.approach[worst]):.3g} mm; unbalanced parts of the load",
+            f"no rigid pose found at crank angle {self.angle[going[0]]:.6g} rad, parts still interfere by "
+            f"{left[going[0]]:.3g} mm; steps in mm",
             history,
         )
 
-    def walk(self, step: FloatArray, slope: FloatArray) -> tuple[FloatArray, _Pairs, FloatArray, FloatArray]:
-        """Walk along the steps until the potential stops falling."""
-        start, along = self.pose, np.einsum("bi,bi->b", slope, step)
-        low, high, fraction = np.zeros(along.size), np.ones(along.size), np.ones(along.size)
-        low_slope = along.copy()
-        for _ in range(LINE_TRIALS):
-            self.pose = start + fraction[:, None] * step / self.lever
-            pairs, load, slope = self.evaluate(self.pose)
-            end = np.einsum("bi,bi->b", slope, step)
-            far = end > SLOPE_LEFT * np.abs(along) + 1e-13 * np.max(np.abs(step), axis=1)
-            if not np.any(far):
-                break
-            short = ~far & (end < 0.0)
-            low, low_slope = np.where(short, fraction, low), np.where(short, end, low_slope)
-            high = np.where(far, fraction, high)
-            width = np.clip(-low_slope / np.where(far, end - low_slope, 1.0), 0.05, 0.9)
-            fraction = np.where(far, low + width * (high - low), fraction)
-        return fraction, pairs, load, slope
+
+def _tangents_of(slope: FloatArray, gap: FloatArray, place: FloatArray, chosen: Rows) -> FloatArray:
+    """Chosen gaps as linear functions of the scaled pose, shape (rows, chosen, 5); nothing, 0 ≤ ∞, for −1."""
+    pair = np.maximum(chosen, 0)
+    along = np.take_along_axis(slope, pair[..., None], axis=1)
+    offset = np.take_along_axis(gap, pair, axis=1) - np.einsum("bij,bj->bi", along, place)
+    told = np.concatenate([along, offset[..., None]], axis=2)
+    told[chosen < 0] = 0.0
+    return told
 
 
-def _bounded_step(tangent: FloatArray, slope: FloatArray, bound: FloatArray) -> FloatArray:
-    """Newton's step of every mode, downhill where its stiffness is negative, within the bound."""
-    values, modes = np.linalg.eigh(tangent)
-    along = np.einsum("bij,bi->bj", modes, slope)
-    largest = np.max(np.abs(values), axis=1)[:, None]
-    stiffness = np.abs(values) + np.where(
-        largest > 0.0, 1e-12 * largest, 1.0
-    )  # where nothing touches the bound decides
-    return np.asarray(np.einsum("bij,bj->bi", modes, np.clip(-along / stiffness, -bound[:, None], bound[:, None])))
+def _farthest(
+    normal: FloatArray, room: FloatArray, sense: FloatArray, bound: FloatArray
+) -> tuple[FloatArray, FloatArray, Rows]:
+    """Turn the wheel as far as linear gaps allow, after the least overlap: normal · d ≤ room + t, |d| ≤ bound, t ≥ 0.
+
+    Parameters
+    ----------
+    normal : array, shape (rows, pairs, 4)
+        By scaled coordinates.
+    room : array, shape (rows, pairs)
+        mm.
+    sense : array, shape (rows,)
+        +1 or −1.
+    bound : array, shape (rows,)
+        Of every coordinate, mm.
+
+    Returns
+    -------
+    step : array, shape (rows, 4)
+        d, mm.
+    overlap : array, shape (rows,)
+        t, mm.
+    active : array of int, shape (rows, 5)
+        The pairs that stop it; numbers beyond them are bounds.
+    """
+    rows, pairs, size = normal.shape
+    sides = np.concatenate([np.eye(size), -np.eye(size)])
+    matrix = np.zeros((rows, pairs + 2 * size + 1, size + 1))
+    matrix[:, :pairs, :size], matrix[:, :pairs, size] = normal, -1.0
+    matrix[:, pairs : pairs + 2 * size, :size] = sides
+    matrix[:, -1, size] = -1.0
+    limit = np.concatenate([room, np.repeat(bound[:, None], 2 * size, axis=1), np.zeros((rows, 1))], axis=1)
+    wish = np.tile(np.array([1.0, 1.7, 2.3, 3.1, 0.0]) * NUDGE, (rows, 1))
+    wish[:, size - 1] += sense
+    wish[:, size] = -PENALTY
+    # The corner of the bounds that the wish points to, without overlap, is the best of all without pairs.
+    first = np.where(wish[:, :size] > 0.0, 0, size) + np.arange(size) + pairs
+    basis = np.concatenate([first, np.full((rows, 1), pairs + 2 * size)], axis=1)
+    answer = np.zeros((rows, size + 1))
+    going = np.arange(rows)
+    for _ in range(PIVOTS):
+        mine, here = matrix[going], basis[going]
+        corner = np.take_along_axis(mine, here[..., None], axis=1)
+        inverse = np.linalg.inv(corner)
+        point = np.matmul(inverse, np.take_along_axis(limit[going], here, axis=1)[..., None])[..., 0]
+        answer[going] = point
+        beyond = np.matmul(mine, point[..., None])[..., 0] - limit[going]
+        np.put_along_axis(beyond, here, 0.0, axis=1)
+        entering = np.argmax(beyond, axis=1)
+        each = np.arange(going.size)
+        over = beyond[each, entering] > 1e-13
+        if not over.any():
+            break
+        going, inverse, entering, here = going[over], inverse[over], entering[over], here[over]
+        price = np.matmul(wish[going][:, None], inverse)[:, 0]
+        share = np.matmul(mine[over][np.arange(going.size), entering][:, None], inverse)[:, 0]
+        ratio = np.where(share > 1e-11, np.maximum(price, 0.0) / np.where(share > 1e-11, share, 1.0), np.inf)
+        leaving = np.argmin(ratio, axis=1)
+        basis[going, leaving] = entering
+    else:
+        raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
+    return answer[:, :size], answer[:, size], basis

@@ -16,6 +16,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
+from ltca.geometry.play import play_over_a_turn
 
 Rows = list[tuple[str, str]]
 
@@ -53,7 +54,7 @@ def _properties(drive: Drive, plays: bool) -> Rows:
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
         ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
         ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
-        *(_plays(geometries) if plays else []),
+        *(_plays(geometries, abs(drive.output_per_wheel_angle) * ARCMIN) if plays else []),
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
         (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
         ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
@@ -62,15 +63,27 @@ def _properties(drive: Drive, plays: bool) -> Rows:
     ]  # fmt: skip
 
 
-def _plays(geometries: list[ContactGeometry]) -> Rows:
+def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
     gap = np.stack([-each.flank(position_angles(90), np.zeros((90, 4))).approach for each in geometries])
+    turn = play_over_a_turn(geometries)
     disc = backlash(geometries[0], position_angles(360), DISC_ROTATION) * ARCMIN
     wheel = backlash(geometries, position_angles(360), WHEEL_ANGLE) * ARCMIN
     at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
     return [
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
-        (f"backlash at {at}, wheel held", f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)"),
-        (f"backlash at the wheel, {held} held", f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)"),
+        (
+            "backlash at the output, all clearances",
+            f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′"
+            + (", preloaded" if turn.preloaded == 1.0 else ", preloaded at places" if turn.preloaded else ""),
+        ),
+        (
+            f"backlash of the flank alone, at {at}, wheel held",
+            f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)",
+        ),
+        (
+            f"backlash of the flank alone, at the wheel, {held} held",
+            f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)",
+        ),
     ]
 
 

@@ -50,7 +50,12 @@ def torque_curves(analyses: Mapping[str, LoadedAnalysis]) -> Section:
         part = f"lost motion at ±{100.0 * curve.lost_motion_part:g} %, ′"
     if not rows:
         return Section(heading="Torque curve", notes=notes)
-    columns = ["case", "backlash, discs floating, ′", part, "stiffness, 50 … 100 % of the torque, N·m/′"]
+    columns = [
+        "case",
+        "backlash, all clearances, ′",
+        part,
+        "stiffness of the cycloid stage, 50 … 100 % of the torque, N·m/′",
+    ]
     notes.append(
         f"Least … largest at {ANGLES} crank angles over one mesh; more of it, and loops of friction: cyclo curves."
     )

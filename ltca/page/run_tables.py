@@ -56,7 +56,7 @@ def _title(title: str) -> Cell:
 def _group(key: str) -> str:
     if key in {row[1] for row in FRICTION_ROWS}:
         return "losses"
-    if "transmission_error" in key or key.startswith(("backlash", "interference")):
+    if "transmission_error" in key or key.startswith(("backlash", "min_backlash", "preloaded", "interference")):
         return "transmission"
     if "MPa" in key:
         return "pressures"

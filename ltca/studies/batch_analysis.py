@@ -22,6 +22,7 @@ from ltca.equilibrium.reducer import at_rows, geometries, reach_beyond
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
+from ltca.geometry.play import free_play
 from ltca.studies.quantities import QUANTITIES, SampleBatch
 from ltca.studies.shapes import with_kept_coefficients
 
@@ -228,6 +229,13 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
         light = solved.balance([drive.load.light_torque for drive in drives], near, known)
     if "backlash" in stages:
         play = backlash(geometries(solved.model), solved.angle, WHEEL_ANGLE)
+    free = free_play(geometries(solved.model), solved.angle).play if "play" in stages else None
     return SampleBatch(
-        drives=tuple(drives), model=solved.model, full=full, pressures=pressures, light=light, backlash=play
+        drives=tuple(drives),
+        model=solved.model,
+        full=full,
+        pressures=pressures,
+        light=light,
+        backlash=play,
+        play=free,
     )

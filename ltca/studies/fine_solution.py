@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from ltca.analysis.engines import Engine
 from ltca.analysis.extremes import refine_extremes
 from ltca.analysis.loaded_analysis import analyse
@@ -17,12 +19,13 @@ from ltca.equilibrium.reducer import geometries
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.placement import position_angles
+from ltca.geometry.play import play_over_a_turn
 from ltca.studies.quantities import QUANTITIES, SampleBatch
 from ltca.studies.shapes import with_kept_coefficients
 
 FINE_POSITIONS = 360
 BACKLASH_POSITIONS = 3600
-"""Positions of the backlash: geometry alone, cheap."""
+"""Positions of the backlash of the flank: geometry alone, cheap."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,6 +80,10 @@ def solve_finely(
     play = None
     if any(QUANTITIES[name].stage == "backlash" for name in quantities):
         play = backlash(geometries(analysis.model), position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
+    free = None
+    if any(QUANTITIES[name].stage == "play" for name in quantities):
+        turn = play_over_a_turn(geometries(analysis.model))
+        free = np.array([turn.least, turn.largest])
     batch = SampleBatch(
         drives=(drive,),
         model=analysis.model,
@@ -84,6 +91,7 @@ def solve_finely(
         pressures=analysis.pressures,
         light=analysis.light,
         backlash=play,
+        play=free,
     )
     values = {name: float(QUANTITIES[name].evaluate(batch)[0]) for name in quantities}
     refined = asdict(refine_extremes(analysis))

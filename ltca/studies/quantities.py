@@ -21,7 +21,7 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
 
-Stage = Literal["full", "light", "backlash"]
+Stage = Literal["full", "light", "backlash", "play"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +41,9 @@ class SampleBatch:
     light : Equilibrium or None
         At the light torque, when a quantity needs it.
     backlash : array, shape (samples · positions,), or None
-        Of the wheel, rad, when a quantity needs it.
+        Of the flank at the wheel, rad, when a quantity needs it.
+    play : array, shape (samples · positions,), or None
+        Free play of the wheel with every clearance, rad, when a quantity needs it.
     """
 
     drives: tuple[Drive, ...]
@@ -50,6 +52,7 @@ class SampleBatch:
     pressures: ContactPressures
     light: Equilibrium | None
     backlash: FloatArray | None
+    play: FloatArray | None = None
 
     @property
     def samples(self) -> int:
@@ -104,6 +107,13 @@ class SampleBatch:
             raise ValueError("the backlash was not asked for")
         return self.by_sample(self.backlash) * ARCMIN
 
+    def output_backlashes(self) -> FloatArray:
+        """Free play of the output with every clearance, arcmin."""
+        if self.play is None:
+            raise ValueError("the free play was not asked for")
+        output = np.array([abs(drive.output_per_wheel_angle) for drive in self.drives])
+        return np.asarray(output[:, None] * self.by_sample(self.play) * ARCMIN)
+
     def loaded(self, load: FloatArray) -> FloatArray:
         """Mean number of loaded pairs over the positions."""
         largest = self.by_sample(load).max(axis=1)
@@ -119,7 +129,7 @@ class Quantity:
     ----------
     unit : str
         Of its values: those of a run's summary.
-    stage : {"full", "light", "backlash"}
+    stage : {"full", "light", "backlash", "play"}
         What has to be solved for it.
     description : str
         For labels.
@@ -214,11 +224,20 @@ QUANTITIES: dict[str, Quantity] = {
         lambda b: np.ptp(b.light_transmission_error(), axis=1),
         "light",
     ),
+    "max_backlash_output": _quantity(
+        "arcmin",
+        "backlash at the output, all clearances, largest",
+        lambda b: b.output_backlashes().max(axis=1),
+        "play",
+    ),
+    "min_backlash_output": _quantity(
+        "arcmin", "backlash at the output, all clearances, least", lambda b: b.output_backlashes().min(axis=1), "play"
+    ),
     "mean_backlash_wheel": _quantity(
-        "arcmin", "backlash at the wheel, disc held, mean", lambda b: b.backlashes().mean(axis=1), "backlash"
+        "arcmin", "backlash of the flank alone, at the wheel, mean", lambda b: b.backlashes().mean(axis=1), "backlash"
     ),
     "min_backlash_wheel": _quantity(
-        "arcmin", "backlash at the wheel, disc held, least", lambda b: b.backlashes().min(axis=1), "backlash"
+        "arcmin", "backlash of the flank alone, at the wheel, least", lambda b: b.backlashes().min(axis=1), "backlash"
     ),
 }
 

@@ -131,8 +131,16 @@ def _disc(number: int, discs: list[object] | tuple[object, ...]) -> str:
 
 def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
     contacts, pressures, angle = analysis.full.response, analysis.pressures, analysis.full.crank_angle
-    for key in ("backlash_disc_arcmin", "backlash_wheel_arcmin", "backlash_output_arcmin", "interference_mm"):
+    for key in ("backlash_disc_arcmin", "backlash_wheel_arcmin", "interference_mm"):
         yield Value(quantity=key.rpartition("_")[0], value=summary[key])
+    play = summary["backlash_output_arcmin"]
+    yield Value(
+        quantity="backlash_output",
+        value=play,
+        part="preloaded" if summary["preloaded_part_of_turn"] == 1.0 else "",
+        reason="nothing stops the wheel within half a pin pitch" if play is None else "",
+        least=summary["min_backlash_output_arcmin"],
+    )
     yield Value(quantity="mean_loaded_pins", value=summary["mean_loaded_pins"])
     yield Value(quantity="ptp_transmission_error", value=refined_value(summary, "ptp_transmission_error_arcsec"))
     bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)

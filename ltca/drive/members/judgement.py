@@ -24,9 +24,9 @@ TITLES = {
     "roller_gap": "gap between rollers",
     "interference": "assembly: overlap at rest",
     "mean_loaded_pins": "contact ratio: loaded wheel pins, mean",
-    "backlash_disc": "backlash at the disc",
-    "backlash_wheel": "backlash at the wheel",
-    "backlash_output": "backlash at the output",
+    "backlash_disc": "backlash of the flank alone, at the disc",
+    "backlash_wheel": "backlash of the flank alone, at the wheel",
+    "backlash_output": "backlash at the output, all clearances",
     "ptp_transmission_error": "transmission error, peak to peak",
     "pin_load": "largest load of a wheel pin",
     "roller_load": "largest load of a roller",
@@ -95,6 +95,8 @@ class Value:
         φ_C there, rad.
     reason : str
         Why it cannot be said.
+    least : float or None
+        What a lower limit judges where that is another value: the least over a turn of what is largest in `value`.
     """
 
     quantity: str
@@ -102,6 +104,7 @@ class Value:
     part: str = ""
     crank_angle: float | None = None
     reason: str = ""
+    least: float | None = None
 
     @property
     def unit(self) -> str:
@@ -192,7 +195,7 @@ def judge(
         if demanded is not None and value.quantity in demanded:
             found.append(demanded[value.quantity])
         judged = value if found or not lacking else replace(value, reason=lacking)
-        checks += [Check(value=judged, limit=limit, asked=limit in own) for limit in found] or [
+        checks += [Check(value=_judged_by(limit, judged), limit=limit, asked=limit in own) for limit in found] or [
             Check(value=judged, limit=None)
         ]
     told = {value.quantity for value in values} | {_BOTH.get(value.quantity) for value in values}
@@ -203,6 +206,10 @@ def judge(
                 Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit, asked=True)
             )
     return checks
+
+
+def _judged_by(limit: Limit, value: Value) -> Value:
+    return value if limit.sense == "max" or value.least is None else replace(value, value=value.least, part="least")
 
 
 _BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}

@@ -32,12 +32,15 @@ def torque_section(curve: TorqueCurve, of: str) -> Section:
         lines=lines,
     )
     rows = [
-        ("backlash at the output, discs floating", _range(curve.backlash * ARCMIN) + "′"),
+        ("backlash at the output, all clearances", _range(curve.backlash * ARCMIN) + "′"),
         (
             f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque",
             _range(curve.lost_motion * ARCMIN) + "′",
         ),
-        ("torsional stiffness, 50 … 100 % of the torque", _range(curve.stiffness / ARCMIN / 1e3) + " N·m/′"),
+        (
+            "torsional stiffness of the cycloid stage, 50 … 100 % of the torque",
+            _range(curve.stiffness / ARCMIN / 1e3) + " N·m/′",
+        ),
     ]
     if curve.loop is not None:
         rows.append(("width of the loop of friction there", _range(curve.loop.width * ARCMIN) + "′"))

@@ -280,10 +280,9 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     compliance = 1.0 / flank["wheel_stiffness"] + 1.0 / (seat * reach**2) + turning_compliance
     leverage = wheel_torque(sizes, setting) / sizes.torque
     found["stiffness"] = sizes.discs / (compliance * leverage**2)
-    found["backlash_output"] = flank["play"] * leverage * ARCMIN
-    play = shop.bearing_clearance / reach + shop.pin_hole_clearance * (0.0 if several else 2.0) / sizes.hole_circle
+    found["backlash_output"] = (flank["play"] + clearance_play(sizes, setting)) * leverage * ARCMIN
     elastic = 2.0 * LOST_MOTION * sizes.torque / found["stiffness"]
-    found["lost_motion"] = ((flank["play"] + play) * leverage + elastic) * ARCMIN
+    found["lost_motion"] = found["backlash_output"] + elastic * ARCMIN
     if friction is not None:
         rolling = friction.roller * bearings * mean * (inner + sizes.roller_radius)
         lost = flank["flank_loss"] + friction.hole * sizes.eccentricity * holes + rolling
@@ -296,6 +295,27 @@ def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -
     # b = 2 p ρ/E* with ρ below the pin's radius: what half-spaces allow is a part of that radius.
     found["half_width_ratio"] = 2.0 * flank["pin_pressure_mid"] / setting.flank
     return found
+
+
+def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:
+    """Return what clearances of crank bearings and holes add to the play of the flank at the wheel, rad.
+
+    A disc that moves by the radial clearance turns the wheel by the lever e z_P; one that turns in its holes turns the wheel with
+    it. Bores of several cranks bound both ways of moving together, so the shorter lever counts.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of the candidates.
+    setting : Setting
+        What they share.
+    """
+    asked, shop = setting.requirements.asked, setting.requirements.asked.shop
+    reach = sizes.eccentricity * sizes.pins
+    if asked.kind == "rv":
+        return np.asarray(shop.bearing_clearance / np.minimum(reach, sizes.hole_circle))
+    turning = 2.0 * shop.pin_hole_clearance * (1.0 - 1.0 / sizes.pins) / sizes.hole_circle
+    return np.asarray(shop.bearing_clearance / reach + turning)
 
 
 def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:

@@ -42,7 +42,7 @@ OWN_TITLES = {
     "outer_diameter": ("outer diameter", "mm"),
     "length": ("length", "mm"),
     "torque": ("output torque", "N*mm"),
-    "stiffness": ("torsional stiffness", "N*mm/rad"),
+    "stiffness": ("torsional stiffness of the cycloid stage", "N*mm/rad"),
     "lost_motion": ("lost motion", "arcmin"),
 }
 """What a drive file has no limit for: title and unit."""

@@ -63,10 +63,10 @@ def test_torque_curve_is_printed_as_it_is_kept(told):
     text, content, *_ = told
     kept = content["torque_curve"]
     for name, values in (
-        ("backlash at the wheel, disc floating", np.array(kept["backlash_rad"]) * ARCMIN),
+        ("backlash at the wheel, all clearances", np.array(kept["backlash_rad"]) * ARCMIN),
         (r"lost motion at ±3 % of the rated torque", np.array(kept["lost_motion_rad"]) * ARCMIN),
         # N·mm/rad to N·m for each arc minute
-        (r"torsional stiffness, 50 … 100 %", np.array(kept["stiffness_N_mm_per_rad"]) / ARCMIN / 1000.0),
+        (r"stiffness of the cycloid stage, 50…100 %", np.array(kept["stiffness_N_mm_per_rad"]) / ARCMIN / 1000.0),
     ):
         # printed with four digits
         assert printed_range(text, name) == pytest.approx((values.min(), values.max()), rel=1e-3), name
