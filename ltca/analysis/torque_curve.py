@@ -57,7 +57,8 @@ class TorqueCurve:
     lost_motion : array, shape (angles,)
         Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
-        Torsional stiffness of the cycloid stage, all discs, from half the rated torque to all of it, clockwise and counter-clockwise, N·mm/rad.
+        Torsional stiffness of the cycloid stage, all discs, from half the rated torque to all of it, clockwise and
+        counter-clockwise, N·mm/rad.
     lost_motion_part : float
         Part of the rated torque at which lost motion is read.
     loop : HysteresisLoop or None

@@ -137,7 +137,10 @@ def known(answers, model, base, answer):
 
 
 # Engines beyond the first are walked at night; what is slow of the first stays in every full run.
-ENGINES = ["tables", *(pytest.param(model, marks=[pytest.mark.slow, pytest.mark.nightly]) for model in ("hybrid", "fe"))]
+ENGINES = [
+    "tables",
+    *(pytest.param(model, marks=[pytest.mark.slow, pytest.mark.nightly]) for model in ("hybrid", "fe")),
+]
 
 
 def walk():
