@@ -7,6 +7,7 @@ second-order meshes, which the reader of scikit-fem loses. A file appears under 
 from __future__ import annotations
 
 import struct
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -211,8 +212,11 @@ def _parse(path: Path) -> meshio.Mesh:
         if b"$" + section not in text or b"$End" + section not in text:
             raise MeshError(f"{path}: corrupt or no gmsh mesh (no complete section ${section.decode()})")
     try:
-        return meshio.gmsh.read(path)
-    except (meshio.ReadError, *_PARSER_ERRORS) as error:
+        with warnings.catch_warnings():
+            # numpy before 2.3 only warns of numbers that break off, and reads on.
+            warnings.simplefilter("error", DeprecationWarning)
+            return meshio.gmsh.read(path)
+    except (meshio.ReadError, DeprecationWarning, *_PARSER_ERRORS) as error:
         raise MeshError(f"{path}: corrupt, cannot be read as a gmsh mesh ({error or type(error).__name__})") from error
     except SystemExit as error:
         raise MeshError(f"{path}: corrupt, cannot be read as a gmsh mesh") from error

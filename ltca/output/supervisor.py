@@ -1,6 +1,6 @@
 """Run a program that ends with whoever asked for it, together with its folder of temporary files.
 
-Run as a file of its own, by nothing but the standard library: ``python supervisor.py FOLDER PROGRAM ARGUMENT …``. Its
+Run as a file of its own, by nothing but the standard library: ``python ltca/output/supervisor.py FOLDER PROGRAM ARGUMENT …``. Its
 standard input is a pipe from the asking process. When that ends, however it ends (SIGKILL too), the pipe does: the
 program is ended with all it started, and the folder is removed. Temporary files of the program go there.
 """

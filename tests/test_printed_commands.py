@@ -1,0 +1,469 @@
+"""Every command that documents, docstrings and helps print is taken by its program and run; files they name are there.
+
+Commands are found, not listed: in fenced blocks and in code of the pages, in docstrings, in the examples of ``--help``. Each is
+given to the parser of its own program; short ones are run as well, the others nightly, in the smallest size (`SMALLER`).
+CHANGELOG, and lines of apt, pip, git and pytest, are no part of it.
+
+Run as a program (``python tests/test_printed_commands.py``, commands as JSON on the standard input) this file parses commands
+of Python scripts, each in a fork of a process that has the libraries already.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import os
+import re
+import runpy
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from contextlib import redirect_stdout, suppress
+from functools import cache
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+OURS = ("ltca", "fem", "validation")
+CODE = re.compile(r"``([^`]+)``|`([^`]+)`")
+FENCE = re.compile(r"```(\w*)\n(.*?)```", re.DOTALL)
+COMMAND = re.compile(r"(?:\.venv/bin/)?(?:cyclo|python3?)\s+\S")
+PLACEHOLDERS = {"DRIVE": "paper", "REQUIREMENTS.toml": "requirements.toml", "FILE": "file.nc", "NAME": "CS-1", "N": "1",
+                "K": "0", "C": "0.1", "H": "0.1", "DIR": "out", "COMMAND": "run"}  # fmt: skip
+"""What stands in usage lines for a value."""
+
+READERS = {
+    "my.toml", "joint.toml", "printed.toml", "rv.toml", "study.toml", "requirements.toml", "REQUIREMENTS.toml", "mine.nc",
+    "coefficients.nc", "bench.csv", "file.nc", "old.nc", "flank.csv", "answers.json", "disc_flank.csv",
+    "_flank.csv", "_circles.csv",
+}  # fmt: skip
+"""Names that stand for a file of the reader's own."""
+
+SMALLER = {
+    "run": "--positions 4 --no-figures",
+    "tolerance": "--samples 4 --positions 4 --no-figures",
+    "sweep": "--no-figures",
+    "derive": "--stations 2",
+    "fem": "--size 4",
+    "mesh": "--size 4",
+    "validate": "--level quick --angles 0.5",
+    "benchmarks/contract.py": "full-fe --fields 1",
+    "benchmarks/equilibria.py": "--positions 4 --rounds 1",
+    "benchmarks/faults.py malformed": "--count 3",
+    "benchmarks/faults.py kills": "--kills 1 --commands run",
+    "benchmarks/faults.py clusters": "--kills 1",
+    "benchmarks/fem.py": "--sizes 6",
+    "benchmarks/imports.py": "--rounds 1",
+    "benchmarks/methods.py": "--positions 4",
+    "benchmarks/mutants.py": "--help",  # its map alone takes longer than all tests
+    "benchmarks/paper_method.py": "--positions 4",
+    "benchmarks/practical_models.py": "--direct 1 --hybrid 0 --fe 0 --full 0",
+    "benchmarks/random_drives.py": "--count 4",
+    "benchmarks/run_paper.py": "--rounds 1",
+    "benchmarks/summary_numbers.py": "--positions 4",
+    "benchmarks/tolerance.py": "--samples 40",
+    "benchmarks/torque_share.py": "--positions 3 --samples 2",
+    "benchmarks/wide_contacts.py": "--widths 0.1",
+}
+"""Options that make a command small: of two of one name the last one counts."""
+
+SHORT = ("fields", "quantities", "init", "show")
+"""Commands that take a second or so as they are printed."""
+
+ELSEWHERE = {"sphinx", "build", "pytest", "venv", "twine"}
+"""Modules of other people that .ci/run calls itself, with these words."""
+
+
+@cache
+def pages() -> list[tuple[str, str]]:
+    """Return name and text of every page that people read, those that the program writes included."""
+    found = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")]
+    built = ("docs/reference/generated/", "docs/gallery/", "docs/build/")
+    for ending in ("md", "rst"):
+        found += [*(ROOT / "docs").rglob(f"*.{ending}"), *(ROOT / "examples").rglob(f"*.{ending}")]
+    texts = [(path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")) for path in sorted(found)]
+    spec = spec_from_file_location("generated_pages", ROOT / "docs" / "generated_pages.py")
+    written = module_from_spec(spec)
+    spec.loader.exec_module(written)
+    texts += [(f"generated {name}", getattr(written, name)()) for name in ("commands_page", "drive_file_page")]
+    return [(name, text) for name, text in texts if not name.startswith(built)]
+
+
+@cache
+def docstrings() -> list[tuple[str, str]]:
+    """Return place and text of every docstring."""
+    found = []
+    for folder in (*OURS, "benchmarks", "examples", "docs"):
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            if "gallery" in path.parts or "build" in path.parts:
+                continue
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (text := ast.get_docstring(node)):
+                    found += [(path.relative_to(ROOT).as_posix(), text)]
+    return found
+
+
+def commands_in(text: str, lines_too: bool) -> list[str]:
+    """Return what a text prints as commands: lines of shell blocks, whole pieces of code; in docstrings any line."""
+    lines = [block for language, block in FENCE.findall(text) if language in ("sh", "text", "")]
+    pieces = [
+        " ".join(part.split())
+        for one, two in CODE.findall(FENCE.sub("", text))
+        for part in re.split(r"; (?=cyclo |python )", one or two)
+    ]
+    if lines_too:
+        lines.append(text)
+    shell = "\n".join(lines).replace("\\\n", " ").splitlines()
+    pieces += [part.strip() for line in shell for part in line.split("  # ")[0].split("&&")]
+    return [piece for piece in pieces if COMMAND.match(piece) and "import ltca " not in piece]
+
+
+@cache
+def printed() -> dict[str, str]:
+    """Return every command that is printed, with the place that prints it."""
+    found: dict[str, str] = {}
+    for texts, lines_too in ((pages(), False), (docstrings(), True)):
+        for place, text in texts:
+            for command in commands_in(text, lines_too):
+                found.setdefault(command, place)
+    return found
+
+
+def words_of(command: str) -> tuple[list[str], bool]:
+    """Return the words of a command, placeholders replaced, and whether it leaves something out on purpose."""
+    plain = re.sub(r" \| [A-Z]+", "", command.removeprefix(".venv/bin/"))
+    plain = re.sub(r"(\w)\|[\w|-]+", r"\1", plain).replace("[", " ").replace("]", " ")
+    if "import ltca" in plain:
+        plain = command.removeprefix(".venv/bin/")
+    words = [PLACEHOLDERS.get(word, word) for word in shlex.split(plain, comments=True)]
+    return [word for word in words if word not in ("…", "...")], bool({"…", "..."} & set(words))
+
+
+class Taken(BaseException):
+    """Raised in place of the work once the parser has taken the words."""
+
+
+def trouble_of(words: list[str], partial: bool) -> str:
+    """Return what is wrong with a command; it is parsed in this process and not run."""
+    told: list[str] = []
+    taken = argparse.ArgumentParser.parse_args
+
+    def error(self, message):
+        options = [word.partition("=")[0] for word in words if word.startswith("--")]
+        unknown = [option for option in options if option not in self._option_string_actions]
+        if unknown or not (partial or "arguments are required" in message or words[-1] in options):
+            told.append(f"{message}{', unknown: ' + ' '.join(unknown) if unknown else ''}")
+        raise Taken
+
+    def parse_args(self, *arguments):
+        taken(self, *arguments)
+        raise Taken
+
+    program, *rest = words
+    patch = pytest.MonkeyPatch()
+    patch.setattr(argparse.ArgumentParser, "error", error)
+    try:
+        with suppress(Taken), Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
+            if program == "cyclo":
+                from ltca.commands import program as cyclo
+
+                patch.setattr(cyclo._Parser, "error", error)
+                cyclo.build_parser(rest[0]).parse_args(rest)
+                return ""
+            patch.setattr(argparse.ArgumentParser, "parse_args", parse_args)
+            while rest[0] == "-X":
+                rest = rest[2:]
+            if rest[0] == "-c":
+                compile(rest[1], "-c", "exec")
+                return ""
+            module = rest[0] == "-m"
+            name, *arguments = rest[module:]
+            patch.setattr(sys, "argv", [name, *arguments])
+            if module:
+                runpy.run_module(name, run_name="__main__", alter_sys=True)
+            else:
+                if not (ROOT / name).is_file():
+                    return f"{name} is not there"
+                patch.setattr(sys, "path", [str((ROOT / name).parent), *sys.path])
+                runpy.run_path(str(ROOT / name), run_name="__main__")
+            return "it has no parser of arguments"
+    except SystemExit as end:
+        return "" if end.code in (None, 0) else f"exit status {end.code}"
+    except Exception as failure:  # noqa: BLE001 - whatever a script may raise is what is looked for
+        return f"{type(failure).__name__}: {failure}"
+    finally:
+        patch.undo()
+    return "; ".join(told)
+
+
+def parse_in_forks() -> None:
+    """Read commands from the standard input, parse each in a fork and write what is wrong."""
+    sys.path[0] = str(ROOT)  # tests/ltca is no package
+    for name in ("ltca.facade", "ltca.analysis.engines", "ltca.studies.study", "fem.reducer.solution", "xarray"):
+        import_module(name)  # for all forks at once
+    answers = []
+    for words, partial in json.load(sys.stdin):
+        with tempfile.TemporaryFile("w+") as stream:
+            child = os.fork()
+            if child == 0:
+                signal.alarm(60)  # a script that works before it parses
+                answer = trouble_of(words, partial)
+                stream.write(answer)
+                stream.flush()
+                os._exit(0)
+            status = os.waitpid(child, 0)[1]
+            stream.seek(0)
+            answers.append(stream.read() if status == 0 else f"ended with {status}")
+    json.dump(answers, sys.stdout)
+
+
+def all_words() -> dict[str, tuple[list[str], bool]]:
+    """Return the words of every command that is ours to take."""
+    found = {}
+    for command in printed():
+        words, partial = words_of(command)
+        if words[1:2] == ["-m"] and words[2].split(".")[0] in ELSEWHERE:
+            continue
+        if words[0] != "cyclo" and words[1].endswith(".py") and not words[1].startswith(("benchmarks/", "examples/")):
+            continue  # what is named alone: the test of files looks for it
+        found[command] = words, partial
+    return found
+
+
+def test_commands_are_found():
+    """The search itself: commands of each kind are among those found."""
+    found = printed()
+    assert len(found) > 100
+    for command in (
+        "cyclo show paper --case CS-3 --angle 0.5", "python benchmarks/torque_share.py", "python -m validation.seats",
+        "cyclo fields thickness", "python benchmarks/faults.py discs", ".venv/bin/cyclo run paper",
+    ):  # fmt: skip
+        assert command in found
+    assert commands_in("`cyclo run x`\n```sh\ncyclo a \\\n  --b  # c\n```", False) == ["cyclo run x", "cyclo a    --b"]
+    ci = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert all(name in ci for name in ELSEWHERE)
+
+
+def test_every_printed_command_is_taken_by_its_program():
+    """Of ``cyclo`` in this process; a mention without its arguments (`cyclo run`) counts for its options alone."""
+    wrong = []
+    for command, (words, partial) in all_words().items():
+        if words[0] == "cyclo" and (trouble := trouble_of(words, partial)):
+            wrong.append(f"{printed()[command]}: {command}: {trouble}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_what_no_program_takes_is_seen():
+    assert "unknown: --speedy" in trouble_of(["cyclo", "run", "--speedy"], False)
+    assert "invalid choice" in trouble_of(["cyclo", "rnu", "paper"], False)
+    assert "is not there" in trouble_of(["python", "benchmarks/numbers.py", "HEAD"], False)
+    assert "No module named" in trouble_of(["python", "-m", "validation.seat"], False)
+
+
+@pytest.mark.slow
+def test_every_printed_script_is_taken_by_its_program():
+    asked = {command: entry for command, entry in all_words().items() if entry[0][0] != "cyclo"}
+    asked |= {f"python {path}": (["python", path, "--help"], False) for path in benchmarks()}
+    command = [sys.executable, str(Path(__file__).resolve())]
+    run = subprocess.run(
+        command,
+        input=json.dumps(list(asked.values())),
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        check=False,
+        timeout=300,
+    )
+    assert run.returncode == 0, run.stderr
+    answers = zip(asked, json.loads(run.stdout), strict=True)
+    wrong = [f"{printed().get(command, '--help')}: {command}: {answer}" for command, answer in answers if answer]
+    assert not wrong, "\n".join(wrong)
+
+
+def benchmarks() -> list[str]:
+    """Return every benchmark by its path in the repository."""
+    return [f"benchmarks/{path.name}" for path in sorted((ROOT / "benchmarks").glob("*.py"))]
+
+
+def test_every_benchmark_is_listed():
+    text = (ROOT / "docs" / "reference" / "benchmarks.md").read_text(encoding="utf-8")
+    assert [name for name in benchmarks() if f"python {name}" not in text] == []
+
+
+def test_no_script_hides_a_module():
+    """A script's folder comes first where modules are looked for; those that use `fem` take it away (benchmarks/fem.py)."""
+    scripts = [path for folder in ("benchmarks", "examples", "docs") for path in (ROOT / folder).glob("*.py")]
+    assert [path.name for path in scripts if path.stem in sys.stdlib_module_names] == []
+    hidden = [path for path in scripts if path.stem in OURS]
+    assert [path.relative_to(ROOT).as_posix() for path in hidden] == ["benchmarks/fem.py"]
+    for path in (ROOT / "benchmarks").glob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        if re.search(r"^ *from fem\.", text, flags=re.MULTILINE):
+            assert "sys.path[0] = " in text, path.name
+
+
+NAMED = re.compile(
+    r"(?<![\w/<*{.-])((?:\.\./|\./)*[\w./-]*\w\.(?:py|toml|md|msh|rst|json|nc|csv|npz|html|inp))(?![\w/*])"
+)
+
+
+def test_every_named_file_is_there():
+    """A path from the root or beside the page, the end of a path in the repository, a name that some program writes."""
+    listed = [path.relative_to(ROOT).as_posix() for folder in (*OURS, "benchmarks", "examples", "docs", "tests", "meshes")
+              for path in (ROOT / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts]  # fmt: skip
+    listed += [path.name for path in ROOT.iterdir() if path.is_file()]
+    ends = {"/".join(path.split("/")[start:]) for path in listed for start in range(path.count("/") + 1)}
+    missing = []
+    for place, text in (*pages(), *docstrings()):
+        pieces = [one or two for one, two in CODE.findall(FENCE.sub("", text))] + [
+            block for _, block in FENCE.findall(text)
+        ]
+        for name in NAMED.findall("\n".join(pieces)):
+            plain = name.removeprefix("./")
+            last = plain.rsplit("/", 1)[-1]
+            if (
+                plain in ends
+                or plain in READERS
+                or plain.startswith(("out/", "build/", "/", "gallery/"))
+                or last.split(".")[0].isupper()
+                or "generated/" in plain
+            ):
+                continue
+            if (ROOT / place).parent.joinpath(name).exists() or ("/" not in plain and is_written(plain)):
+                continue
+            missing.append(f"{place}: {name}")
+    assert not missing, "\n".join(missing)
+
+
+@cache
+def names_in_code() -> frozenset[str]:
+    """Return every text in the code that ends like a file, what is filled in later as 0."""
+    found = set()
+    for path in (path for folder in OURS for path in (ROOT / folder).rglob("*.py")):
+        for text in re.findall(r"""["']([^"'\n ]*\.[a-z]{2,4})["']""", path.read_text(encoding="utf-8")):
+            found.add(re.sub(r"\{[^{}]*\}|\[0-9\]|[*]", "0", text).rsplit("/", 1)[-1])
+    return frozenset(found)
+
+
+def is_written(name: str) -> bool:
+    """Tell whether the code names a file that it writes or reads, what is filled in left open."""
+    return name in names_in_code() or any(
+        re.fullmatch(re.escape(one).replace("0", "[\\w.-]*"), name) for one in names_in_code() if "0" in one.strip("0")
+    )
+
+
+def run_here(words: list[str], folder: Path) -> str:
+    """Run a command in a process of its own and return what went wrong; a failed check is an answer."""
+    head = [sys.executable, "-m", "ltca.commands.program"] if words[0] == "cyclo" else [sys.executable]
+    rest = [str(ROOT / word) if word.startswith(("benchmarks/", "examples/")) else word for word in words[1:]]
+    environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([*head, *rest], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    allowed = (0, 1) if words[1:2] in (["check"], ["validate"]) else (0,)
+    return "" if done.returncode in allowed else f"exit status {done.returncode}: {done.stderr.strip()[-300:]}"
+
+
+def set_up(folder: Path) -> None:
+    """Put the files that readers have into a folder."""
+    from ltca.commands.program import main
+
+    for name, like in (("my", "paper"), ("joint", "robot-joint"), ("printed", "robot-joint"), ("rv", "rv")):
+        assert main(["init", str(folder / f"{name}.toml"), "--like", like]) == 0
+    shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copy(ROOT / "examples" / "requirements" / "possible-paper.toml", folder / "requirements.toml")
+    block = next(
+        text for language, text in FENCE.findall((ROOT / "docs/how-to/studies.md").read_text(encoding="utf-8"))
+        if language == "toml" and "[factors" in text
+    )  # fmt: skip
+    (folder / "study.toml").write_text(block, encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_short_commands_run_as_they_are_printed(tmp_path, monkeypatch, capsys):
+    from ltca.commands.program import main
+
+    set_up(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    wrong = []
+    for command, (words, partial) in all_words().items():
+        if words[0] == "cyclo" and words[1] in SHORT and not partial and not trouble_of([*words], False):
+            if {"--help", "-h"} & set(words) or needs_more(words):
+                continue
+            if words[1] == "init":
+                (tmp_path / words[2]).unlink(missing_ok=True)
+            status = main(words[1:])
+            if status != 0:
+                wrong.append(f"{printed()[command]}: {command}: exit status {status}: {capsys.readouterr().err}")
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+def test_every_printed_command_runs_small(tmp_path):
+    """In the order of their needs: coefficients are derived first; what asks for a cluster, or is a mention, is left."""
+    set_up(tmp_path)
+    assert run_here(shlex.split("cyclo derive my.toml --case CS-1 --out mine.nc --stations 2"), tmp_path) == ""
+    shutil.copy(tmp_path / "mine.nc", tmp_path / "coefficients.nc")
+    shutil.copy(tmp_path / "mine.nc", tmp_path / "file.nc")
+    rows = "".join(f"{0.5 * degrees},{0.01 * degrees}\n" for degrees in range(720))
+    (tmp_path / "bench.csv").write_text(f"crank_angle [deg],transmission_error [arcsec]\n{rows}", encoding="utf-8")
+    assert run_here(shlex.split("cyclo run paper --positions 4"), tmp_path) == ""
+    wrong = []
+    done = set()
+    for command, (words, partial) in all_words().items():
+        mention = partial or (words[0] == "cyclo" and needs_more(words))
+        if (
+            mention
+            or "tcp" in command
+            or "--resume" in words
+            or "-h" in words
+            or "import ltca" in command
+            or "out/t/samples" in command
+        ):
+            continue
+        kind = words[1] if words[0] == "cyclo" or words[1:2] != ["benchmarks/faults.py"] else " ".join(words[1:3])
+        small = [*words, *shlex.split(SMALLER.get(kind, ""))]
+        if "--angles" in words and words[1] == "run":
+            small = [word for word in small if word not in ("--positions", "4")]
+        if kind in ("run", "check", "curves", "optimise", "tolerance") and "--out" not in words:
+            small += ["--out", f"out/{len(done)}"]
+        if " ".join(small) in done:
+            continue
+        done.add(" ".join(small))
+        if words[1] == "init":
+            (tmp_path / words[2]).unlink(missing_ok=True)
+        trouble = run_here(small, tmp_path)
+        if trouble:
+            wrong.append(f"{printed()[command]}: {' '.join(small)}: {trouble}")
+    assert not wrong, "\n".join(wrong)
+
+
+def needs_more(words: list[str]) -> bool:
+    """Tell a mention: a command without the arguments that it needs."""
+    from ltca.commands import program
+
+    patch = pytest.MonkeyPatch()
+
+    def error(self, message):
+        raise Taken
+
+    patch.setattr(program._Parser, "error", error)
+    try:
+        program.build_parser(words[1]).parse_args(words[1:])
+    except Taken:
+        return True
+    except SystemExit:
+        pass
+    finally:
+        patch.undo()
+    return False
+
+
+if __name__ == "__main__":
+    parse_in_forks()
