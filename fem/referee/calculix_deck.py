@@ -14,8 +14,8 @@ codes. What differs from our own model:
 pull, closes those that overlap and solves again. It ends as soon as the *number* of points changes by less than a
 thousandth (its parameter delcon); no residual is left to ask for. At the default size that are 51 of 51,000 points: with
 the first penalty of this deck it ended an increment after 28 iterations with 16 points that pulled, by up to 184 of
-1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is nought here, the iterations may be as many as that takes, and
-none is removed at random (alea).
+1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is nought here, the
+iterations may be as many as that takes, and none is removed at random (alea).
 
 **Why the penalty goes by the half-width.** Two quadratic surfaces whose nodes do not meet cannot follow each other at the
 hundred points of a face: the stiffer the penalty against the elements, the longer points change sides, up and down in
