@@ -10,18 +10,20 @@ codes. What differs from our own model:
   half-width expected of the contact;
 - rollers that carry nothing are left out, because nothing would hold them.
 
-**Why the penalty goes by the half-width.** CalculiX frees the points that pull and closes those that overlap, solves
-again, and ends as soon as the *number* of points that touch changes by less than a thousandth (its parameter delcon),
-however many have changed sides: no residual is left to ask for, since with given points the problem is linear. Two
-quadratic surfaces whose nodes do not meet cannot follow each other at a hundred points of a face. The stiffer the
-penalty against the elements, the more points within a contact are then pulled to and fro from one iteration to the next,
-and their number may stand still by chance while hundreds change sides. A penalty in terms of the edge keeps that ratio,
-and gets four times as stiff on edges of a quarter, where nothing asks for it: what it gives way is pressure times its
-compliance. In terms of the half-width it gives way alike on every mesh, and relative to the elements it gets softer as
-they shrink.
+**When an answer counts.** With given points that touch the problem is linear: CalculiX solves it, frees the points that
+pull, closes those that overlap and solves again. It ends as soon as the *number* of points changes by less than a
+thousandth (its parameter delcon); no residual is left to ask for. At the default size that are 51 of 51,000 points: with
+the first penalty of this deck it ended an increment after 28 iterations with 16 points that pulled, by up to 184 of
+1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is nought here, the
+iterations may be as many as that takes, and none is removed at random (alea).
 
-So that the points must come to rest, delcon is nought here, and the iterations may be as many as that takes; none is
-removed at random (alea).
+**Why the penalty goes by the half-width.** Two quadratic surfaces whose nodes do not meet cannot follow each other at the
+hundred points of a face: the stiffer the penalty against the elements, the longer points change sides, up and down in
+number, and the harder those pull that are still to be freed (at three times the default size 402 of 17,544 were left, with
+up to 9,440 MPa). What the penalty gives way is pressure times its compliance; the element has no part in it. In terms of the
+smallest edge, as it once was, it got four times as stiff from four times the default size to the default, for nothing. In
+terms of the half-width it gives way alike on every mesh and gets softer against the elements as they shrink: 20
+iterations at the default size.
 """
 
 from __future__ import annotations

@@ -32,15 +32,14 @@ def test_full_drive(tmp_path):
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("size", [3.0, 1.0])
-def test_sizes_whose_contacts_pulled(tmp_path, size):
-    """At size 3 an increment ended with 402 points that pull, at the default size the last one did (−913 MPa)."""
-    solution = solve_drive(load_drive("paper").cases["CS-1"], 0.5, scale=size)
+def test_the_default_size(tmp_path):
+    """CalculiX ended there with contacts that pull; three minutes of processor time."""
+    solution = solve_drive(load_drive("paper").cases["CS-1"], 0.5)
     answer = ask_calculix(solution, write_deck(solution, tmp_path / "drive.inp"), "ccx")
-    # 0.036 % with eight elements for each half-width, 0.18 % with two.
-    assert max(map(abs, load_differences(solution, answer).values())) < 2e-3
-    # The penalty gives way by 0.08″ on every mesh; the rest is the mesh.
-    assert np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0 == pytest.approx(0.08, abs=0.08)
+    # 0.036 % with eight elements for each half-width; 0.18 % with two.
+    assert max(map(abs, load_differences(solution, answer).values())) < 1e-3
+    # The penalty gives way by 0.08″; the rest, 0.01″, is the mesh's.
+    assert np.degrees(solution.pose.wheel_angle - answer.wheel_angle) * 3600.0 == pytest.approx(0.08, abs=0.05)
 
 
 def test_failure_of_ccx_is_one_error(tmp_path):
