@@ -1,5 +1,7 @@
 """Closed forms against laws, printed cases, and the loaded drive."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from ltca.geometry.placement import position_angles
 from ltca.studies.design_search.closed_forms import Setting, closed_forms, lives_by_loads, shape_values
 from ltca.studies.design_search.demands import find_demands
 from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
+from ltca.studies.design_search.refinement import most_rollers
 from ltca.studies.design_search.requirements import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
 from ltca.studies.design_search.sizes import Sizes, drive_of, stack_length
@@ -60,6 +63,15 @@ def test_shapes_are_those_of_the_verdict(changed):
     assert told["pin_gap"] == pytest.approx(named.pop("between neighbouring wheel pins"), rel=1e-12)
     # The paper's rollers leave nothing of the bore's own wall to judge here.
     assert told["wall"] == pytest.approx(min(wall for name, wall in named.items() if "hole" in name), rel=1e-9)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
+def test_the_cage_has_room_for_so_many_rollers_and_no_more(gap):
+    """Chords between neighbours are a diameter and the gap, which is a part of it."""
+    requirements = parse_requirements(PAPER + f"cage_gap = {gap}\n" + STEEL)
+    most = most_rollers(ROW, SimpleNamespace(requirements=requirements))
+    chord = [2.0 * (29.5 - 5.0) * np.sin(np.pi / count) for count in (most, most + 1)]
+    assert chord[1] < 10.0 * (1.0 + gap) <= chord[0]
 
 
 @pytest.mark.parametrize("discs", [2, 3])
