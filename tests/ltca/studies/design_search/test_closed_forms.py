@@ -121,6 +121,20 @@ def test_closed_forms_are_near_the_loaded_paper_drive():
         assert abs(np.log(told[name] / loaded[name])) < 0.25, name
 
 
+@pytest.mark.parametrize("spring", [True, False])
+def test_everything_twice_as_stiff_yields_half(spring):
+    """All of it is elastic: with each modulus, the spring of the shaft pins where one is given, and the torque, which closes the
+    same gaps then, it doubles."""
+    found = []
+    for factor in (1.0, 2.0):
+        material = f"{{ youngs_modulus = {factor * 206e3}, poisson_ratio = 0.3 }}"
+        parts = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+        text = PAPER.replace("1.0e6", f"{factor}e6") if spring else PAPER.replace("shaft_pin_stiffness = 1.0e6", "")
+        text += "\n[materials]\n" + "\n".join(f"{part} = {material}" for part in parts)
+        found.append(forms(text, torque=factor * 377_300.0)["stiffness"])
+    assert found[1] == pytest.approx(2.0 * found[0], rel=1e-12)
+
+
 def test_ratings_are_those_of_the_life_of_one_drive():
     from ltca.analysis.life.ratings import EDGE_ALLOWANCE, RollerBearing
 
