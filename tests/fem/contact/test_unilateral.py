@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from fem.contact import unilateral
 from fem.contact.unilateral import ContactProblem, find_active_set, solve_floating_contact
 from ltca.errors import ConvergenceError
 
@@ -85,3 +86,13 @@ def test_limit_gives_history():
     with pytest.raises(ConvergenceError) as caught:
         solve_floating_contact(random_problem(1), np.ones(7, dtype=bool), limit=1)
     assert len(caught.value.history) == 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_unknowns_exchanged_one_by_one_find_the_set(seed, monkeypatch):
+    """Murty's rule, which takes over where whole sets would flip for ever: from any start, here from all in contact."""
+    monkeypatch.setattr(unilateral, "PATIENCE", 0)
+    monkeypatch.setattr(unilateral, "find_active_set", lambda problem: np.ones(7, dtype=bool))
+    problem = random_problem(seed)
+    found = solve_floating_contact(problem, np.zeros(7, dtype=bool), limit=400)
+    np.testing.assert_allclose(found.pressure, enumerate_sets(problem)[0], atol=1e-9)

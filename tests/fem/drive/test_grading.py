@@ -6,7 +6,9 @@ import pytest
 from fem.drive.contact_results import DeformedContacts
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.grading import grade_contacts, measure_gaps
+from fem.drive.meshes import wall_refinements
 from fem.drive.solution import solve_disc
+from fem.shapes import DriveShapes
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
@@ -114,3 +116,14 @@ def test_a_plastic_disc_is_answered():
     assert drive.materials.disc.youngs_modulus == 2600.0
     # The pose is iterated until loads change by a tenth of a newton; the wheel carries 2,700 N at the pin circle.
     assert found.contacts.equilibrium_residual < 1e-4 * found.contacts.pin_load.sum()
+
+
+def test_fine_elements_along_walls_leave_no_gap(drive):
+    """Zones about neighbouring places of a bore or hole touch: nowhere along the wall are they farther than their radius."""
+    shape = DriveShapes.of_drive(drive).disc
+    spots = wall_refinements(shape)
+    places, reach = np.array([spot.x + 1j * spot.y for spot in spots]), np.array([spot.radius for spot in spots])
+    for curve in (*shape.bores, *shape.holes):
+        wall = curve.points(np.linspace(0.0, 2.0 * np.pi, 2000))
+        beyond = np.abs(wall[:, None] - places[None, :]) / reach
+        assert beyond.min(axis=1).max() <= 1.0

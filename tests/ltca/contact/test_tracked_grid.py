@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ltca.contact.generator import generator_profile
-from ltca.contact.grid_ladder import BLEND, RUNG, unit_grid
+from ltca.contact.grid_ladder import BLEND, RUNG, find_patch_length, unit_grid
 from ltca.contact.pressure_cells import PatchGrid, solve_patch
 from ltca.contact.tracked_grid import (
     ContactKind,
@@ -166,6 +166,19 @@ def test_the_separation_between_two_places_is_interpolated():
     assert loads[1] == pytest.approx(0.5 * (loads[0] + loads[2]), rel=1e-9)
     # ρ smaller by 1e-4: F falls by some tenth of that (1/(2 ln) of it)
     assert -5e-5 < loads[2] / loads[0] - 1.0 < -2e-6
+
+
+def test_the_relief_of_a_cell_is_its_mean_over_the_cell():
+    """Relief that grows with y: a contact feels it in every cell where the cell lies, as a grid of its own does."""
+    kind, found = kind_of("crowned"), press(kind_of("crowned"), parabola(), 8e-3)
+    (piece,) = found.pieces
+    shape = unit_grid(piece.grid.rung, piece.grid.reach_rung, cells=12, symmetric=True)
+    length = find_patch_length(LENGTH, piece.grid.reach_rung)
+    grid = PatchGrid(x_edges=shape.x_edges * length, y_edges=shape.y_edges * length)
+    separation = grid.cell_means(lambda x, y: x**2 / (2.0 * RADIUS) + kind.generator.relief(y))
+    assert found.load == pytest.approx(solve_patch(grid, separation, kind.contact_modulus, 8e-3).load, rel=1e-10)
+    # the crown tells, or nothing was shown
+    assert found.load < 0.95 * press(kind_of(), parabola(), 8e-3).load
 
 
 def test_pieces_are_read_only():

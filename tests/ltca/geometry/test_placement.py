@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
+from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
 
 
 def test_numbering_starts_at_zero_and_runs_counter_clockwise(vary):
@@ -73,3 +76,15 @@ def test_errors_move_and_resize_one_part_only(vary):
     np.testing.assert_allclose(place.roller_radii - 5.0, 0.5 * np.array(rollers["diameter"]), atol=1e-14)
     turned = place.roller_cage_angles - nominal.roller_cage_angles
     np.testing.assert_allclose(turned, np.array(rollers["tangential"]) / 24.5, atol=1e-15)
+
+
+def test_eccentrics_of_several_cranks_stand_where_their_errors_put_them():
+    """Race k of disc 0 is at (e + Δe_k) e^{i(φ_C + ζ + Δζ_k)} from its crank; the disc stands at the mean of the races."""
+    drive = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
+    drive = with_fields(drive, {"crank.of.0.eccentricity_error": 0.006, "crank.of.2.phase_error": 2e-3})
+    place, angle = Placement.of_drive(single_discs(drive)[0]), np.array([0.0, 1.1])
+    arms = place.race_centres(angle) - place.crank_axes
+    lengths, ahead = drive.crank.eccentricity + np.array([0.006, 0.0, 0.0]), np.array([0.0, 0.0, 2e-3])
+    np.testing.assert_allclose(arms, lengths * np.exp(1j * (angle[:, None] + ahead)), rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(place.mean_eccentricity, [drive.crank.eccentricity + 0.002], rtol=1e-14)
+    np.testing.assert_allclose(place.race_centre(angle), place.race_centres(angle).mean(axis=1), rtol=0.0, atol=1e-14)

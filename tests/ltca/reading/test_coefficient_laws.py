@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from ltca.reading.coefficient_laws import (
+    NEIGHBOURS,
     check_coefficients,
     compressed_cylinder,
     even_pressure,
@@ -14,6 +15,7 @@ from ltca.reading.coefficient_laws import (
     station_resultants,
     unstated_laws,
 )
+from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 RADIUS, COUNT, THICKNESS = 20.0, 24, 11.8
 MATERIALS = {"disc": (206e3, 0.3), "pin": (110e3, 0.25), "roller": (310e3, 0.27), "race": (72e3, 0.34)}
@@ -140,3 +142,17 @@ def test_even_pressure_is_the_arc_between_stations():
     """A circle of 20 mm in 24 parts; boundaries of another size have their own."""
     data = made()
     np.testing.assert_allclose(even_pressure(data), THICKNESS * 2.0 * np.pi * RADIUS / COUNT, rtol=1e-12)
+
+
+def test_neighbours_of_a_half_plane_fall_like_the_logarithm(paper_cases):
+    """Patches of half-planes, own approaches that differ: half of both own ones less that between them, which is 1 here but
+    for the width of a patch by its distance, b²/(4 s²) of some 5."""
+    data = closed_form_coefficients(paper_cases["CS-1"], half_width=0.05, depth=300.0)
+    data.attrs["shape"] = "{}"  # neither race nor pin: the disc alone
+    (check,) = [check for check in check_coefficients(data) if check.name == NEIGHBOURS]
+    assert check.value == pytest.approx(1.0, abs=1e-3)
+    # What is taken from one patch and given to the next stays.
+    own = np.arange(data.sizes["station"])
+    data["disc_approach"].values[own, own] += 0.2 * UNIT["disc"] * (-1.0) ** own
+    (shifted,) = [check for check in check_coefficients(data) if check.name == NEIGHBOURS]
+    assert shifted.value == pytest.approx(check.value, abs=1e-3)

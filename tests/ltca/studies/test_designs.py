@@ -81,6 +81,15 @@ def test_grid_list_and_ranges():
     assert sorted(np.floor(40.0 * np.log(rows[:, 0] / 1e3) / np.log(100.0))) == list(range(40))
 
 
+def test_places_of_a_range():
+    """From end to end in proportion, or in proportion of logarithms."""
+    share = np.array([0.0, 0.25, 0.5, 1.0])
+    even = SweepFactor(path="disc.thickness", low=10.0, high=18.0).at(share)
+    np.testing.assert_allclose(even, [10.0, 12.0, 14.0, 18.0], rtol=1e-15)
+    ratio = SweepFactor(path="load.torque", low=1e3, high=1.6e4, logarithmic=True).at(share)
+    np.testing.assert_allclose(ratio, [1e3, 2e3, 4e3, 1.6e4], rtol=1e-14)
+
+
 def test_regression_finds_the_shares_of_a_linear_law():
     """y = Σ c x + noise: shares c² σ² of the whole variance."""
     rng = np.random.default_rng(5)

@@ -1,5 +1,7 @@
 """Closed forms against laws, printed cases, and the loaded drive."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from ltca.geometry.placement import position_angles
 from ltca.studies.design_search.closed_forms import Setting, closed_forms, lives_by_loads, shape_values
 from ltca.studies.design_search.demands import find_demands
 from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
+from ltca.studies.design_search.refinement import most_rollers
 from ltca.studies.design_search.requirements import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
 from ltca.studies.design_search.sizes import Sizes, drive_of, stack_length
@@ -62,6 +65,15 @@ def test_shapes_are_those_of_the_verdict(changed):
     assert told["wall"] == pytest.approx(min(wall for name, wall in named.items() if "hole" in name), rel=1e-9)
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
+def test_the_cage_has_room_for_so_many_rollers_and_no_more(gap):
+    """Chords between neighbours are a diameter and the gap, which is a part of it."""
+    requirements = parse_requirements(PAPER + f"cage_gap = {gap}\n" + STEEL)
+    most = most_rollers(ROW, SimpleNamespace(requirements=requirements))
+    chord = [2.0 * (29.5 - 5.0) * np.sin(np.pi / count) for count in (most, most + 1)]
+    assert chord[1] < 10.0 * (1.0 + gap) <= chord[0]
+
+
 @pytest.mark.parametrize("discs", [2, 3])
 def test_discs_of_a_design_stand_side_by_side(discs):
     """As many as are asked, the gap of the shop between neighbours, the stack in the middle of the pins."""
@@ -107,6 +119,20 @@ def test_closed_forms_are_near_the_loaded_paper_drive():
         "backlash_output",
     ):
         assert abs(np.log(told[name] / loaded[name])) < 0.25, name
+
+
+@pytest.mark.parametrize("spring", [True, False])
+def test_everything_twice_as_stiff_yields_half(spring):
+    """All of it is elastic: with each modulus, the spring of the shaft pins where one is given, and the torque, which closes the
+    same gaps then, it doubles."""
+    found = []
+    for factor in (1.0, 2.0):
+        material = f"{{ youngs_modulus = {factor * 206e3}, poisson_ratio = 0.3 }}"
+        parts = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+        text = PAPER.replace("1.0e6", f"{factor}e6") if spring else PAPER.replace("shaft_pin_stiffness = 1.0e6", "")
+        text += "\n[materials]\n" + "\n".join(f"{part} = {material}" for part in parts)
+        found.append(forms(text, torque=factor * 377_300.0)["stiffness"])
+    assert found[1] == pytest.approx(2.0 * found[0], rel=1e-12)
 
 
 def test_ratings_are_those_of_the_life_of_one_drive():
