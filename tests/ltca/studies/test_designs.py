@@ -137,5 +137,5 @@ def test_sobol_indices_of_ishigami():
 def test_true_and_false_are_levels_of_their_own():
     """They came back as 1 and 0, which no field takes for them."""
     factor = SweepFactor(path="pin_shaft.elastic_contact", levels=(True, False))
-    assert [factor.value(number) for number in factor.numbers.tolist()] == [True, False]
-    assert all(isinstance(factor.value(number), bool) for number in factor.numbers.tolist())
+    assert [factor.value(number) for number in factor.column().tolist()] == [True, False]
+    assert all(isinstance(factor.value(number), bool) for number in factor.column().tolist())
