@@ -17,8 +17,8 @@ RIGID_SHAFT_PINS = (
 )
 """What stands beside the pressure of rigid shaft pins."""
 SPRINGS_ALONE = (
-    "pin_shaft.elastic_contact = false: without effect here, where springs stand for all that yields at the holes and "
-    "pressures there are those of elastic pins; it counts with fe, hybrid and full finite elements"
+    "pin_shaft.elastic_contact = false: without effect here, where springs are all that yields at the holes; "
+    "pressures there are those of elastic pins"
 )
 """What stands beside the pressure of shaft pins that should be rigid where the model has no contact at the holes."""
 

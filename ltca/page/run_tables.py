@@ -150,6 +150,8 @@ def _input(value: Any, path: str) -> Cell:
 
 
 def _words(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 

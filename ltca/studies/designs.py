@@ -156,7 +156,7 @@ class SweepFactor:
     @property
     def is_text(self) -> bool:
         """Whether the column holds the number of the level in place of the value."""
-        return any(isinstance(level, str) for level in self.levels)
+        return any(isinstance(level, str | bool) for level in self.levels)
 
     def column(self) -> FloatArray:
         """Return the numbers of the levels."""

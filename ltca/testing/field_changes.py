@@ -213,7 +213,9 @@ def _seat(drive: Drive, path: str, kind: str) -> dict[str, Any]:
         "sleeve": {"pin_radius": 0.7 * radius, "bore_radius": 0.702 * radius},
     }[kind]
     names = [field for field in field_kinds() if field.startswith(f"{path}.seat.")]
-    return {name: radii.get(name.rpartition(".")[2]) for name in names} | {f"{path}.seat.kind": kind}
+    found = {name: radii.get(name.rpartition(".")[2]) for name in names} | {f"{path}.seat.kind": kind}
+    # Sleeves yield: rigid shaft pins are refused beside them.
+    return found | ({"pin_shaft.elastic_contact": True} if (path, kind) == ("pin_shaft", "sleeve") else {})
 
 
 def _warmth(drive: Drive, path: str) -> dict[str, Any]:

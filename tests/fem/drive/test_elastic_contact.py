@@ -34,11 +34,8 @@ def test_a_carried_cylinder_yields_as_its_finite_elements(radius, nu, plane):
     assert smooth == pytest.approx(carried_cylinder(radius, nu, plane), abs=8e-4)
 
 
-PLASTIC = {"materials.disc.youngs_modulus": 3000.0, "materials.disc.poisson_ratio": 0.4, "load.torque": 8000.0}
-
-
-def plastic_joint():
-    """One disc of plastic on steel pins, none of which is the paper's."""
+def joint():
+    """One disc of the robot joint at half its torque."""
     drive = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
     one = {
         "disc.number_of_discs": 1,
@@ -46,10 +43,10 @@ def plastic_joint():
         "disc.planes": (),
         "crank_bearing.roller_length": drive.disc.thickness,
     }
-    return with_fields(drive, one | PLASTIC)
+    return with_fields(drive, one | {"load.torque": 0.5 * drive.load.torque})
 
 
-@pytest.mark.parametrize("make", [lambda: load_drive("paper").cases["CS-1"], plastic_joint], ids=["paper", "plastic"])
+@pytest.mark.parametrize("make", [lambda: load_drive("paper").cases["CS-1"], joint], ids=["paper", "joint"])
 def test_fe_agrees_with_meshed_shaft_pins(make, tmp_path):
     drive = with_fields(make(), {"pin_shaft.elastic_contact": True})
     path = tmp_path / "coefficients.nc"
@@ -63,9 +60,10 @@ def test_fe_agrees_with_meshed_shaft_pins(make, tmp_path):
         ("rollers", contacts.roller_load_outer, own.rollers.outer_load[0]),
         ("holes", contacts.pin_shaft_load, own.hole_load[0]),
     ):
-        # Coarse on both sides: 0.2 % of the largest load on the paper's drive (0.07 % with default meshes); rigid pins differ by
-        # 2 % there.
+        # Coarse on both sides: 0.12 % and 0.19 % of the largest load found (0.07 % with default meshes on the paper's drive);
+        # rigid pins differ by 2 % and 6 %.
         np.testing.assert_allclose(ours, theirs, atol=4e-3 * theirs.max(), err_msg=name)
     # Four elements for the half-width: peaks of the pressure good to 1 %. Rigid pins would read 1.4 of it in steel.
     assert found.pressures.holes.mid.max() == pytest.approx(contacts.hole_pressure_max.max(), rel=0.015)
-    assert found.transmission_error[0] == pytest.approx(full.transmission_error, rel=1e-3)
+    # 0.04 % and 0.09 % found on these meshes; rigid pins differ by 2 % and 5 %.
+    assert found.transmission_error[0] == pytest.approx(full.transmission_error, rel=2e-3)

@@ -366,8 +366,9 @@ def test_shaft_pins_of_a_material_that_does_not_yield_are_rigid(coarse):
     """A pin a million times stiffer than steel: loads, pressures and wheel of the rigid circle, but for its mesh."""
     stiff = {"pin_shaft.elastic_contact": True, "materials.shaft_pin.youngs_modulus": 2e11}
     found = solve_drive(with_fields(drive(), stiff, check=False), 0.5, scale=3.0)
-    for name in ("pin_load", "pin_shaft_load", "hole_pressure_max"):
+    # A mesh of quadratic edges stands for the circle: of a peak over three elements for the half-width 0.1 % (found), with
+    # room for other meshers; loads feel the mean. Pins of steel move them by 2 % and 30 %.
+    for name, part in (("pin_load", 1e-3), ("pin_shaft_load", 1e-3), ("hole_pressure_max", 5e-3)):
         own, rigid = getattr(found.contacts, name), getattr(coarse.contacts, name)
-        # Pin and circle meet through the same zones of the disc: round-off of the contact search, 1e-5 of the largest.
-        np.testing.assert_allclose(own, rigid, atol=1e-3 * rigid.max(), err_msg=name)
+        np.testing.assert_allclose(own, rigid, atol=part * rigid.max(), err_msg=name)
     assert found.pose.wheel_angle == pytest.approx(coarse.pose.wheel_angle, rel=1e-4)

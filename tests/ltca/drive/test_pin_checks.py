@@ -52,6 +52,8 @@ WRONG = [
         "pin_wheel.pin_errors.diameter holds 0.02 mm: must be less than 0.02 mm, twice the play of pin_wheel.seat.radius",
     ),
     ({"pin_wheel.seat.bore_radius": 2.5}, "pin_wheel.seat.bore_radius = 2.5 mm: must be left out with pin_wheel.seat.kind"),
+    ({"pin_shaft.elastic_contact": False}, "pin_shaft.elastic_contact = false: must be true with sleeves (pin_shaft.seat.kind"),
+    ({"pin_shaft.elastic_contact": "yes"}, "pin_shaft.elastic_contact = 'yes': must be true or false"),
     # sleeves
     (SLEEVES | {"pin_wheel.seat.pin_radius": None}, "pin_wheel.seat.pin_radius: must be given with pin_wheel.seat.kind"),
     (SLEEVES | {"pin_wheel.seat.bore_radius": 2.5}, "pin_wheel.seat.bore_radius = 2.5 mm: must be greater than 2.5 mm (pin_w"),

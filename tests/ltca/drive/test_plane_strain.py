@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from ltca.drive.plane_strain import require_plane_strain
+from ltca.drive.plane_strain import require_plane_strain, require_rigid_shaft_pins
+from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
 
 PROFILES = ("crank_bearing.roller_profile", "pin_wheel.pin_profile")
 
@@ -54,3 +57,21 @@ def test_shorter_rollers_are_refused(paper_cases):
 )
 def test_even_drives_are_taken(fields, paper_cases):
     require_plane_strain(with_fields(paper_cases["CS-6"], fields), "compliance fe")
+
+
+def test_shaft_pins_that_yield_are_refused_by_name_where_they_are_rigid(paper_cases):
+    rigid = paper_cases["CS-1"]
+    require_rigid_shaft_pins(rigid, "the CalculiX deck")
+    with pytest.raises(DriveError, match=r"pin_shaft\.elastic_contact = true .*must be false for the CalculiX deck"):
+        require_rigid_shaft_pins(with_fields(rigid, {"pin_shaft.elastic_contact": True}), "the CalculiX deck")
+
+
+def test_a_file_says_whether_shaft_pins_yield(paper_cases):
+    """True where nothing is said; what is written reads back; the shape of the bodies does not know it."""
+    assert not paper_cases["CS-1"].pin_shaft.elastic_contact
+    joint = parse_drive(shipped_drive("robot-joint"), "robot-joint").cases["nominal"]
+    assert joint.pin_shaft.elastic_contact
+    for value in (True, False):
+        own = with_fields(joint, {"pin_shaft.elastic_contact": value})
+        assert parse_drive(drive_text(own)).cases["nominal"] == own
+        assert single_discs(own)[0].body_shape() == single_discs(joint)[0].body_shape()

@@ -141,3 +141,10 @@ def test_sobol_indices_of_ishigami():
     # standard error about 0.01 with 20000 blocks
     np.testing.assert_allclose(found.first[:, 0], [0.3139, 0.4424, 0.0], atol=0.03)
     np.testing.assert_allclose(found.total[:, 0], [0.5576, 0.4424, 0.2437], atol=0.03)
+
+
+def test_true_and_false_are_levels_of_their_own():
+    """They came back as 1 and 0, which no field takes for them."""
+    factor = SweepFactor(path="pin_shaft.elastic_contact", levels=(True, False))
+    assert [factor.value(number) for number in factor.column().tolist()] == [True, False]
+    assert all(isinstance(factor.value(number), bool) for number in factor.column().tolist())
