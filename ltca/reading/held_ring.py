@@ -110,14 +110,15 @@ def _harmonics(
 
 
 PER_STATION = 12
-"""Points of a wall for each station, for its thickness: a twelfth of their spacing apart tells that of a thin one to per cents."""
+"""Points of a wall for each station: a twelfth of their spacing apart they tell the thickness of a thin one to some per cent."""
 
 
 def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArray:
     r"""Return how much more the approach of stations may fall between patch and wider patch because their wall bends.
 
     A wall of thickness h and length L on simple supports has the moment :math:`FL/4` under a force F in its middle, and the
-    curvature :math:`3FL/(Eh^3t)`; walls are held more firmly. Spread over a patch of half-width b, and measured over it, the
+    curvature :math:`3FL/(Eh^3t)`; walls are held more firmly, and a ring of radius R
+    has :math:`FR/\pi`. Spread over a patch of half-width b, and measured over it, the
     deflection is less by the curvature times :math:`b^2/4`, and from b to b′ the approach falls by
 
     .. math:: \frac{3\pi}{8} \frac{L}{h} \frac{b'^2 - b^2}{h^2}
@@ -159,9 +160,10 @@ def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArr
         # As long as it is less than twice as thick, both ways.
         thin = np.roll(walls, -here) < 2.0 * walls[here]
         steps = np.roll(np.abs(own - np.roll(own, 1)), -here)
-        forward = thin.size if thin.all() else int(np.argmin(thin))
-        backward = 0 if thin.all() else int(np.argmin(thin[::-1]))
+        forward, backward = int(np.argmin(thin)), int(np.argmin(thin[::-1]))
         length = float(steps[1:forward].sum() + steps[steps.size - backward :].sum())
+        if thin.all():  # a ring has the moment FR/π
+            length = 2.0 / np.pi**2 * float(steps.sum())
         bent = (wider[place] ** 2 - width[place] ** 2) / walls[here] ** 2 * length / walls[here]
         found[place] = 3.0 * np.pi / 8.0 * bent / np.log(wider[place] / width[place])
     return np.where(np.isfinite(found), found, 0.0)
