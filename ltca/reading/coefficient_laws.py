@@ -237,12 +237,12 @@ def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
         own, broad = np.diag(dataset["disc_approach"].values)[wide], dataset["wide_approach"].values
         ratio = np.log(dataset["wide_half_width"].values / dataset["station_half_width"].values[wide])
         slopes = (own - broad) / ratio / near_field_unit(dataset, "disc")
-        highest = 1.0 + NEAR_FIELD_LIMIT + wall_bending(dataset, wide)
+        most = 1.0 + NEAR_FIELD_LIMIT + wall_bending(dataset, wide)
         # Of all stations the one that comes nearest to its own bounds, or is farthest beyond them; one that is no number first.
-        used = np.where(slopes > 1.0, (slopes - 1.0) / (highest - 1.0), (1.0 - slopes) / NEAR_FIELD_LIMIT)
+        used = np.where(slopes > 1.0, (slopes - 1.0) / (most - 1.0), (1.0 - slopes) / NEAR_FIELD_LIMIT)
         worst = int(np.argmax(used))
         lowest, value = 1.0 - NEAR_FIELD_LIMIT, float(slopes[worst])
-        yield Check(name=NEAR_FIELD_DISC, value=value, lowest=lowest, highest=float(highest[worst]), reason=reason)
+        yield Check(name=NEAR_FIELD_DISC, value=value, lowest=lowest, highest=float(most[worst]), reason=reason)
     if all(_holds(dataset, name) for name in STATED_BY[NEAR_FIELD_ROUND]):
         slopes = []
         for body in ("pin", "roller", "race"):

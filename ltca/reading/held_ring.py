@@ -164,6 +164,8 @@ def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArr
         length = float(steps[1:forward].sum() + steps[steps.size - backward :].sum())
         if thin.all():  # a ring has the moment FR/π
             length = 2.0 / np.pi**2 * float(steps.sum())
+        if not (walls[here] > 0.0 and 0.0 < width[place] < wider[place]):
+            continue  # other laws tell
         bent = (wider[place] ** 2 - width[place] ** 2) / walls[here] ** 2 * length / walls[here]
         found[place] = 3.0 * np.pi / 8.0 * bent / np.log(wider[place] / width[place])
     return np.where(np.isfinite(found), found, 0.0)
