@@ -252,8 +252,7 @@ class LoadedAnalysis:
     @property
     def _yielding(self) -> dict[str, tuple[str, FloatArray]]:
         """Displacements of what holds the contacts, mm, each with the field that says how it yields."""
-        coordinates, shaft = self.model.coordinates, self.drive.pin_shaft
-        found: dict[str, tuple[str, FloatArray]] = {}
+        coordinates, shaft, found = self.model.coordinates, self.drive.pin_shaft, dict[str, tuple[str, FloatArray]]()
         bent = [pin_deflections(disc.drive, disc.model, disc.full) for disc in self.discs]
         for key, name in (("pin_deflection", "wheel"), ("shaft_pin_deflection", "shaft")):
             if key in bent[0]:

@@ -1,8 +1,4 @@
-"""The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad).
-
-`Drive` is one complete drive in one case; `load_drive` in `ltca.reading.drive_file` reads a TOML file with its
-cases, `ltca.reading.physical_checks` holds the physical checks.
-"""
+"""The drive: validated, frozen definitions of its parts, clearances and load (mm, N, MPa, N·mm, rad)."""
 
 from __future__ import annotations
 
@@ -170,7 +166,7 @@ class Drive:
     temperature : Temperature or None
         How warm the parts are; lengths of a file are those at 20 °C.
     case : str
-        Name of the case of a file that the drive is; it names results, and is no part of what is compared or hashed.
+        Name of the case of a file that the drive is: it names results, and is neither compared nor hashed.
     """
 
     name: Name = "drive"

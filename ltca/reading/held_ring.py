@@ -3,14 +3,21 @@ r"""A round body held along an inner circle, loaded by a patch on its outer one:
 Plane elasticity in Kolosov's potentials (Muskhelishvili, *Some Basic Problems of the Mathematical Theory of Elasticity*,
 § 56–60): with :math:`\varphi = A \ln z + \sum a_n z^n` and :math:`\psi = -\kappa A \ln z + \sum b_n z^n` the harmonics
 :math:`\pm m` of displacement and traction take four coefficients, which the held circle and the load give.
+Beside it what a thin wall, as a beam, bends under a patch.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 # Harmonics times half-width over radius: what is left out falls with the cube, to 1e-6 of the patch's own.
 RESOLUTION = 60.0
@@ -100,3 +107,82 @@ def _harmonics(
     found = np.linalg.solve(system, right[..., None])[..., 0]
     plus, minus = (np.sum(np.stack(row, axis=-1) * found, axis=-1) for row in (moved_plus, moved_minus))
     return plus, minus
+
+
+PER_STATION = 12
+"""Points of a wall for each station: a twelfth of their spacing apart they tell the thickness of a thin one to some per cent."""
+
+
+def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArray:
+    r"""Return how much more the approach of stations may fall between patch and wider patch because their wall bends.
+
+    A wall of thickness h and length L on simple supports has the moment :math:`FL/4` under a force F in its middle, and the
+    curvature :math:`3FL/(Eh^3t)`; walls are held more firmly, and a ring of radius R
+    has :math:`FR/\pi`. Spread over a patch of half-width b, and measured over it, the
+    deflection is less by the curvature times :math:`b^2/4`, and from b to b′ the approach falls by
+
+    .. math:: \frac{3\pi}{8} \frac{L}{h} \frac{b'^2 - b^2}{h^2}
+
+    units of the near field :math:`2F/(\pi Et)` more.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of coefficients.
+    stations : array of int
+        Which stations, those with a wider patch.
+
+    Returns
+    -------
+    array, shape (stations,)
+        Part of ln(b′/b); zero of bodies with one boundary.
+    """
+    boundary = dataset["station_boundary"].values
+    points = dataset["station_x"].values + 1j * dataset["station_y"].values
+    width, wider = dataset["station_half_width"].values[stations], dataset["wide_half_width"].values
+    numbers = np.unique(boundary).tolist()
+    curves = {number: _between(points[boundary == number]) for number in numbers}
+    thickness = {
+        number: np.min(
+            [
+                np.full(curves[number].size, np.inf),
+                *(_clearance(curves[number], curves[one]) for one in numbers if one != number),
+            ],
+            axis=0,
+        )
+        for number in numbers
+    }
+    found = np.zeros(len(stations))
+    for place, station in enumerate(stations.tolist()):
+        number = int(boundary[station])
+        own, walls = curves[number], thickness[number]
+        here = PER_STATION * int(np.count_nonzero(boundary[:station] == number))
+        # As long as it is less than twice as thick, both ways.
+        thin = np.roll(walls, -here) < 2.0 * walls[here]
+        steps = np.roll(np.abs(own - np.roll(own, 1)), -here)
+        forward, backward = int(np.argmin(thin)), int(np.argmin(thin[::-1]))
+        length = float(steps[1:forward].sum() + steps[steps.size - backward :].sum())
+        if thin.all():  # a ring has the moment FR/π
+            length = 2.0 / np.pi**2 * float(steps.sum())
+        if not (walls[here] > 0.0 and 0.0 < width[place] < wider[place]):
+            continue  # other laws tell
+        bent = (wider[place] ** 2 - width[place] ** 2) / walls[here] ** 2 * length / walls[here]
+        found[place] = 3.0 * np.pi / 8.0 * bent / np.log(wider[place] / width[place])
+    return np.where(np.isfinite(found), found, 0.0)
+
+
+def _between(points: ComplexArray) -> ComplexArray:
+    """Points of a wall between its stations, which are uniform in a parameter of period 2π, by Fourier series."""
+    count = len(points)
+    series, padded = np.fft.fft(points), np.zeros(PER_STATION * count, dtype=complex)
+    order = np.rint(np.fft.fftfreq(count, 1.0 / count)).astype(int)
+    padded[order] = series
+    return np.asarray(PER_STATION * np.fft.ifft(padded))
+
+
+def _clearance(points: ComplexArray, others: ComplexArray) -> FloatArray:
+    """Distance of points from the nearest of others, mm."""
+    from scipy.spatial import KDTree
+
+    tree = KDTree(np.stack([others.real, others.imag], axis=1))
+    return np.asarray(tree.query(np.stack([points.real, points.imag], axis=1))[0])

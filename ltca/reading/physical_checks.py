@@ -26,8 +26,7 @@ from ltca.reading.deviation_checks import (
     named_in_disc,
 )
 
-# Parts that overlap are pressed together when they are assembled, and answered. Bodies strained by a tenth are beyond linear
-# elasticity whatever they are made of; sharper limits need a load and are those of `ltca.analysis.half_width_guard`.
+# Parts that overlap are pressed together. Bodies strained by a tenth are no more linear-elastic; sharper limits need a load.
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
 
 

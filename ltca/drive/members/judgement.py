@@ -269,7 +269,9 @@ def _of_materials(drive: Drive, value: Value) -> tuple[list[Limit], str]:
     if rest == "bending_amplitude":
         name, part = bent[which]
         given = [] if part.bending_fatigue_limit is None else [(part.bending_fatigue_limit, name)]
-        return _lowest(value, given, "bending_fatigue_limit"), f"materials.{name} has no bending_fatigue_limit"
+        return _lowest(
+            value, given, "bending_fatigue_limit"
+        ), f"not judged: materials.{name} has no bending_fatigue_limit"
     if rest in ("bending_stress", "shear_stress"):
         name, part = bent[which]
         factor, how = (1.0, "yield_strength") if rest.startswith("bending") else (3.0**-0.5, "yield_strength/√3")

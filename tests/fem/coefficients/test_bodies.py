@@ -320,7 +320,10 @@ TABLES_LEFT_OUT = (
     "lubricant",
     "temperature",
 )
-OF_MATERIALS = ("allowable_pressure", "yield_strength", "hardness", "hardness_depth", "density", "thermal_expansion")
+OF_MATERIALS = (
+    "allowable_pressure", "yield_strength", "bending_fatigue_limit", "hardness", "hardness_depth", "density",
+    "thermal_expansion",
+)  # fmt: skip
 
 
 def bodies(drive):

@@ -13,15 +13,17 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.advice import _all_sizes, advise
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
-from ltca.analysis.verdict.pin_stress import pin_stress
-from ltca.analysis.verdict.values import judge_analysis
+from ltca.analysis.verdict.pin_stress import pin_stress, worst_cycle
+from ltca.analysis.verdict.values import find_values, judge_analysis
 from ltca.commands.program import main
 from ltca.drive.members.judgement import TITLES
 from ltca.drive.members.limits import LIMITED, parse_limits
+from ltca.drive.members.pins import WheelPinSeat
 from ltca.drive.parts import Material
 from ltca.equilibrium.reducer import disc_responses
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
+from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
@@ -382,3 +384,96 @@ def test_run_shows_the_verdict_first_and_ends_with_0(tmp_path, capsys):
     )
     told = capsys.readouterr().out
     assert told.index("FAIL") < told.index("mean bearing load")
+
+
+def moved_to(stress, **how):
+    """The worst cycle of one section of one pin, its moments as vectors, MPa."""
+    return worst_cycle(np.asarray(stress, dtype=complex)[:, None, None], **{"alike": False, "rolls": False, **how})
+
+
+def test_the_equivalent_amplitude_of_what_can_be_said_by_hand():
+    """√(σ_max σ_a): reversed the amplitude itself, pulsating 1/√2 of the largest, about a mean by both."""
+    turn = np.exp(2j * np.pi * np.arange(360) / 360)
+    reversed_, pulsating = moved_to([100.0, -100.0, 0.0]), moved_to([0.0, 100.0])
+    assert (reversed_.equivalent_amplitude, reversed_.ratio) == pytest.approx((100.0, -1.0))
+    assert (pulsating.equivalent_amplitude, pulsating.ratio) == pytest.approx((100.0 / np.sqrt(2.0), 0.0))
+    assert moved_to([50.0, 100.0]).equivalent_amplitude == pytest.approx(np.sqrt(100.0 * 25.0))
+    assert moved_to([50.0, 100.0]).ratio == pytest.approx(0.5)
+    assert moved_to([-100.0, -50.0]).equivalent_amplitude == pytest.approx(50.0)  # the fibre opposite is pulled
+    # A force that goes around the pin, and one that does so while it presses, half a turn: some fibre sees both signs.
+    for swept in (turn, turn[:181]):
+        found = moved_to(100.0 * swept)
+        assert (found.equivalent_amplitude, found.ratio) == pytest.approx((100.0, -1.0), rel=1e-12)
+    # Fibres stand by 5°: of a pulsating moment between two of them 0.1 % is lost.
+    between = moved_to([0.0, 100.0 * np.exp(1j * np.radians(2.5))]).equivalent_amplitude
+    assert between == pytest.approx(100.0 * np.cos(np.radians(2.5)) / np.sqrt(2.0), rel=1e-12)
+    assert moved_to([0.0, 100.0], rolls=True).equivalent_amplitude == 100.0
+
+
+def test_pins_that_take_each_others_places_have_one_history():
+    """What one pin sees at one position another sees at the next: +100 and −100 on two pins is reversed bending of both."""
+    stress = np.array([[100.0, -100.0], [100.0, -100.0]], dtype=complex)[..., None]
+    assert worst_cycle(stress, alike=False, rolls=False).equivalent_amplitude == 0.0  # each still
+    assert worst_cycle(stress, alike=True, rolls=False).equivalent_amplitude == pytest.approx(100.0)
+
+
+@pytest.fixture(scope="module")
+def bent():
+    """Pins that bend, over a whole turn; wheel pins fixed in the wheel."""
+    drive = parse_drive(shipped_drive("sleeved")).cases["nominal"]
+    parts = replace(drive.materials, wheel_seat=Material())
+    drive = replace(drive, pin_wheel=replace(drive.pin_wheel, seat=WheelPinSeat()), materials=parts)
+    drive = with_fields(drive, {"materials.wheel_pin": "42CrMo4", "materials.shaft_pin": "100Cr6"})
+    return analyse(drive, position_angles(24))
+
+
+@pytest.mark.slow
+def test_bending_of_pins_is_judged_by_fatigue(bent):
+    """It was judged by the yield strength, 'safety 1.85', though pins bend every turn."""
+    summary = summarise(bent)
+    judged = {check.value.quantity: check for check in judge_analysis(bent, summary, {}, lives=False)}
+    for pins, limit in (("wheel", 450.0), ("shaft", 858.0)):
+        fatigue, static = judged[f"{pins}_pin_bending_amplitude"], judged[f"{pins}_pin_bending_stress"]
+        assert (fatigue.limit.value, fatigue.limit.source) == (limit, f"materials.{pins}_pin.bending_fatigue_limit")
+        assert 0.3 * static.value.value < fatigue.value.value <= static.value.value
+        assert "stress ratio" in fatigue.value.part
+        assert "(static)" in static.title
+    # Wheel pins are pressed from one side as the disc rolls by: seen in the wheel they pulsate, in the fixed frame reversed.
+    cycle = pin_stress(bent, "wheel").cycle
+    assert -0.4 < cycle.ratio < 0.1
+    plain = replace(bent, drive=with_fields(bent.drive, {"materials.wheel_pin.bending_fatigue_limit": None}))
+    found = [one for one in judge_analysis(plain, summary, {}, lives=False) if one.value.quantity[:11] == "wheel_pin_b"]
+    told = next(one for one in found if one.value.quantity == "wheel_pin_bending_amplitude")
+    assert (told.verdict, told.value.reason) == (
+        "no limit",
+        "not judged: materials.wheel_pin has no bending_fatigue_limit",
+    )
+
+
+@pytest.mark.slow
+def test_bending_fatigue_is_that_of_whole_turns(bent):
+    """A few positions do not hold what a fibre sees."""
+    some = analyse(bent.drive, ANGLES[:3])
+    values = {one.quantity: one for one in find_values(some, summarise(some), lives=False)}
+    assert values["shaft_pin_bending_amplitude"].value is None
+    assert values["shaft_pin_bending_amplitude"].reason == "positions cover no whole turns"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("like", "changes", "told"),
+    [
+        ("sleeved", {"materials.shaft_pin.youngs_modulus": 300.0}, r"shaft pins bend by \S+ mm, 1.8 eccentricities"),
+        ("paper", {"pin_shaft.stiffness": 3e3}, r"shaft pins yield by \S+ mm, 0.2\d eccentricities"),
+        ("paper", {"pin_wheel.support_stiffness": 3e3}, r"the wheel moves by \S+ mm"),
+        ("sleeved", {"materials.wheel_pin.youngs_modulus": 1500.0}, r"wheel pins bend by \S+ mm"),
+        ("rv", {"crank.support.stiffness": (2e4, 2e4)}, r"cranks yield by \S+ mm"),
+    ],
+)
+def test_yielding_that_is_no_small_displacement_is_told(like, changes, told):
+    """Shaft pins of rubber that bend by 0.8 to 4.5 eccentricities were answered without a word."""
+    drive = next(iter(parse_drive(shipped_drive(like)).cases.values()))
+    assert not [warning for warning in analyse(drive, ANGLES[:2]).warnings if "displacement" in warning]
+    (warning,) = (w for w in analyse(with_fields(drive, changes), ANGLES[:2]).warnings if "displacement" in w)
+    assert re.search(told, warning)
+    assert f"from 0.1 eccentricities ({0.1 * drive.crank.eccentricity:.3g} mm) on" in warning

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning
+from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning, unit_warnings
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.reading.changes import with_fields
+from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.testing.practical_drives import practical_drive
 
 ANGLE = np.array([0.5])
 
@@ -91,3 +95,55 @@ def test_one_part_in_gigapascals_is_warned_of(vary):
     # a disc of plastic, a rubber drive, one part of TPU: no metal in GPa, or nothing beside it
     for materials in ({"disc": {"youngs_modulus": 2600.0}}, all_of(206.0), {"disc": {"youngs_modulus": 30.0}}):
         assert stiffness_warning(vary(materials=materials)) is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        (
+            {"materials.disc.youngs_modulus": 206e9},
+            r'^materials.disc.*stiffer than diamond.* written 206000 or "206 GPa"$',
+        ),
+        (
+            {"pin_wheel.pin_circle_radius": 0.088, "materials.disc.youngs_modulus": 206e9},
+            r"^pin_wheel.pin_circle_radius = 0.088 mm and youngs_modulus = 2.06e\+11 MPa look like a file in SI units",
+        ),
+        ({"pin_wheel.pin_circle_radius": 0.088}, r'smaller than any drive that is built; .* "0.088 m" or 88$'),
+        ({"pin_wheel.pin_circle_radius": 6e4}, r'is 60 m, larger than any drive that is built; .* "60 mm"\?$'),
+        (
+            {"disc.number_of_discs": 2, "disc.phases": (0.0, 180.0)},
+            r'^disc.phases: 180 rad are 28.6 turns; .* "180 deg"$',
+        ),
+        ({"temperature.housing": 293.0}, r'^temperature.housing = 293 °C: .* kelvin are written "293 K" \(19.85 °C\)$'),
+    ],
+)
+def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
+    """They slipped by: pascals, files in SI units, metres, degrees as radians, kelvin."""
+    (found,) = unit_warnings(with_fields(vary(), changes, check=False))
+    assert re.search(told, found)
+
+
+def test_sound_drives_are_not_pointed_out():
+    """Nor those of plastic, or hot: shipped ones, and practical ones of all sizes."""
+    shipped = [
+        drive for name in ("paper", "rv", "sleeved") for drive in parse_drive(shipped_drive(name)).cases.values()
+    ]
+    for drive in [*shipped, *(practical_drive(seed)[0] for seed in range(40))]:
+        assert unit_warnings(drive) == []
+    hot = with_fields(shipped[0], {"temperature.disc": 180.0}, check=False)
+    assert unit_warnings(with_fields(hot, {"materials.disc.youngs_modulus": 30.0}, check=False)) == []
+
+
+def test_kelvin_that_seizes_a_drive_is_named():
+    """It was told as the play that 273 K more take."""
+    drive = next(iter(parse_drive(shipped_drive("robot-joint")).cases.values()))
+    parts = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
+    expands = {f"materials.{part}.thermal_expansion": 2.3e-5 for part in parts}
+    with pytest.raises(DriveError, match=r'^temperature.disc = 293 °C: .*kelvin are written "293 K"'):
+        analyse(with_fields(drive, expands | {"temperature.disc": 293.0}), ANGLE)
+
+
+@pytest.mark.slow
+def test_a_light_torque_above_the_torque_is_asked_about(vary):
+    (told,) = (one for one in analyse(vary(load={"light_torque": 4e5}), ANGLE).warnings if "light_torque" in one)
+    assert told.endswith("that it is light against: are the two swapped, or is one in N·m?")

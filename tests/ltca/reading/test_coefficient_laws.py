@@ -15,6 +15,7 @@ from ltca.reading.coefficient_laws import (
     station_resultants,
     unstated_laws,
 )
+from ltca.reading.held_ring import wall_bending
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 RADIUS, COUNT, THICKNESS = 20.0, 24, 11.8
@@ -156,3 +157,50 @@ def test_neighbours_of_a_half_plane_fall_like_the_logarithm(paper_cases):
     data["disc_approach"].values[own, own] += 0.2 * UNIT["disc"] * (-1.0) ** own
     (shifted,) = [check for check in check_coefficients(data) if check.name == NEIGHBOURS]
     assert shifted.value == pytest.approx(check.value, abs=1e-3)
+
+
+def ring(thickness):
+    """That dataset as one of a ring, its inner wall so far from the stations, with as many stations of its own."""
+    outer = made()
+    inner = made()
+    for name in ("station_x", "station_y"):
+        inner[name] = inner[name] * (RADIUS - thickness) / RADIUS
+    inner["station_boundary"] = inner["station_boundary"] + 1
+    walls = [name for name in outer if outer[name].dims == ("station",)]
+    joined = xr.concat([outer[walls], inner[walls]], "station")
+    return joined.assign(wide_station=outer["wide_station"], wide_half_width=outer["wide_half_width"])
+
+
+def test_a_thin_wall_may_bend_between_a_patch_and_a_wider_one():
+    """A ring under a force has M = FR/π there (Roark), curvature 12 M/(Eh³t); a patch sees a quarter of it times b²."""
+    for thickness in (0.5, 1.0):
+        found = wall_bending(ring(thickness), np.array([3, 17]))
+        curvature = 12.0 * RADIUS / np.pi / thickness**3 * np.pi / 2.0  # of a force, by 2/(πEt)
+        wide, narrow = np.array([0.4, 0.3]), 0.2
+        expected = 0.25 * (wide**2 - narrow**2) * curvature / np.log(wide / narrow)
+        # the circumference by chords, and distances by points a twelfth of a station apart
+        np.testing.assert_allclose(found, expected, rtol=2e-3)
+    assert np.all(wall_bending(made(), np.array([3, 17])) == 0.0)  # one boundary, no wall
+
+
+def test_coefficients_of_a_thin_wall_are_not_refused_for_its_bending():
+    """Those of 5 pins with a wall of 0.585 mm were rejected as 'near field 1.044' right after they had been derived."""
+    from ltca.reading import coefficient_laws
+
+    data, bending = made(), np.array([0.08, 0.0])
+    drop = np.array([0.044 * np.log(2.0), 0.0]) * UNIT["disc"]
+    data["wide_approach"] = data["wide_approach"] - drop
+    assert not figures(data)["near field, disc, worst station"].passed
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(coefficient_laws, "wall_bending", lambda *_: bending)
+        check = figures(data)["near field, disc, worst station"]
+        assert check.passed
+        assert (check.lowest, check.highest) == pytest.approx((0.96, 1.12))
+        assert check.value == pytest.approx(1.044)
+        for spoil in (
+            -2.0 * drop[::-1],
+            -4.0 * drop,
+            3.0 * drop,
+        ):  # of the thick wall, too far, and less than a half-plane's
+            wrong = data.assign(wide_approach=data["wide_approach"] + spoil)
+            assert not figures(wrong)["near field, disc, worst station"].passed
