@@ -11,6 +11,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from multiprocessing import active_children, forkserver, get_all_start_methods, get_context, resource_tracker
 
+from ltca.errors import FaultError
 from ltca.output.processes import interrupts_held
 
 NOTICING = 5.0
@@ -38,16 +39,17 @@ def process_pool(
     ------
     ProcessPoolExecutor
         The pool.
+
+    Raises
+    ------
+    FaultError
+        When the system gives no processes, or none of the semaphores and pipes between them.
     """
-    method = "forkserver" if preload and "forkserver" in get_all_start_methods() else "spawn"
-    context = get_context(method)
-    if method == "forkserver":
-        context.set_forkserver_preload([preload])
-        resource_tracker.ensure_running()  # first: when it starts, held signals come through again
-        with interrupts_held():
-            # While the server loads, Ctrl-C would end it with a traceback of its own.
-            forkserver.ensure_running()
-    pool = ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
+    try:
+        pool = _started_pool(processes, preload, initializer)
+    except OSError as error:
+        told = f"{processes} worker processes cannot be started: {error.strerror or error}"
+        raise FaultError(f"{told}: /dev/shm and TMPDIR must be writable; or take --workers 1") from error
     try:
         yield pool
     except BaseException as error:
@@ -59,6 +61,18 @@ def process_pool(
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _started_pool(processes: int, preload: str, initializer: Callable[[], None] | None) -> ProcessPoolExecutor:
+    method = "forkserver" if preload and "forkserver" in get_all_start_methods() else "spawn"
+    context = get_context(method)
+    if method == "forkserver":
+        context.set_forkserver_preload([preload])
+        resource_tracker.ensure_running()  # first: when it starts, held signals come through again
+        with interrupts_held():
+            # While the server loads, Ctrl-C would end it with a traceback of its own.
+            forkserver.ensure_running()
+    return ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
 
 
 def _end_fork_server() -> None:

@@ -24,7 +24,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -206,11 +205,10 @@ def _require_possible_grid(design: Any, factors: Mapping[str, Any], reader: _Rea
     """Refuse a grid that nobody solves before its levels are looked at, one by one."""
     if not isinstance(design, Mapping) or design.get("kind", "grid") != "grid":
         return
-    counts = [
-        entry.get("levels") if isinstance(entry, Mapping) else len(entry) if isinstance(entry, list) else 1
-        for _, entry in _flat(factors, "")
-    ]
-    samples = prod(count for count in counts if _is_count(count) and 0 < count <= MOST_LEVELS)
+    samples = 1
+    for _, entry in _flat(factors, ""):
+        count = entry.get("levels") if isinstance(entry, Mapping) else len(entry) if isinstance(entry, list) else 1
+        samples *= count if isinstance(count, int) and 0 < count <= MOST_LEVELS else 1
     if samples > MOST_SAMPLES:
         told = f"{samples}" if samples < 10**15 else f"{samples:.3g}"
         reader.problems.append(f"factors: make a grid of {told} samples, must be at most {MOST_SAMPLES}")
