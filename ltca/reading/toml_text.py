@@ -43,6 +43,9 @@ def read_text(path: Path, missing: str = "no such file") -> str:
         raise DriveError([missing], str(path)) from error
     except UnicodeDecodeError as error:
         raise DriveError([f"cannot be read: byte {error.start} is not UTF-8"], str(path)) from error
+    except UnicodeEncodeError as error:
+        told = f"cannot be a name of a file in the encoding {error.encoding}: LC_ALL=C.UTF-8 helps"
+        raise DriveError([told], str(path)) from error
     except (OSError, ValueError) as error:  # ValueError: a name with a null character
         reason = error.strerror if isinstance(error, OSError) else None
         raise DriveError([f"cannot be read: {reason or error}"], str(path)) from error
