@@ -135,7 +135,7 @@ def shape(path):
 
 def declare(path):
     with h5py.File(path, "r+") as file:
-        file.create_dataset("huge", (10**12,), chunks=(1000,))
+        file.create_dataset("huge", (10**12,), chunks=(1000,), dtype="f8")
 
 
 @pytest.mark.parametrize("damage", [cut, spoil_bytes, link, shape, declare])
