@@ -10,6 +10,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from ltca.output.process_pools import remove_stale_folders
 from ltca.output.run_folder import MANIFEST
 
 # Small sizes: what a command does is the same, how long it takes is not. {out} is the folder or file.
@@ -64,6 +65,7 @@ def left_over(scratch: Path, seconds: float = 15.0) -> str:
     """Return which processes and temporary files outlive a program, empty when there are none after a while."""
     end = time.monotonic() + seconds
     while True:
+        remove_stale_folders(scratch, 0.0)  # as the next pool does, of those whose workers were killed as well
         processes = []
         for path in Path("/proc").glob("[0-9]*"):
             try:
@@ -72,7 +74,7 @@ def left_over(scratch: Path, seconds: float = 15.0) -> str:
                     processes.append(path.name)
             except OSError:
                 continue
-        files = [path.name for path in scratch.iterdir() if not path.name.startswith("pymp-")]
+        files = [path.name for path in scratch.iterdir()]
         if not processes and not files:
             return ""
         if time.monotonic() > end:

@@ -43,6 +43,8 @@ ORDER = (
 )
 USAGE_ERROR, FAULT = 2, 1
 OUTPUT_FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
+NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread", "can't allocate lock")
+"""What the loader of libraries, and threads, say where a library or a stack finds no memory."""
 DEBUG = "--debug"
 EXAMPLES = "examples:"
 
@@ -214,6 +216,10 @@ def _told(error: Exception) -> str:
         return "\n".join(printable(line) for line in str(error).split("\n"))
     if isinstance(error, MemoryError):
         return "memory is not enough; ask for fewer positions or samples, or for larger elements"
+    if any(sign in str(error) for sign in NO_MEMORY) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
+        return (
+            "memory is not enough to load what the command needs: raise the limit (ulimit -v, container), or free some"
+        )
     if isinstance(error, UnicodeEncodeError):
         return f"{printable(error.object)[:200]}: cannot be a file name in the encoding {error.encoding}; LC_ALL=C.UTF-8 helps"
     if isinstance(error, OSError) and error.strerror:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 DEFAULT_POSITIONS = 28
 COPIES = 3
 """Of all numbers of a study there are for a while batches, dataset and table."""
+SCHEDULER = re.compile(r"inproc://\S+|((tcp|tls|ws|wss|ucx)://)?(\[[0-9a-fA-F:.%]+\]|[\w.-]+):(?P<port>[0-9]{1,5})")
+"""Addresses of a dask scheduler; at anything else dask itself looks for 20 s and ends in tracebacks."""
 MOST_REASONS = 5
 """Reasons of failing samples that are printed."""
 
@@ -76,14 +79,20 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
 
 
 def check_worker_arguments(arguments: argparse.Namespace) -> None:
-    """Refuse local processes beside a cluster.
+    """Refuse local processes beside a cluster, and what is no address of one.
 
     Raises
     ------
     DriveError
-        When both are given.
+        When both are given, or dask would look for a scheduler at no address.
     """
-    from ltca.errors import DriveError
+    from ltca.errors import DriveError, shortened
+
+    if arguments.scheduler:
+        found = SCHEDULER.fullmatch(arguments.scheduler)
+        if found is None or not 0 < int(found["port"] or 1) < 65536:
+            told = "must be the address of a dask scheduler, host and port, as tcp://127.0.0.1:8786"
+            raise DriveError([f"--scheduler = {shortened(arguments.scheduler)}: {told}"])
 
     if arguments.scheduler and arguments.workers > 1:
         raise DriveError(["--workers and --scheduler: give one of them; a cluster has its own workers"])

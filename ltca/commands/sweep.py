@@ -27,11 +27,11 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.commands.compliance_arguments import check_compliance, compliance_of
     from ltca.commands.study_arguments import check_study_arguments, execute_study
     from ltca.output.run_folder import require_folder
-    from ltca.reading.toml_text import parse_toml, read_text
+    from ltca.reading.toml_text import read_text
 
     check_study_arguments(arguments)
     check_compliance(arguments)
-    parse_toml(read_text(arguments.study, MISSING), str(arguments.study))
+    read_text(arguments.study, MISSING)
     out = arguments.out or default_folder(arguments.study.stem, "sweep")
     require_folder(out)
     from ltca.studies.execution.storage import StudyFolder

@@ -1,18 +1,40 @@
-"""Pools of worker processes that end with the process that started them, whatever ends it."""
+"""Pools of worker processes that end with the process that started them, whatever ends it.
+
+The folder in which a pool has its sockets ends with its workers. Where all of them are killed at once it is removed at the
+next start of a pool: it carries a lock that ends with its process, so what is named as ours and locked by nobody is left over.
+"""
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
 import signal
+import stat
+import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
-from multiprocessing import active_children, forkserver, get_all_start_methods, get_context, resource_tracker
+from multiprocessing import (
+    active_children,
+    current_process,
+    forkserver,
+    get_all_start_methods,
+    get_context,
+    resource_tracker,
+)
+from pathlib import Path
 
+from ltca.errors import FaultError
 from ltca.output.processes import interrupts_held
 
+PREFIX = "cyclo-pool-"
+LOCK = "lock"
+FRESH = 10.0
+"""Age, s, up to which a folder may be one that is about to be locked."""
 NOTICING = 5.0
 """Time, s, in which a pool has to notice that its workers were ended; it takes milliseconds."""
 
@@ -38,16 +60,17 @@ def process_pool(
     ------
     ProcessPoolExecutor
         The pool.
+
+    Raises
+    ------
+    FaultError
+        When the system gives no processes, or none of the semaphores and pipes between them.
     """
-    method = "forkserver" if preload and "forkserver" in get_all_start_methods() else "spawn"
-    context = get_context(method)
-    if method == "forkserver":
-        context.set_forkserver_preload([preload])
-        resource_tracker.ensure_running()  # first: when it starts, held signals come through again
-        with interrupts_held():
-            # While the server loads, Ctrl-C would end it with a traceback of its own.
-            forkserver.ensure_running()
-    pool = ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
+    try:
+        pool = _started_pool(processes, preload, initializer)
+    except OSError as error:
+        told = f"{processes} worker processes cannot be started: {error.strerror or error}"
+        raise FaultError(f"{told}: /dev/shm and TMPDIR must be writable; or take --workers 1") from error
     try:
         yield pool
     except BaseException as error:
@@ -59,6 +82,19 @@ def process_pool(
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _started_pool(processes: int, preload: str, initializer: Callable[[], None] | None) -> ProcessPoolExecutor:
+    method = "forkserver" if preload and "forkserver" in get_all_start_methods() else "spawn"
+    context = get_context(method)
+    if method == "forkserver":
+        make_pool_folder()
+        context.set_forkserver_preload([preload])
+        resource_tracker.ensure_running()  # first: when it starts, held signals come through again
+        with interrupts_held():
+            # While the server loads, Ctrl-C would end it with a traceback of its own.
+            forkserver.ensure_running()
+    return ProcessPoolExecutor(processes, mp_context=context, initializer=initializer or become_worker)
 
 
 def _end_fork_server() -> None:
@@ -100,8 +136,74 @@ def become_worker() -> None:
     if parent is None:
         return
 
+    folder = pool_folder()
+
     def watch() -> None:
         wait([parent.sentinel])
+        if folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True, name="ends with its parent").start()
+
+
+def make_pool_folder() -> None:
+    """Let `multiprocessing` put sockets into a folder of ours, once in a process; remove those of dead ones before."""
+    config = current_process()._config  # type: ignore[attr-defined]
+    place = Path(tempfile.gettempdir())
+    remove_stale_folders(place)
+    if os.path.isdir(config.get("tempdir") or ""):
+        return
+    folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=place))
+    descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+    _lock(descriptor)  # held until this process ends, however that is
+    config["tempdir"] = str(folder)
+    atexit.register(_remove_own, os.getpid(), folder)
+
+
+def _remove_own(maker: int, folder: Path) -> None:
+    if os.getpid() == maker:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def pool_folder() -> Path | None:
+    """Return the folder of the pool that this worker belongs to; None where it is not one of ours."""
+    name = current_process()._config.get("tempdir")  # type: ignore[attr-defined]
+    return Path(name) if name and Path(name).name.startswith(PREFIX) else None
+
+
+def remove_stale_folders(place: Path, fresh: float = FRESH) -> None:
+    """Remove folders of ours whose processes are dead.
+
+    Parameters
+    ----------
+    place : Path
+        For temporary files.
+    fresh : float
+        Age, s, up to which none is looked at.
+    """
+    with suppress(OSError):
+        for folder in place.glob(f"{PREFIX}*"):
+            with suppress(OSError):
+                found = folder.lstat()
+                if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
+                    continue
+                if time.time() - found.st_mtime < fresh:
+                    continue
+                descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_NOFOLLOW)
+                try:
+                    if _lock(descriptor):
+                        shutil.rmtree(folder, ignore_errors=True)
+                finally:
+                    os.close(descriptor)
+
+
+def _lock(descriptor: int) -> bool:
+    """Lock a file, and tell whether that could be done: another process holds it, or there are no locks here."""
+    try:
+        import fcntl
+
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (ImportError, OSError):
+        return False
+    return True

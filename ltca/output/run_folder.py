@@ -118,11 +118,18 @@ class RunFolder:
             self._clear("")
             self._write(complete=True)
 
-    def withdraw(self) -> None:
-        """Remove what this run has written: its input is refused. What a study has solved stays, for ``--resume``."""
-        written = set(self._files) - self._kept
-        batches = self.path / BATCHES
-        if not written or (batches in self._beside and (written != {PLAN} or any(batches.glob("*.npz")))):
+    def withdraw(self, *, refused: bool) -> None:
+        """Remove what this run has written where it has ended with nothing.
+
+        Parameters
+        ----------
+        refused : bool
+            Whether its input is refused. What a study has solved stays, for ``--resume``; a plan alone goes.
+        """
+        written, batches = set(self._files) - self._kept, self.path / BATCHES
+        if batches in self._beside:
+            refused = written == {PLAN} and not any(batches.glob("*.npz"))
+        if not refused or not written:
             return
         self._remove(written)
         self._files = {name: self._files[name] for name in self._kept}
@@ -311,8 +318,7 @@ def claimed_folder(
             try:
                 yield folder
             except CycloError as error:
-                if error.exit_status == 2 and not isinstance(error, PlaceError):
-                    folder.withdraw()
+                folder.withdraw(refused=error.exit_status == 2 and not isinstance(error, PlaceError))
                 raise
             folder.finish()
 

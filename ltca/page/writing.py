@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from hashlib import sha256
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,12 @@ SCRIPTS = ("svg", "tables")
 
 
 def page_text(
-    template: str, context: Mapping[str, Any], *, scripts: Sequence[str] = (), package: str | None = None
+    template: str,
+    context: Mapping[str, Any],
+    *,
+    scripts: Sequence[str] = (),
+    styles: Sequence[str] = (),
+    package: str | None = None,
 ) -> str:
     """Return a page.
 
@@ -26,9 +33,16 @@ def page_text(
     context : mapping
         What it shows; names from drive files are texts, whatever they contain.
     scripts : sequence of str
-        Of `ltca.page.scripts`, after `SCRIPTS`.
+        Of `ltca.page.scripts` or the templates of the package, after `SCRIPTS`.
+    styles : sequence of str
+        Of the templates of the package, after ``page.css``.
     package : str, optional
         Package with further templates, in its folder ``templates``.
+
+    Notes
+    -----
+    The page's own script and style are all that a browser runs and applies, by their hashes: what comes into a page otherwise,
+    whatever fault let it in, is not executed, and nothing is loaded.
     """
     import jinja2
 
@@ -38,10 +52,29 @@ def page_text(
         undefined=jinja2.StrictUndefined,
     )  # fmt: skip
     environment.filters["signs"] = _with_signs
-    folder = resources.files("ltca.page") / "scripts"
-    joined = "\n".join((folder / f"{name}.js").read_text(encoding="utf-8") for name in (*SCRIPTS, *scripts))
-    style = (resources.files("ltca.page") / "templates" / "page.css").read_text(encoding="utf-8")
-    return environment.get_template(template).render({"style": style, "scripts": joined, **context}) + "\n"
+    own = resources.files("ltca.page")
+    folders = [own / "scripts", own / "templates", *([resources.files(package) / "templates"] if package else [])]
+
+    def joined(*names: str) -> str:
+        found = [next(file for folder in folders if (file := folder / name).is_file()) for name in names]
+        return "\n".join(file.read_text(encoding="utf-8") for file in found)
+
+    script = joined(*(f"{name}.js" for name in (*SCRIPTS, *scripts)))
+    style = joined(*(f"{name}.css" for name in ("page", *styles)))
+    page = {"style": style, "scripts": script, "policy": _policy(script, style), **context}
+    return environment.get_template(template).render(page) + "\n"
+
+
+def _policy(script: str, style: str) -> str:
+    """The content security policy of a page: its one script, its one style, pictures within it."""
+
+    def source(text: str) -> str:
+        return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
+
+    return (
+        f"default-src 'none'; script-src {source(script)}; style-src {source(style)}; img-src data: blob:; "
+        "base-uri 'none'; form-action 'none'"
+    )
 
 
 def _with_signs(text: str) -> Any:

@@ -237,6 +237,11 @@ def path_argument(option: str) -> Callable[[str], Path]:
             raise DriveError([f"{told}: is empty; '.' is the folder we are in"])
         if not is_seen(text):
             raise DriveError([f"{told}: must not have control or invisible characters"])
+        try:
+            os.fsencode(text)
+        except UnicodeEncodeError as error:
+            more = f"cannot be a name of a file in the encoding {error.encoding}: LC_ALL=C.UTF-8 helps"
+            raise DriveError([f"{told}: {more}"]) from error
         if max(len(os.fsencode(part)) for part in Path(text).parts or (".",)) > LONGEST_PART:
             raise DriveError([f"{told}: no name in it can have more than {LONGEST_PART} bytes"])
         return Path(text)

@@ -16,6 +16,10 @@ DEEPEST = 20
 _MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){60}""")
 LARGEST = 50_000_000
 """Bytes of a file; a drive of 10,000 cases has some 2 MB."""
+MOST_VALUES = 500_000
+"""Of a drive file: ten discs with measured flanks, each of `ltca.reading.measured.points.MOST_POINTS`, have 400,000."""
+LONGEST = 20_000
+"""Entries of an array, of points or of cases: as many mistakes in one take seconds to be told."""
 
 
 def read_text(path: Path, missing: str = "no such file") -> str:
@@ -39,12 +43,15 @@ def read_text(path: Path, missing: str = "no such file") -> str:
         raise DriveError([missing], str(path)) from error
     except UnicodeDecodeError as error:
         raise DriveError([f"cannot be read: byte {error.start} is not UTF-8"], str(path)) from error
+    except UnicodeEncodeError as error:
+        told = f"cannot be a name of a file in the encoding {error.encoding}: LC_ALL=C.UTF-8 helps"
+        raise DriveError([told], str(path)) from error
     except (OSError, ValueError) as error:  # ValueError: a name with a null character
         reason = error.strerror if isinstance(error, OSError) else None
         raise DriveError([f"cannot be read: {reason or error}"], str(path)) from error
 
 
-def parse_toml(text: str, source: str) -> dict[str, Any]:
+def parse_toml(text: str, source: str, most_values: int = MOST_VALUES, longest: int = LONGEST) -> dict[str, Any]:
     """Return the tables of a TOML text.
 
     Parameters
@@ -53,12 +60,20 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         The text; a byte-order mark before it is passed over.
     source : str
         Its file, for the message.
+    most_values : int
+        Values that no such file has more of: reading takes seconds for a million.
+    longest : int
+        Entries that no array of such a file has more of.
 
     Raises
     ------
     DriveError
-        When it is not TOML, or tables stand in each other more than `DEEPEST` deep.
+        When it is not TOML, has more values, a longer array, or tables stand in each other more than `DEEPEST` deep.
     """
+    # An upper bound without reading: there is a comma or an equals sign for each value but one of an array.
+    values = text.count(",") + text.count("=")
+    if values > most_values:
+        raise DriveError([f"holds some {values} values: must be at most {most_values}"], source)
     if _MANY_DOTS.search(text):  # the parser takes seconds for a key of thousands of parts
         raise DriveError([_too_deep()], source)
     try:
@@ -70,6 +85,9 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         raise DriveError([f"is not valid TOML: {about}"], source) from error
     level: list[Any] = [table]
     for _ in range(DEEPEST):
+        length = max((len(array) for array in level if isinstance(array, list)), default=0)
+        if length > longest:
+            raise DriveError([f"an array has {length} entries: must be at most {longest}"], source)
         level = [
             inner
             for outer in level

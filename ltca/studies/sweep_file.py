@@ -48,6 +48,10 @@ SCALES = ("linear", "logarithmic")
 RANGE = {"low", "high", "levels", "scale"}
 DESIGN = {"kind", "samples", "seed"}
 MOST_LEVELS = 100_000
+MOST_VALUES = 2_000_000
+"""Of a study file: a list of many factors has a value of each for every sample."""
+MANY_LEVELS = 200
+"""Numbers of which the ends are asked alone: what a field takes is an interval."""
 MOST_SAMPLES = 100_000_000
 KEYS = {"drive", "case", "positions", "quantities", "design", "factors"}
 
@@ -84,7 +88,7 @@ def load_sweep(path: Path, engine: Engine | None = None) -> Study:
         When file, drive, design or a factor is wrong; all mistakes together.
     """
     text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
-    table = parse_toml(text, str(path))
+    table = parse_toml(text, str(path), MOST_VALUES, MOST_VALUES)
     source = table.get("drive")
     if not isinstance(source, str) or not source:
         told = "drive: is missing" if source is None else f"drive = {shortened(source)}: is no name of a file"
@@ -106,6 +110,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
     if not isinstance(factors_table, Mapping) or not factors_table:
         reader.problems.append("factors: is missing or empty; name at least one field to vary")
         factors_table = {}
+    _require_possible_grid(table.get("design", {}), factors_table, reader)
     positions = table.get("positions", 28)
     if not _is_count(positions) or not 1 <= positions <= 100_000:
         reader.problems.append(f"positions = {shortened(positions)}: must be a whole number from 1 to 100000")
@@ -196,10 +201,27 @@ def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive],
     return found
 
 
+def _require_possible_grid(design: Any, factors: Mapping[str, Any], reader: _Reader) -> None:
+    """Refuse a grid that nobody solves before its levels are looked at, one by one."""
+    if not isinstance(design, Mapping) or design.get("kind", "grid") != "grid":
+        return
+    samples = 1
+    for _, entry in _flat(factors, ""):
+        count = entry.get("levels") if isinstance(entry, Mapping) else len(entry) if isinstance(entry, list) else 1
+        samples *= count if isinstance(count, int) and 0 < count <= MOST_LEVELS else 1
+    if samples > MOST_SAMPLES:
+        told = f"{samples}" if samples < 10**15 else f"{samples:.3g}"
+        reader.problems.append(f"factors: make a grid of {told} samples, must be at most {MOST_SAMPLES}")
+        reader.check()
+
+
 def _refused(drive: Drive, factor: SweepFactor) -> list[str]:
     """What the definition of the field says to the levels, or to the ends of the range, each by itself."""
     problems: list[str] = []
-    for level in factor.levels or (factor.low, factor.high):
+    levels = factor.levels or (factor.low, factor.high)
+    if len(levels) > MANY_LEVELS and not factor.is_text:
+        levels = (min(levels), max(levels))
+    for level in levels:
         try:
             with_fields(drive, {factor.path: level}, check=False)
         except DriveError as error:
@@ -229,8 +251,10 @@ def _factor(path: str, entry: Any, reader: _Reader) -> SweepFactor | None:
         reader.problems.append(f"factors.{path}: is an array; vary one element of it, as {path}.0")
         return None
 
+    quantities: TypeAdapter[float] | None = TypeAdapter(Annotated[float, quantity(kind.unit)]) if kind.unit else None
+
     def number(value: Any) -> Any:
-        if not kind.unit:
+        if quantities is None:
             # Counts, names, true and false: a range has numbers at its ends, the field itself says what it takes.
             if not isinstance(value, int | str):
                 raise DriveError(
@@ -238,7 +262,7 @@ def _factor(path: str, entry: Any, reader: _Reader) -> SweepFactor | None:
                     reader.source,
                 )
             return value if isinstance(value, str) or abs(value) < 10**9 else 10**9
-        return TypeAdapter(Annotated[float, quantity(kind.unit)]).validate_python(value)
+        return quantities.validate_python(value)
 
     try:
         if isinstance(entry, list) and len(entry) > MOST_LEVELS:
@@ -304,10 +328,7 @@ def _design(table: Any, factors: tuple[SweepFactor, ...], reader: _Reader) -> Sw
         reader.problems += [f"design.{key}: has no meaning in a {kind}" for key in ("samples", "seed") if key in table]
         if kind == "list" and len({len(factor.levels) for factor in factors}) > 1:
             reader.problems.append("factors: must all have equally many values in a list")
-        design = SweepDesign(factors=factors, kind=kind)
-        if factors and not ranges and design.samples > MOST_SAMPLES:
-            reader.problems.append(f"factors: make a grid of {design.samples} samples, must be at most {MOST_SAMPLES}")
-        return design
+        return SweepDesign(factors=factors, kind=kind)
     reader.problems += [
         f"factors.{path}: takes whole numbers, {kind} draws fractions between low and high; give an array of values, or levels"
         for path in ranges

@@ -63,7 +63,9 @@ def write_report(study: Study, path: Path) -> Path:
     CycloError
         When it cannot be written.
     """
-    text = page_text("report.html", _context(study), scripts=("drawing",), package="validation.report")
+    text = page_text(
+        "report.html", _context(study), scripts=("drawing", "report"), styles=("report",), package="validation.report"
+    )
     return write_page(path, text)
 
 

@@ -52,7 +52,7 @@ def write_design_page(found: Found, shown: Sequence[tuple[str, Refined]], rows: 
         "combinations": found.combinations,
         "solved": found.solved,
     }
-    return write_page(path, page_text("design.html", content))
+    return write_page(path, page_text("design.html", content, styles=("design",)))
 
 
 def outline(drive: Drive) -> dict[str, object]:
