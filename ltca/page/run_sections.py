@@ -48,7 +48,7 @@ def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapp
         "ways, with lost motion and loops of friction: cyclo curves."
     ]
     columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", "stiffness there, N·m/′"]
-    table = Table(name="wind_up", caption="", columns=columns, rows=rows, words=1)
+    table = Table(name="wind_up", caption="", columns=columns, rows=rows)
     return Section(heading="Wind-up", notes=notes, tables=[table] if rows else [])
 
 
