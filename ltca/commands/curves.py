@@ -48,6 +48,8 @@ HARMONICS = 7
 HIGHEST = 320
 SEEN = 2.05
 """Positions for each period of the highest order, beyond the two that tell it from others."""
+MANY = 20_000
+"""Positions beyond which it is said that fewer turns would do."""
 FIGURES = ("torque_curve", "transmission_error_orders", "flank_pressure")
 
 
@@ -174,6 +176,8 @@ def execute(arguments: argparse.Namespace) -> int:
         require_room_for([drive], min(positions, positions_together(drive)), out, f"--turns {turns}")
         if turns < drive.pin_wheel.number_of_pins:
             _require_turns(drive, turns)
+        elif arguments.turns is None and positions > MANY:
+            _tell_of_turns(drive, turns, positions)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
     figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))
     writes = ["curves.json", *([] if arguments.no_page else ["report.html"])]
@@ -209,6 +213,18 @@ def _require_turns(drive: Drive, turns: int) -> None:
                 f"--turns = {turns}: must be at least {least}, or {len(orders)} orders of the transmission error look alike"
             ]
         )
+
+
+def _tell_of_turns(drive: Drive, turns: int, positions: int) -> None:
+    """Say before a long computation how many turns would do."""
+    import sys
+
+    from ltca.analysis.transmission_error_orders import least_turns
+
+    least = least_turns(_orders(drive), positions_per_turn(drive), turns)
+    if least < turns:
+        told = f"all {turns} turns of the crank are {positions} positions; --turns {least} would tell the orders apart, too"
+        print(told, file=sys.stderr)
 
 
 def _solve_and_write(

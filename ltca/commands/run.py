@@ -213,13 +213,16 @@ def _solve_and_write(
         with whole_file(out / "pressure.nc") as part:
             write_netcdf(fields, part, packed)
         files.append("pressure.nc")
-    print(f"{file.name}: {describe_engine(engine)}, {_many(angles)}")
+    loads = {name: drive.load_words(torque) for name, drive in cases.items()}
+    (load, *others) = dict.fromkeys(loads.values())
+    how = [describe_engine(engine), _many(angles)]
+    print(f"{file.name}: {', '.join(how if others else [load, *how])}")
     yields = any(drive.crank.support or drive.pin_wheel.support_stiffness for drive in cases.values())
     checks = _checks(analyses, summaries, file.limits)
     sampling = _sampling(analyses, summaries, angles)
     proportions = _proportions(analyses)
-    print(_verdicts(checks, proportions, len(analyses) > 1))
-    print(_table(summaries, {name: drive.load_words(torque) for name, drive in cases.items()}, bool(yields)))
+    print(_verdicts(checks, proportions))
+    print(_table(summaries, loads if others else {}, bool(yields)))
     print("\n".join(sampling))
     if wanted.page:
         from ltca.page.run_page import PAGE, Run, run_page
@@ -266,17 +269,17 @@ def _proportions(analyses: dict[str, LoadedAnalysis]) -> dict[str, list[str]]:
     }
 
 
-def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]], several: bool) -> str:
-    """The checks that have a limit, case by case."""
-    from ltca.drive.members.verdict_words import verdict_table
+def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]]) -> str:
+    """A line for each case, the check nearest to its limit in it, and what is odd."""
+    from ltca.drive.members.verdict_words import verdict_line
 
-    told = []
-    for name, each in checks.items():
-        told += [f"verdict on {name}" if several else "verdict", verdict_table(each, limited=True)]
-        told += [f"  note: {note}" for note in proportions[name]]
-    return "\n".join(
-        [*told, "what drives it and would mend it: cyclo check"] if told else ["no verdict on partial results"]
-    )
+    if not checks:
+        return "no verdict on partial results"
+    width = max(map(len, checks))
+    told = ["verdict, with the check nearest to its limit"]
+    told += [f"  {name:<{width}}  {verdict_line(each)}" for name, each in checks.items()]
+    told += [f"  note: {note}" for note in dict.fromkeys(note for each in proportions.values() for note in each)]
+    return "\n".join([*told, "every check, what drives it and would mend it: cyclo check"])
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:
@@ -355,16 +358,29 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str],
     from ltca.analysis.summary_rows import rows_of, with_residual_part
 
     summaries = {name: with_residual_part(case) for name, case in summaries.items()}
-    width = max(10, *(len(word) + 2 for word in (*summaries, *loads.values())))
-    lines = [
-        f"{'case':<{HEAD}}" + "".join(f"{name:>{width}}" for name in summaries),
-        f"{'torque, direction of the crank':<{HEAD}}" + "".join(f"{load:>{width}}" for load in loads.values()),
-    ]
+    rows = [("case", list(summaries))]
+    if loads:  # of cases that differ in them
+        rows.append(("torque, direction of the crank", list(loads.values())))
     for title, key, unit, form in rows_of(summaries, yields=yields):
-        head = f"{title}{f' [{unit}]' if unit else ''}"
         values = [refined_value(case, key) if key in case else None for case in summaries.values()]
-        lines.append(f"{head:<{HEAD}}" + "".join(f"{'–' if v is None else form.format(v):>{width}}" for v in values))
-    return "\n".join(lines)
+        cells = ["–" if value is None else form.format(value) for value in values]
+        rows.append((f"{title}{f' [{unit}]' if unit else ''}", cells))
+    return "\n".join(_side_by_side(rows))
+
+
+def _side_by_side(rows: list[tuple[str, list[str]]]) -> list[str]:
+    """Rows with their cells in columns, as many columns beside each other as a terminal shows."""
+    from shutil import get_terminal_size
+
+    head = max(len(title) for title, _ in rows)
+    widths = [max(10, *(len(cells[column]) + 2 for _, cells in rows)) for column in range(len(rows[0][1]))]
+    seen = get_terminal_size(fallback=(10_000, 24)).columns if sys.stdout.isatty() else 10_000
+    many = max(1, (seen - head) // max(widths))
+    return [
+        f"{title:<{head}}" + "".join(f"{cells[c]:>{widths[c]}}" for c in range(first, min(first + many, len(widths))))
+        for first in range(0, len(widths), many)
+        for title, cells in rows
+    ]
 
 
 def _many(angles: FloatArray) -> str:

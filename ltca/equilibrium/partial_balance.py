@@ -121,17 +121,17 @@ def balance_what_can_be(balance: Balance, positions: int, start: FloatArray | No
     failures: list[ConvergenceError] = []
     pieces: list[tuple[NDArray[np.intp], Equilibrium]] = []
 
-    def attempt(rows: NDArray[np.intp]) -> None:
-        begin = None if start is None or np.isnan(start[rows]).any() else start[rows]
+    # No function that calls itself: it would be a cycle that keeps the answers until they are collected as garbage.
+    waiting = [everything]
+    while waiting:
+        part = waiting.pop()
+        begin = None if start is None or np.isnan(start[part]).any() else start[part]
         try:
-            pieces.append((rows, balance(rows, begin)))
+            pieces.append((part, balance(part, begin)))
         except ConvergenceError as error:
             failures.append(error)
-            if rows.size > 1:
-                for half in np.array_split(rows, 2):
-                    attempt(half)
-
-    attempt(everything)
+            if part.size > 1:
+                waiting += np.array_split(part, 2)[::-1]
     if not pieces:
         raise failures[0]
     rows = np.concatenate([rows for rows, _ in pieces])

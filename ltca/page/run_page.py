@@ -17,7 +17,7 @@ from ltca.output.provenance import code_hash, code_version
 from ltca.page.compared import Compared, matched
 from ltca.page.packing import pack
 from ltca.page.run_arrays import run_arrays, shown_positions
-from ltca.page.run_sections import lives_of_cases, torque_curves
+from ltca.page.run_sections import lives_of_cases, wind_up
 from ltca.page.run_tables import (
     derived_tables,
     input_tables,
@@ -26,13 +26,12 @@ from ltca.page.run_tables import (
     turn_orders,
 )
 from ltca.page.scene import moving_scene
-from ltca.page.study_page import curves_content
 from ltca.page.tables import Table, number, texts, word
 from ltca.page.verdict_tables import verdict_of, verdict_tables
 from ltca.page.writing import page_text, script_data
 
 PAGE = "report.html"
-SCRIPTS = ("drawing", "plots", "motion", "stage", "sections", "run")
+SCRIPTS = ("drawing", "plots", "motion", "stage", "run")
 LOSSES = {
     "pin": "flank on wheel pins", "seat": "seats", "hole": "holes on shaft pins", "roller": "rollers",
     "support_bearing": "bearings of cranks and wheel", "no_load": "seals and oil",
@@ -83,9 +82,8 @@ def run_page(run: Run) -> str:
     if unjudged and run.checks:
         sentence, state = f"No answer at some positions, not judged: {', '.join(unjudged)}. {sentence}", "fail"
     summary = summary_tables(run.analyses, run.summaries)
-    sections = [torque_curves(run.analyses), lives_of_cases(run.analyses)]
-    beside, plots = curves_content(sections)
-    places, numbers = pack(_arrays(run) | beside)
+    sections = [wind_up(run.analyses, run.summaries), lives_of_cases(run.analyses)]
+    places, numbers = pack(_arrays(run))
     content = {
         "cases": [_case(one) for one in run.analyses.values()],
         "names": list(run.analyses),
@@ -93,7 +91,6 @@ def run_page(run: Run) -> str:
         "cranks": first.drive.crank.number,
         "discs": first.drive.disc.number_of_discs,
         "losses": LOSSES,
-        "plots": plots,
         "compared": _compared(run),
     }
     return page_text(
@@ -112,7 +109,7 @@ def run_page(run: Run) -> str:
             "verdicts": verdict_tables(run.checks),
             "summary": summary,
             "orders": orders_table(run.analyses),
-            "sections": list(zip(("torque", "life"), sections, strict=True)),
+            "sections": list(zip(("wind_up", "life"), sections, strict=True)),
             "friction": first.losses is not None,
             "several": len(run.analyses) > 1,
             "comparison": _comparison(run),

@@ -1,13 +1,12 @@
-"""What the page of a run tells beside its positions: torque curve of each case, life of its crank bearings.
+"""What the page of a run tells beside its positions: wind-up of each case, life of its crank bearings.
 
-Both are what ``cyclo curves`` has, in short: a torque curve at a few crank angles over one mesh, and lives from the turn of the
-run, which leave some thousandths to lives over many turns.
+Both are what ``cyclo curves`` has, in short, and of the answers that are there already: wind-up between the two torques of the
+run, and lives from its turn, which leave some thousandths to lives over many turns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,59 +14,42 @@ from numpy.typing import NDArray
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.torque_curve import TorqueCurve, torque_curve
 from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import CycloError
-from ltca.page.studies.curves import torque_section
 from ltca.page.study_page import Section
 from ltca.page.tables import Cell, Table, minus, number, word
 
 FloatArray = NDArray[np.float64]
 
-ANGLES = 4
-"""Crank angles of a torque curve, over one mesh."""
 
-
-def torque_curves(analyses: Mapping[str, LoadedAnalysis]) -> Section:
-    """Return the torque curve of every case and what is read from them.
+def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
+    """Return what the two torques of a run tell of the torque curve of every case.
 
     Parameters
     ----------
     analyses : mapping of str to LoadedAnalysis
         By case.
+    summaries : mapping of str to mapping
+        Their scalars.
     """
-    curves, rows, notes = [], list[list[Cell]](), list[str]()
+    rows = list[list[Cell]]()
     for name, analysis in analyses.items():
-        try:
-            curve = _torque_curve(analysis)
-        except CycloError as error:
-            notes.append(f"{name}: no torque curve, {error}")
+        wound = np.abs(analysis.transmission_error - analysis.transmission_error_light)
+        wound = wound[analysis.balanced & analysis.balanced_light]
+        light = analysis.drive.load.light_torque
+        if not (wound.size and np.all(wound > 0.0)):
             continue
-        (plot,) = torque_section(curve, "").curves
-        curves.append(replace(plot, title=f"{name}: wind-up of the output" if len(analyses) > 1 else plot.title))
-        values = (curve.backlash * ARCMIN, curve.lost_motion * ARCMIN, curve.stiffness / ARCMIN / 1e3)
-        rows.append([word(name), *(_range(each) for each in values)])
-        part = f"lost motion at ±{100.0 * curve.lost_motion_part:g} %, ′"
-    if not rows:
-        return Section(heading="Torque curve", notes=notes)
-    columns = [
-        "case",
-        "backlash, all clearances, ′",
-        part,
-        "stiffness of the cycloid stage, 50 … 100 % of the torque, N·m/′",
+        play = summaries[name]["backlash_output_arcmin"]
+        stiffness = abs(analysis.torque - light) / wound
+        torques = word(minus(f"{light / 1e3:.4g} … {analysis.torque / 1e3:.4g}"))
+        rows.append([word(name), number(play), torques, _range(wound * ARCMIN), _range(stiffness / ARCMIN / 1e3)])
+    notes = [
+        "Least … largest over the positions, between the answers at the light torque and at the torque. The whole curve, both "
+        "ways, with lost motion and loops of friction: cyclo curves."
     ]
-    notes.append(
-        f"Least … largest at {ANGLES} crank angles over one mesh; more of it, and loops of friction: cyclo curves."
-    )
-    table = Table(name="torque_curve", caption="", columns=columns, rows=rows)
-    return Section(heading="Torque curve", notes=notes, curves=curves, tables=[table])
-
-
-def _torque_curve(analysis: LoadedAnalysis) -> TorqueCurve:
-    drive = analysis.drive
-    loaded = replace(drive, load=replace(drive.load, torque=analysis.torque))
-    mesh = 2.0 * np.pi / drive.disc.number_of_teeth
-    return torque_curve(loaded, mesh * np.arange(ANGLES) / ANGLES, engine=analysis.engine)
+    columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", "stiffness of the cycloid stage there, N·m/′"]
+    table = Table(name="wind_up", caption="", columns=columns, rows=rows)
+    return Section(heading="Wind-up", notes=notes, tables=[table] if rows else [])
 
 
 def lives_of_cases(analyses: Mapping[str, LoadedAnalysis]) -> Section:

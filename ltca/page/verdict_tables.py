@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltca.drive.members.judgement import Check
-from ltca.drive.members.verdict_words import WORDS, place_words
+from ltca.drive.members.verdict_words import WORDS, place_words, urgency
 from ltca.page.tables import NOTHING, Cell, Table, minus, number, unit_sign, word
 
 Checks = Mapping[str, Sequence[Check]]
@@ -72,9 +72,8 @@ def verdict_tables(checks: Checks) -> list[Table]:
 
 def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, float]:
     """What fails comes first, then the least safety."""
-    each = line[1].values()
-    safeties = [check.safety for check in each if check.safety is not None]
-    return not any(check.fails for check in each), min(safeties, default=float("inf"))
+    keys = [urgency(check) for check in line[1].values()]
+    return min(failed for failed, _ in keys), min(safety for _, safety in keys)
 
 
 def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[str, Check]]:

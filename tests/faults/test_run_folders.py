@@ -106,15 +106,18 @@ def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path, monke
 
 COMMANDS = {
     "run": (["run", "paper", "--angles", "0"], "results.nc"),
-    "run figures": (["run", "paper", "--angles", "0"], "figures/fig24_pin_load.svg"),
-    "run pressure": (["run", "paper", "--pressure"], "figures/fig31_roller_pressure_CS-6.png"),
-    "curves": (["curves", "paper"], "figures/torque_curve_CS-3.png"),
+    "run figures": (["run", "paper", "--angles", "0", "--figures"], "figures/fig24_pin_load.svg"),
+    "run pressure": (["run", "paper", "--pressure", "--figures"], "figures/fig31_roller_pressure_CS-6.png"),
+    "curves": (["curves", "paper", "--figures", "png"], "figures/torque_curve_CS-3.png"),
     "show": (["show", "paper"], "drive_CS-1.png"),
     "tolerance": (["tolerance", "paper"], "study.json"),
     "tolerance table": (["tolerance", "paper"], "results.parquet"),
     "tolerance resumed": (["tolerance", "paper", "--resume"], "results.nc"),
     "sample": (["tolerance", "paper", "--sample", "3"], "samples/sample_00000003.toml"),
-    "optimise": (["optimise", "paper", "--vary", "eccentricity", "--minimise", "max_pin_load"], "figures/search.svg"),
+    "optimise": (
+        ["optimise", "paper", "--vary", "eccentricity", "--minimise", "max_pin_load", "--figures"],
+        "figures/search.svg",
+    ),
     "mesh": (["mesh", "paper"], "pin_12.vtu"),
     "fem": (["fem", "paper"], "summary.json"),
     "validate": (["validate", "paper"], "rows.csv"),
@@ -178,7 +181,7 @@ def test_what_a_run_does_not_write_hinders_none(tmp_path):
     put(out, results_nc="old", optimum_toml="old")
     for name in ("optimum.toml", "fig24_pin_load_mine.svg", "search.svg", "summary.json.bak"):
         (out / name).write_text("changed by the user")
-    with claimed_folder(out, "run", writes=["results.nc", *figure_files("fig24_pin_load")]):
+    with claimed_folder(out, "run", writes=["results.nc", *figure_files("svg", "fig24_pin_load")]):
         for name in ("results.nc", "figures/fig24_pin_load.svg"):
             with whole_file(out / name) as part:
                 part.write_text("new")

@@ -61,7 +61,9 @@ def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values
 
 def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | DriveError]]:
     """Entries that are heavier or quicker than the load, solved at the same positions by the same engine."""
-    from ltca.analysis.life.bearing_lives import at_entry  # which runs need only where there is a duty
+    if not analysis.drive.duty:
+        return
+    from ltca.analysis.life.bearing_lives import at_entry
 
     drive, speed = analysis.drive, analysis.drive.load.speed
     for number, entry in enumerate(drive.duty):

@@ -42,6 +42,37 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
     return "\n".join(lines)
 
 
+def verdict_line(checks: Sequence[Check]) -> str:
+    """Return the verdict on a case in one line: how it ends, and the check that fails most or is nearest to its limit.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        Of one case.
+    """
+    judged = [check for check in checks if check.fails or check.verdict == "pass"]
+    if not judged:
+        return "not judged: neither drive file nor materials have limits"
+    failed = sum(check.fails for check in judged)
+    word = WORDS["fail" if failed else "pass"]
+    nearest = min(judged, key=urgency)
+    told = f"{word}  {nearest.title}"
+    if nearest.value.value is None:
+        told += f" cannot be judged: {nearest.value.reason}"
+    elif nearest.limit is not None:
+        unit = "" if nearest.value.unit == "1" else f" {_symbol(nearest.value.unit)}"
+        bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {nearest.limit.value:.4g}{unit}"
+        told += f" {nearest.value.value:.4g}{unit} ({bound})"
+    if nearest.safety is not None:
+        told += f", safety {nearest.safety:.3g}"
+    return told + (f"; {failed} of {len(judged)} checks fail" if failed > 1 else "")
+
+
+def urgency(check: Check) -> tuple[bool, float]:
+    """Return a key that puts what fails first, then the least safety; margins without one come last."""
+    return not check.fails, float("inf") if check.safety is None else check.safety
+
+
 def _symbol(unit: str) -> str:
     return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
 

@@ -1,7 +1,7 @@
 // Controls, curves and what they move.
 const view = { kase: 0, disc: 0, torque: "full", index: 0, chosen: null, second: 0 };
 const plots = {};
-let drawing = null, playing = 0, degrees = null, drawn = [];
+let drawing = null, playing = 0, degrees = null;
 
 function draw() {
   const now = placesAt(view), scale = scaleOf(view), beside = content.compared && content.compared.cases.length && view.torque === "full";
@@ -143,7 +143,7 @@ function listen() {
     if (event.key === " " && inStage) { play(!playing); event.preventDefault(); }
   });
   let width = innerWidth;
-  const again = () => { for (const name in plots) plots[name].draw(); drawn.forEach(plot => plot.draw()); };
+  const again = () => { for (const name in plots) plots[name].draw(); };
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; again(); } });
 }
 
@@ -160,7 +160,6 @@ function listen() {
   if (content.compared) view.second = content.compared.match[0] || 0;
   drawing = new Drawing(el("picture"), { tell: (contact, event) => showTip(tipOf(view, contact), event), hide: hideTip, choose: choose });
   setUp();
-  drawn = drawSections();
   listen();
   el("opening").hidden = true;
   document.documentElement.dataset.ready = "yes";

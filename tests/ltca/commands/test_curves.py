@@ -30,9 +30,9 @@ def told(tmp_path_factory):
     """One run with coarse turns: what it printed, what it kept, its figures unsaved, and the analysis behind them."""
     figures, printed, analyses = {}, [], []
 
-    def keep(figure, stem):
-        figures[stem.name] = figure
-        return stem.with_suffix(".png")
+    def keep(figure, path):
+        figures[path.stem] = figure
+        return path
 
     def follow(*words, **options):
         analyses.append(analyse(*words, **options))
@@ -46,7 +46,7 @@ def told(tmp_path_factory):
         patch.setattr(loaded_analysis, "analyse", follow)
         patch.setattr("builtins.print", lambda *words, **options: printed.append(" ".join(map(str, words))))
         words = ["curves", "paper", "--case", CASE, "--turns", str(TURNS), "--speed", str(SPEED), "--out", str(out)]
-        status = main([*words, "--pressure-limit", "1.2 GPa"])
+        status = main([*words, "--pressure-limit", "1.2 GPa", "--figures"])
     assert status == 0
     content = json.loads((out / "curves.json").read_text(encoding="utf-8"))
     (analysis,) = analyses
@@ -284,12 +284,12 @@ def test_speed_of_a_drive_whose_housing_is_held(monkeypatch, tmp_path):
 @pytest.mark.slow
 def test_figures_of_several_cases_have_their_names(monkeypatch, tmp_path):
     stems = []
-    monkeypatch.setattr(curve_figures, "_save", lambda figure, stem: stems.append(stem.name) or stem)
+    monkeypatch.setattr(curve_figures, "_save", lambda figure, path: stems.append(path.name) or path)
     make_coarse(monkeypatch)
     words = ["curves", "paper", "--turns", "1", "--out", str(tmp_path), "--case", "CS-1"]
-    assert main([*words, "--case", "CS-2"]) == 0
+    assert main([*words, "--case", "CS-2", "--figures", "pdf"]) == 0
     assert stems == [
-        f"{name}_{case}"
+        f"{name}_{case}.pdf"
         for case in ("CS-1", "CS-2")
         for name in ("torque_curve", "transmission_error_orders", "flank_pressure")
     ]

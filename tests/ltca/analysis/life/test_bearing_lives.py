@@ -15,6 +15,9 @@ from ltca.analysis.life.bearing_lives import (
     entry_loads,
     laminae_of,
     lives_of_entries,
+    lives_over,
+    passages_of_duty,
+    roller_passages,
 )
 from ltca.analysis.life.laminae import EvenLaminae, SolvedLaminae
 from ltca.analysis.life.life_text import life_content, life_lines, life_summary
@@ -314,13 +317,23 @@ def test_a_makers_rating_scales_the_life(papers):
     )
 
 
+@pytest.mark.parametrize("parts", [2, 7])
+def test_lives_of_positions_solved_part_by_part(paper_cases, parts):
+    """Turns of many pins do not fit into memory at once. Round-off of the sums, and of the search that begins elsewhere."""
+    drive = with_duty(paper_cases["CS-3"], DUTY)
+    whole = bearing_lives(analyse(drive, TURN)).shortest
+    pieces = [passages_of_duty(analyse(drive, rows)) for rows in np.array_split(TURN, parts)]
+    found = lives_over(pieces).shortest
+    assert (found.life, found.static_load) == pytest.approx((whole.life, whole.static_load), rel=1e-7)
+
+
 def test_what_tells_no_life_is_refused(paper_cases, monkeypatch):
     half = analyse(paper_cases["CS-1"], TURN[:30:3])
     with pytest.raises(ValueError, match="whole turns"):
-        entry_loads(half, None, 1.0)
+        entry_loads([roller_passages(half)], None, 1.0)
     lost = replace(half, balanced=np.zeros_like(half.balanced), full=replace(half.full, crank_angle=TURN[::6]))
     with pytest.raises(ValueError, match="an answer at every position"):
-        entry_loads(lost, None, 1.0)
+        roller_passages(lost)
     # an entry that cannot be carried is named
     solved = analyse(with_duty(paper_cases["CS-1"], DUTY | {"torque": 1e6}), TURN[::6])
     for error in (DriveError(["torque = 1e+06 N·mm: too much"]), ConvergenceError("no equilibrium", [1.0])):
