@@ -52,8 +52,8 @@ class TorqueCurve:
     output_angle : array, shape (angles, points)
         Deviation of the output, rad: that of the wheel with the pin shaft held.
     backlash : array, shape (angles,)
-        Between the branches at the smallest torques, rad: the free play of all clearances (`ltca.geometry.play`) and what so little
-        torque winds up.
+        Between the branches at the smallest torques, rad: the free play of all clearances (`ltca.geometry.play`) and what so
+        little torque winds up.
     lost_motion : array, shape (angles,)
         Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
