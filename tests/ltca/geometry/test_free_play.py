@@ -15,7 +15,7 @@ from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play, play_over_a_turn
 from ltca.reading.drive_file import load_drive
-from ltca.testing.free_play_check import compare, compare_with_load
+from ltca.testing.practical_drives import compare, compare_with_load
 
 ANGLES = np.array([0.2, 1.1, 2.9, 4.4])
 
