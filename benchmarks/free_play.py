@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from ltca.testing.free_play_check import compare_with_load
+from ltca.testing.practical_drives import compare_with_load
 
 
 def main() -> None:

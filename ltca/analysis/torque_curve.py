@@ -21,10 +21,9 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import geometries, with_friction
+from ltca.equilibrium.reducer import with_friction
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
-from ltca.geometry.play import free_play
 
 FloatArray = NDArray[np.float64]
 
@@ -53,7 +52,8 @@ class TorqueCurve:
     output_angle : array, shape (angles, points)
         Deviation of the output, rad: that of the wheel with the pin shaft held.
     backlash : array, shape (angles,)
-        Free play of the output with every clearance, rad.
+        Between the branches at the smallest torques, rad: the free play of all clearances (`ltca.geometry.play`) and what so
+        little torque winds up.
     lost_motion : array, shape (angles,)
         Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
@@ -107,7 +107,7 @@ def torque_curve(
     Raises
     ------
     ConvergenceError
-        When a position does not balance, or nothing stops the wheel within half a pin pitch.
+        When a position does not balance.
     DriveError
         When the lost motion is to be read elsewhere.
     """
@@ -146,7 +146,7 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=abs(drive.output_per_wheel_angle) * free_play(geometries(model), angles).play,
+        backlash=at(SMALLEST) - at(-SMALLEST),
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),
         lost_motion_part=lost_motion,

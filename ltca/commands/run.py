@@ -349,10 +349,6 @@ def _pressure_angles(arguments: argparse.Namespace) -> FloatArray | None:
     return None if arguments.pressure is None else np.array(arguments.pressure or [0.0])
 
 
-HEAD = 44
-"""Width of the names of the rows."""
-
-
 def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str], yields: bool) -> str:
     from ltca.analysis.summary import refined_value
     from ltca.analysis.summary_rows import rows_of, with_residual_part

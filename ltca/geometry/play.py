@@ -32,12 +32,14 @@ Rows = NDArray[np.intp]
 
 CLOSED = 1e-9
 """Overlap that counts as none, mm: a thousandth of what tells a clearance from none."""
-RELIEF = 1e-10
+RELIEF = 2e-11
 """Overlap that is always allowed, so that parts without any clearance leave a place to be in, mm."""
 GAIN = 1e-7
 """Way of the wheel at e z_P that a programme has to promise to be followed, mm: some 1e-5 arcmin."""
 PENALTY = 1e6
 """What overlap costs against way of the wheel: wedges of arcs gain some thousand mm for each mm of overlap."""
+KEPT_GAP = 5e-11
+"""Overlap beyond that with which a pose is taken as found, mm; thousands of times the round-off of drives of a metre."""
 NUDGE = 1e-8
 """Cost of the disc's own movements, different ones, so that no two corners of a programme are equally good."""
 STEP = 0.25
@@ -260,7 +262,7 @@ class _Programme:
         size = self.angle.size
         pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), np.full(size, self.bound)
         going = np.arange(size)
-        tangents = np.zeros((size, 0, RIGID + 1))
+        tangents, pairs = np.zeros((size, 0, RIGID + 1)), np.zeros((size, 0), dtype=np.intp)
         history: list[float] = []
         for turn in range(ROUNDS):
             place = pose[going] * self.lever
@@ -269,6 +271,9 @@ class _Programme:
             # −slope · d ≤ gap + t; tangents of earlier poses are told from the origin.
             before = tangents[going]
             room = before[..., RIGID] + np.einsum("bij,bj->bi", before[..., :RIGID], place)
+            # A disc that turns far moves its holes on arcs of their own: a tangent that the exact gap passes bounds nothing.
+            holds = room >= np.take_along_axis(gap, pairs[going], axis=1) - KEPT_GAP
+            before, room = np.where(holds[..., None], before, 0.0), np.where(holds, room, 0.0)
             step, least, active = _farthest(
                 np.concatenate([-slope, -before[..., :RIGID]], axis=1),
                 np.concatenate([gap, room], axis=1),
@@ -280,18 +285,18 @@ class _Programme:
             found = np.where(
                 least > CLOSED,
                 overlap - least <= CLOSED + 1e-3 * least,
-                (overlap <= CLOSED - RELIEF) & (np.abs(gain) <= GAIN),
+                (overlap <= KEPT_GAP) & (np.abs(gain) <= GAIN),
             )
             history.append(float(np.max(np.abs(np.where(found[:, None], 0.0, step)))))
             stay = ~found
             if not stay.any():
                 return pose, left
-            chosen = _tangents_of(slope, gap, place, np.where(active < arcs, active, -1))
-            kept = np.concatenate(
-                [tangents[:, -KEPT * (RIGID + 1) + RIGID + 1 :], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1
-            )
-            kept[going, -(RIGID + 1) :] = chosen
-            tangents = kept
+            told = np.where(active < arcs, active, -1)
+            drop = max(tangents.shape[1] - (KEPT - 1) * (RIGID + 1), 0)
+            tangents = np.concatenate([tangents[:, drop:], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1)
+            pairs = np.concatenate([pairs[:, drop:], np.zeros((size, RIGID + 1), dtype=np.intp)], axis=1)
+            tangents[going, -(RIGID + 1) :] = _tangents_of(slope, gap, place, told)
+            pairs[going, -(RIGID + 1) :] = np.maximum(told, 0)
             if turn >= SHRINKING:
                 bound[going] = 0.7 * np.minimum(bound[going], np.abs(step).max(axis=1))
             going, step = going[stay], step[stay]

@@ -77,11 +77,11 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
             + (", preloaded" if turn.preloaded == 1.0 else ", preloaded at places" if turn.preloaded else ""),
         ),
         (
-            f"backlash of the flank alone, at {at}, wheel held",
+            f"flank: backlash at {at}, wheel held",
             f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)",
         ),
         (
-            f"backlash of the flank alone, at the wheel, {held} held",
+            f"flank: backlash at the wheel, {held} held",
             f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)",
         ),
     ]

@@ -47,7 +47,8 @@ def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapp
         "Least … largest over the positions, between the answers at the light torque and at the torque. The whole curve, both "
         "ways, with lost motion and loops of friction: cyclo curves."
     ]
-    columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", "stiffness of the cycloid stage there, N·m/′"]
+    stiffness_title = "stiffness of the cycloid stage there, N·m/′"
+    columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", stiffness_title]
     table = Table(name="wind_up", caption="", columns=columns, rows=rows)
     return Section(heading="Wind-up", notes=notes, tables=[table] if rows else [])
 

@@ -140,7 +140,9 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
         farthest, whole = FARTHEST_SIZE, part ** (-1.0 / 3.0)
     elif part < 1.0 and one.name != TORQUE:
         safety = None
-    linear = check.safety is None and part == 1.0 and check.limit is not None and check.value.value
+    # A play is what sizes leave less what others take: a power law goes past its end.
+    margin = check.safety is None or check.value.quantity.startswith("backlash")
+    linear = margin and part == 1.0 and check.limit is not None and check.value.value
     if check.verdict == "pass" or check.limit is None or not (linear or safety):
         return Driver(input=one.name, elasticity=elasticity, change="", factor=None)
     if linear:  # margins and plays at or below nothing follow no power law

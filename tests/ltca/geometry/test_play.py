@@ -30,17 +30,23 @@ def gaps(geometry, angles, poses):
 
 
 def assert_farthest(drive, angles, senses=(1, -1)):
-    """No pair interferes, and no small movement turns the wheel on without pressing a touching pair together."""
+    """No pair interferes, and no movement by a micrometre turns the wheel on by more than a thousandth of that.
+
+    Poses are found to 1e-7 mm of the wheel's way (`GAIN`). On an arc of some millimetres that is 4e-4 mm beside the farthest
+    place, where its tangent still rises by some 4e-4: half of the bound.
+    """
     geometry = ContactGeometry.of_drive(drive)
     for sense in senses:
         approach, gradient = gaps(geometry, angles, rigid_poses(geometry, angles, sense))
         assert np.max(approach) < 1e-9  # mm; a thousandth of what tells a clearance from none
         for row in range(angles.size):
-            touching = gradient[row][approach[row] > -1e-8] / LEVER
             best = linprog(
-                [0.0, 0.0, 0.0, -sense], A_ub=touching, b_ub=np.zeros(len(touching)), bounds=[(-1.0, 1.0)] * 4
+                [0.0, 0.0, 0.0, -sense],
+                A_ub=gradient[row] / LEVER,
+                b_ub=np.maximum(-approach[row], 0.0),
+                bounds=[(-1e-3, 1e-3)] * 4,
             )
-            assert -best.fun < 1e-6  # the programme's own tolerance is 1e-7
+            assert -best.fun < 1e-6
 
 
 @pytest.mark.parametrize(
@@ -126,4 +132,4 @@ def test_parts_that_do_not_go_together_are_told(vary):
         ConvergenceError, match=r"parts interfere in every rigid pose at crank angle 0.5 rad, by 0.002"
     ) as told:
         rigid_poses(ContactGeometry.of_drive(drive), np.array([0.5]), 1)
-    assert len(told.value.history) > 3
+    assert told.value.history == pytest.approx([0.002], rel=1e-6)  # by positions

@@ -1,0 +1,128 @@
+"""Free play of the output with every clearance: closed forms of one clearance alone, the loaded model, what is judged by it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from ltca.drive.deviations import OneDisc, Runout
+from ltca.drive.single_discs import single_discs
+from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.first_contact import backlash
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import free_play, play_over_a_turn
+from ltca.reading.drive_file import load_drive
+from ltca.testing.practical_drives import compare, compare_with_load
+
+ANGLES = np.array([0.2, 1.1, 2.9, 4.4])
+
+
+def discs_of(drive):
+    return [ContactGeometry.of_drive(one) for one in single_discs(drive)]
+
+
+def test_without_any_clearance_nothing_turns(vary):
+    none = vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0}, clearance={"bearing": 0.0, "pin_hole": 0.0})
+    found = free_play(discs_of(none), ANGLES)
+    # 1e-7 mm of the wheel's way at e z_P = 56 mm is 2e-9 rad
+    np.testing.assert_allclose(found.play, 0.0, atol=4e-9)
+    assert not found.preloaded.any()
+
+
+def test_of_the_flank_alone_it_is_the_backlash_with_discs_held(vary):
+    drive = vary(clearance={"bearing": 0.0, "pin_hole": 0.0})
+    discs = discs_of(drive)
+    # found to 1e-7 mm of 56 mm, of 2.9e-3 rad
+    np.testing.assert_allclose(free_play(discs, ANGLES).play, backlash(discs, ANGLES, WHEEL_ANGLE), rtol=2e-6)
+
+
+def test_of_the_holes_alone_the_disc_turns_in_them(vary):
+    """A hole across the eccentricity stops the disc at c/R; that of the wheel is z_C/z_P of it.
+
+    With eight holes none may stand there: of those at most 22.5° beside it the sine is above 0.92. As every hole bounds the
+    disc's radial place too, which a bearing without clearance holds, nothing else gives.
+    """
+    clearance = 0.05
+    drive = vary(
+        disc={"equidistant_offset": 0.0, "shifting_offset": 0.0}, clearance={"bearing": 0.0, "pin_hole": clearance}
+    )
+    found = free_play(discs_of(drive), ANGLES)
+    holes = 2.0 * np.pi * np.arange(drive.pin_shaft.number_of_pins) / drive.pin_shaft.number_of_pins
+    across = np.sin(holes - ANGLES[:, None])
+    turned = clearance / (drive.pin_shaft.pin_circle_radius * across.max(axis=1))
+    turned = turned - clearance / (drive.pin_shaft.pin_circle_radius * across.min(axis=1))
+    # Second order: the disc turns by 1e-3 rad, and holes move by that part of their radius along the eccentricity too.
+    np.testing.assert_allclose(found.play, turned * 13.0 / 14.0, rtol=5e-3)
+
+
+def test_of_the_bearing_alone_the_disc_moves_by_it_across_the_eccentricity(vary):
+    """Half the diametral clearance either way, with the lever e z_P: without play in flank and holes as if the crank turned."""
+    drive = vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0}, clearance={"bearing": 0.04, "pin_hole": 0.0})
+    found = free_play(discs_of(drive), ANGLES).play
+    simple = 0.04 / (drive.crank.eccentricity * drive.reduction_ratio)
+    # Eleven rollers stand 33° apart: between two of them the bore goes further, by 1/cos 16.4° at most.
+    assert np.all(found > 0.999 * simple)
+    assert np.all(found < 1.045 * simple)
+
+
+def test_more_clearance_is_never_less_play(paper_cases):
+    plays = [free_play(discs_of(paper_cases[case]), ANGLES).play for case in ("CS-1", "CS-2", "CS-3", "CS-6")]
+    assert np.all(np.diff(np.stack(plays), axis=0) > 0.0)
+
+
+def test_the_wheel_has_what_all_discs_leave(paper_cases):
+    """Two discs alike but for a runout of one: the free angles of both, not the sum nor the least of either play."""
+    drive = paper_cases["CS-3"]
+    own = (OneDisc(runout=Runout(amount=0.03, angle=0.7)), OneDisc())
+    two = replace(drive, disc=replace(drive.disc, number_of_discs=2, of=own))
+    first, second = discs_of(two)
+    each = [free_play([disc], ANGLES) for disc in (first, second)]
+    both = free_play([first, second], ANGLES)
+    np.testing.assert_array_equal(both.forward, np.minimum(each[0].forward, each[1].forward))
+    np.testing.assert_array_equal(both.backward, np.maximum(each[0].backward, each[1].backward))
+    assert np.all(both.play < np.minimum(each[0].play, each[1].play))
+
+
+def test_overlapping_parts_are_preloaded(vary):
+    """Rollers 2 µm too thick in a bearing without clearance: no pose without overlap, and no play."""
+    drive = vary(crank_bearing={"roller_errors": {"diameter": [0.002] * 11}}, clearance={"bearing": 0.0})
+    found = play_over_a_turn(discs_of(drive))
+    assert (found.largest, found.least, found.preloaded) == (0.0, 0.0, 1.0)
+
+
+def test_the_largest_of_a_turn_is_found_between_positions(paper_cases):
+    """Against 720 positions: `play_over_a_turn` looks at 48 and some about the largest, and says to find it within 0.2 %."""
+    discs = discs_of(paper_cases["CS-6"])
+    dense = free_play(discs, 2.0 * np.pi * np.arange(720) / 720).play
+    found = play_over_a_turn(discs)
+    assert found.largest == pytest.approx(dense.max(), rel=2e-3)
+    assert found.least == pytest.approx(dense.min(), rel=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [2, 3, 4, 9, 10, 14, 19, 20, 22, 23, 30, 33])
+def test_loads_of_a_millionth_turn_practical_drives_as_far(seed):
+    """1 % or 0.005′; where pins with next to no lever touch first the load goes on, as far as its overlaps allow."""
+    found = compare_with_load(seed)
+    assert not [one for one in found if one.outcome in ("wrong", "not balanced")], found
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+@pytest.mark.parametrize("first", range(0, 300, 20))
+def test_loads_of_a_millionth_turn_three_hundred_practical_drives_as_far(first):
+    found = [one for seed in range(first, first + 20) for one in compare_with_load(seed)]
+    assert not [one for one in found if one.outcome == "wrong"]
+    assert sum(one.outcome == "alike" for one in found) >= 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["rv", "robot-joint", "sleeved"])
+def test_loads_of_a_millionth_turn_shipped_drives_as_far(name):
+    """Three cranks; two discs with the wheel held; loose pins and sleeves."""
+    (drive,) = load_drive(files("ltca.drives") / f"{name}.toml").cases.values()
+    found = compare(drive, np.array([0.3]))
+    assert [one.outcome for one in found] == ["alike"], found
