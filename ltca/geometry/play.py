@@ -50,7 +50,7 @@ KEPT = 8
 """Programmes of which the tangents of arcs are kept."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Part of a turn between positions."""
-POSITIONS, REFINEMENTS, PLACES = 48, 3, 4
+POSITIONS, REFINEMENTS, PLACES = 48, 2, 3
 """Positions of a turn, rounds of more of them, and largest ones about which these lie."""
 BESIDE = np.array([-0.75, -0.5, -0.25, 0.25, 0.5, 0.75])
 """Where these lie, by the mean distance of positions in the first round."""
