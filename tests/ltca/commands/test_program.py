@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -58,9 +59,14 @@ def test_no_page_leaves_the_page_out(tmp_path, capsys):
     assert "--compare: has no effect with --no-page" in capsys.readouterr().err
 
 
+START = {".svg": b"<?xml", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+
+
 @pytest.mark.slow
-def test_figures_of_the_paper_as_svg_and_png(tmp_path):
-    assert main([*RUN, "--out", str(tmp_path)]) == 0
+@pytest.mark.parametrize(("words", "suffix"), [([], ".svg"), (["png"], ".png"), (["pdf"], ".pdf")])
+def test_figures_of_the_paper_when_asked_for(words, suffix, tmp_path):
+    """They were drawn twice, as SVG and PNG, by every run: two thirds of its time."""
+    assert main([*RUN, "--out", str(tmp_path), "--figures", *words]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {
         "results.nc",
         "summary.json",
@@ -68,22 +74,44 @@ def test_figures_of_the_paper_as_svg_and_png(tmp_path):
         "figures",
         MANIFEST,
     }
-    names = {path.name for path in (tmp_path / "figures").iterdir()}
-    stems = {name.rsplit(".", 1)[0] for name in names}
-    assert names == {f"{stem}.{suffix}" for stem in stems for suffix in ("svg", "png")}
-    numbers = {int(stem[3:5]) for stem in stems}
-    assert numbers == {23, 24, 25, 26, 28, 29, 30, 34, 35, 36}  # issue 2
-    for stem in stems:
-        assert (tmp_path / "figures" / f"{stem}.png").read_bytes().startswith(b"\x89PNG")
-        svg = (tmp_path / "figures" / f"{stem}.svg").read_text()
-        assert svg.rstrip().endswith("</svg>")  # whole
-        for case in ("CS-1", "CS-3"):  # direct labels, as text
-            assert case in svg, stem
+    files = list((tmp_path / "figures").iterdir())
+    assert {path.suffix for path in files} == {suffix}
+    assert {int(path.stem[3:5]) for path in files} == {23, 24, 25, 26, 28, 29, 30, 34, 35, 36}  # issue 2
+    for path in files:
+        assert path.read_bytes().startswith(START[suffix])
+        if suffix == ".svg":
+            svg = path.read_text()
+            assert svg.rstrip().endswith("</svg>")  # whole
+            for case in ("CS-1", "CS-3"):  # direct labels, as text
+                assert case in svg, path
+    if suffix != ".svg":
+        return
     for stem, unit in (("fig23_transmission_error", "″"), ("fig24_pin_load", "[N]"), ("fig26_pin_pressure", "[MPa]")):
         assert unit in (tmp_path / "figures" / f"{stem}.svg").read_text()
 
 
 @pytest.mark.slow
+def test_first_screen_is_verdict_table_files(tmp_path, capsys):
+    """Six verdict tables, 133 lines, stood before the numbers: now a line a case, and no figures unless asked for."""
+    assert main(["run", "paper", "--positions", "28", "--no-page", "--out", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) < 50
+    assert lines[0].startswith("paper: 377.3 N·m ccw, ")
+    for number, line in enumerate(lines[2:8], 1):
+        assert re.fullmatch(rf"  CS-{number}  (pass|FAIL)  \S.* \([≤≥] .*\).*", line)
+        assert len(line) <= 80
+    assert lines[9].split() == ["case", *(f"CS-{number}" for number in range(1, 7))]
+    assert lines[-1].startswith("results: ")
+    assert not (tmp_path / "figures").exists()
+
+
+def test_figures_and_none_contradict_each_other(tmp_path, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([*RUN, "--figures", "--no-figures", "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    assert "not allowed with argument" in capsys.readouterr().err
+
+
 def test_torque_with_a_unit_is_that_torque(tmp_path):
     for name, torque in (("a", "188.65 N m"), ("b", "188650")):
         arguments = ["run", "paper", "--case", "CS-1", "--positions", "3", "--torque", torque, "--no-figures"]

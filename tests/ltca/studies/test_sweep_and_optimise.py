@@ -251,15 +251,15 @@ def test_optimum_of_the_drive_beats_it_within_the_limit(drive):
 def test_commands_write_their_files(tmp_path, capsys, monkeypatch):
     path = tmp_path / "study.toml"
     path.write_text(STUDY)
-    assert run(sweep, path, "--out", tmp_path / "sweep") == 0
+    assert run(sweep, path, "--figures", "png", "--out", tmp_path / "sweep") == 0
     assert (tmp_path / "sweep" / "figures" / "responses.png").stat().st_size > 10_000
     words = ["paper", "--case", "CS-6", "--samples", 300, "--positions", 6, "--seed", 1]
     words += ["--quantities", "ptp_transmission_error", "max_pin_load"]
-    assert run(tolerance, *words, "--out", tmp_path / "t") == 0
+    assert run(tolerance, *words, "--out", tmp_path / "t", "--figures") == 0
     text = capsys.readouterr().out
     assert "300 samples × 6 positions, half-space" in text
     assert "cyclo run" in text
-    assert (tmp_path / "t" / "figures" / "distributions.png").exists()
+    assert (tmp_path / "t" / "figures" / "distributions.svg").exists()
     assert (tmp_path / "t" / "figures" / "sensitivity.svg").exists()
     assert run(tolerance, *words, "--out", tmp_path / "s", "--sample", 5) == 0
     written = load_drive(tmp_path / "s" / "samples" / "sample_00000005.toml").cases["nominal"]
@@ -267,8 +267,8 @@ def test_commands_write_their_files(tmp_path, capsys, monkeypatch):
     words = ["paper", "--case", "CS-3", "--vary", "equidistant_offset=0.12:0.2", "shifting_offset", "--positions", 6]
     aims = ["--minimise", "ptp_transmission_error", "max_pin_pressure_mid", "--generations", 2]
     monkeypatch.setattr(optimiser, "WEIGHTS", 3)  # a front of few points is written as one of many
-    assert run(optimise, *words, *aims, "--out", tmp_path / "o") == 0
-    assert (tmp_path / "o" / "figures" / "pareto.png").exists()
+    assert run(optimise, *words, *aims, "--figures", "pdf", "--out", tmp_path / "o") == 0
+    assert (tmp_path / "o" / "figures" / "pareto.pdf").exists()
     assert "warning: 6 positions see 6 phases of the mesh of 13 teeth" in capsys.readouterr().err
     best = load_drive(tmp_path / "o" / "optimum.toml").cases["nominal"]
     assert 0.12 <= best.disc.equidistant_offset <= 0.2
