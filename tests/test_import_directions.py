@@ -36,6 +36,7 @@ FEM_MAY_IMPORT = (
 )  # fmt: skip
 LIGHT_COMMANDS = {
     "contextlib",
+    "functools",
     "dataclasses",
     "errno",
     "ltca.errors",
