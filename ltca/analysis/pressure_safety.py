@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,3 +74,48 @@ def pressure_safety(pressure: FloatArray, limit: float) -> PressureSafety:
         pin=int(pin),
         per_pin=np.where(worst > 0.0, limit / np.where(worst > 0.0, worst, 1.0), np.inf),
     )
+
+
+class PressureOfTurns:
+    """Flank pressures turn by turn, of which the turn with the largest is kept: what is drawn is what is printed.
+
+    Parameters
+    ----------
+    each : int
+        Positions in a turn.
+    """
+
+    def __init__(self, each: int) -> None:
+        self._each, self._complete = each, 0
+        self._open: FloatArray | None = None
+        self._largest: Any = None
+        self.turn = 0
+        self.worst: Any = None
+
+    def add(self, pressure: FloatArray) -> None:
+        """Take the pressures of the next positions, shape (positions, pins), MPa.
+
+        Parameters
+        ----------
+        pressure : array, shape (positions, pins)
+            At mid-width, MPa.
+        """
+        self._open = pressure if self._open is None else np.concatenate([self._open, pressure])
+        while len(self._open) >= self._each:
+            one, self._open = self._open[: self._each], self._open[self._each :]
+            if self.worst is None or one.max() > self.worst.max():
+                self.turn, self.worst = self._complete, one.copy()
+            largest = one.max(axis=0)
+            self._largest = largest if self._largest is None else np.maximum(self._largest, largest)
+            self._complete += 1
+
+    def safety(self, limit: float) -> PressureSafety:
+        """Return the safety over all turns.
+
+        Parameters
+        ----------
+        limit : float
+            Permissible pressure, MPa.
+        """
+        # The largest of each pin in all turns stands behind the worst turn, whose position is found first.
+        return pressure_safety(np.vstack([self.worst, self._largest]), limit)

@@ -11,6 +11,7 @@ whichever member that is.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,3 +153,40 @@ def torque_curve(
         lost_motion_part=lost_motion,
         loop=loop,
     )
+
+
+def curve_content(curve: TorqueCurve, drive: Drive) -> dict[str, Any]:
+    """Return a torque curve as files hold it.
+
+    Parameters
+    ----------
+    curve : TorqueCurve
+        The curve.
+    drive : Drive
+        Whose it is.
+    """
+    return {
+        "number_of_discs": drive.disc.number_of_discs,
+        "held": drive.installation.held,
+        "crank_angle_rad": curve.crank_angle.tolist(),
+        "torque_N_mm": curve.torque.tolist(),
+        "wheel_angle_rad": curve.wheel_angle.tolist(),
+        "output_angle_rad": curve.output_angle.tolist(),
+        "backlash_rad": curve.backlash.tolist(),
+        "lost_motion_part": curve.lost_motion_part,
+        "lost_motion_rad": curve.lost_motion.tolist(),
+        "stiffness_N_mm_per_rad": curve.stiffness.tolist(),
+        "hysteresis": _loop(curve.loop),
+    }
+
+
+def _loop(loop: HysteresisLoop | None) -> dict[str, Any] | None:
+    if loop is None:
+        return None
+    return {
+        "torque_N_mm": loop.torque.tolist(),
+        "rising_output_angle_rad": loop.rising.tolist(),
+        "falling_output_angle_rad": loop.falling.tolist(),
+        "width_rad": loop.width.tolist(),
+        "energy_N_mm": loop.energy.tolist(),
+    }

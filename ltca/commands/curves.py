@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ltca.analysis.engines import Engine
-    from ltca.analysis.friction.hysteresis import HysteresisLoop
     from ltca.analysis.life.bearing_lives import BearingLives
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.torque_curve import TorqueCurve
@@ -243,7 +241,7 @@ def _solve_and_write(
             own = (
                 limits if limits.pressure is not None else limits._replace(pressure=_allowed(drive, file.limits[name]))
             )
-            found = _solve(drive, turns_of[name], own, engine, partial(advance, name))
+            found = _solve(drive, turns_of[name], own, engine, lambda size, case=name: advance(case, size))  # type: ignore[misc]
             contents[name] = {"drive": title, **engine.options, **_content(found, drive)}
             _print(found, title, drive, engine, own)
             if not arguments.no_page:
@@ -313,6 +311,7 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine, advance: Ca
     from ltca.analysis import loaded_analysis
     from ltca.analysis.life.bearing_lives import lives_over, passages_of_duty
     from ltca.analysis.memory_need import positions_together
+    from ltca.analysis.pressure_safety import PressureOfTurns
     from ltca.analysis.torque_curve import torque_curve
     from ltca.analysis.transmission_error_orders import fit_orders
     from ltca.errors import DriveError
@@ -326,7 +325,7 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine, advance: Ca
     angle = 2.0 * np.pi * np.arange(turns * each) / each
     # Of the light torque nothing is told here: at the whole one it is not solved again.
     loaded = replace(drive, load=replace(drive.load, light_torque=drive.load.torque))
-    error, passages, pressures = [], [], _PressureOfTurns(each)
+    error, passages, pressures = [], [], PressureOfTurns(each)
     for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
         analysis = loaded_analysis.analyse(loaded, rows, engine=engine)
         error.append(analysis.transmission_error)
@@ -351,39 +350,6 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine, advance: Ca
         pressure=pressures.worst,
         safety=pressures.safety(float("inf") if limits.pressure is None else limits.pressure),
     )
-
-
-class _PressureOfTurns:
-    """Flank pressures turn by turn, of which the turn with the largest is kept: what is drawn is what is printed."""
-
-    def __init__(self, each: int) -> None:
-        self._each, self._complete = each, 0
-        self._open: FloatArray | None = None
-        self._largest: Any = None
-        self.turn = 0
-        self.worst: Any = None
-
-    def add(self, pressure: FloatArray) -> None:
-        """Take the pressures of the next positions, shape (positions, pins), MPa."""
-        import numpy as np
-
-        self._open = pressure if self._open is None else np.concatenate([self._open, pressure])
-        while len(self._open) >= self._each:
-            one, self._open = self._open[: self._each], self._open[self._each :]
-            if self.worst is None or one.max() > self.worst.max():
-                self.turn, self.worst = self._complete, one.copy()
-            largest = one.max(axis=0)
-            self._largest = largest if self._largest is None else np.maximum(self._largest, largest)
-            self._complete += 1
-
-    def safety(self, limit: float) -> PressureSafety:
-        """Safety over all turns against a limit, MPa."""
-        import numpy as np
-
-        from ltca.analysis.pressure_safety import pressure_safety
-
-        # The largest of each pin in all turns stands behind the worst turn, whose position is found first.
-        return pressure_safety(np.vstack([self.worst, self._largest]), limit)
 
 
 def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: Limits) -> None:
@@ -452,36 +418,13 @@ def _finite(value: float) -> float | None:
     return None if value == float("inf") else value
 
 
-def _loop(loop: HysteresisLoop | None) -> dict[str, Any] | None:
-    if loop is None:
-        return None
-    return {
-        "torque_N_mm": loop.torque.tolist(),
-        "rising_output_angle_rad": loop.rising.tolist(),
-        "falling_output_angle_rad": loop.falling.tolist(),
-        "width_rad": loop.width.tolist(),
-        "energy_N_mm": loop.energy.tolist(),
-    }
-
-
 def _content(found: CaseCurves, drive: Drive) -> dict[str, Any]:
     from ltca.analysis.life.life_text import life_content
+    from ltca.analysis.torque_curve import curve_content
 
     curve, spectrum, safety = found.curve, found.spectrum, found.safety
     return {
-        "torque_curve": {
-            "number_of_discs": drive.disc.number_of_discs,
-            "held": drive.installation.held,
-            "crank_angle_rad": curve.crank_angle.tolist(),
-            "torque_N_mm": curve.torque.tolist(),
-            "wheel_angle_rad": curve.wheel_angle.tolist(),
-            "output_angle_rad": curve.output_angle.tolist(),
-            "backlash_rad": curve.backlash.tolist(),
-            "lost_motion_part": curve.lost_motion_part,
-            "lost_motion_rad": curve.lost_motion.tolist(),
-            "stiffness_N_mm_per_rad": curve.stiffness.tolist(),
-            "hysteresis": _loop(curve.loop),
-        },
+        "torque_curve": curve_content(curve, drive),
         "transmission_error_orders": {
             "turns": found.turns,
             "positions": found.positions,

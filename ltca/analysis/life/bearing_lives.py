@@ -10,14 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.life.equivalent_load import covers_whole_turns, race_load
-from ltca.analysis.life.laminae import EvenLaminae, Laminae, SolvedLaminae
 from ltca.analysis.life.modification import life_modification_factor, reference_viscosity
+from ltca.analysis.life.passages import RollerPassages, roller_passages
 from ltca.analysis.life.ratings import RaceRatings, RollerBearing, not_rated
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.contact.generator import generator_profile
-from ltca.drive.parts import Drive, contact_modulus
+from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import DISC_ROTATION
 
 FloatArray = NDArray[np.float64]
 
@@ -250,39 +248,6 @@ class EntryLoads:
     largest_force: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RollerPassages:
-    """Which roller presses where on its races, position by position: all that lives need of an analysis.
-
-    Attributes
-    ----------
-    drive : Drive
-        Whose they are.
-    torque : float
-        At the output, N·mm.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    inner_load, outer_load : array, shape (positions, discs, rollers)
-        N.
-    on_inner, in_bore : array, shape (positions, discs, rollers)
-        Places of the rollers in the frames of the races, rad.
-    largest_force : array, shape (discs, cranks)
-        Largest radial force over the positions, N.
-    laminae : tuple of Laminae
-        How rollers spread their loads on the inner race and in the bore.
-    """
-
-    drive: Drive
-    torque: float
-    crank_angle: FloatArray
-    inner_load: FloatArray
-    outer_load: FloatArray
-    on_inner: FloatArray
-    in_bore: FloatArray
-    largest_force: FloatArray
-    laminae: tuple[Laminae, Laminae]
-
-
 def passages_of_duty(analysis: LoadedAnalysis) -> list[RollerPassages]:
     """Return the passages of each entry of the duty at the positions of an analysis; its own without duty.
 
@@ -301,41 +266,6 @@ def passages_of_duty(analysis: LoadedAnalysis) -> list[RollerPassages]:
         roller_passages(analysis if entry.torque == analysis.torque else at_entry(analysis, number))
         for number, entry in enumerate(duty)
     ] or [roller_passages(analysis)]
-
-
-def roller_passages(analysis: LoadedAnalysis) -> RollerPassages:
-    """Return which rollers press where at the positions of an analysis.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        All its positions balanced.
-
-    Raises
-    ------
-    ValueError
-        When one has no answer.
-    """
-    if not np.all(analysis.balanced):
-        raise ValueError("life needs an answer at every position")
-    angle = analysis.full.crank_angle
-    rollers = [single.full.response.rollers for single in analysis.discs]
-    turned = [single.full.pose[:, DISC_ROTATION, None] for single in analysis.discs]
-    places = [model.geometry.placement.roller_angles(angle) for model in analysis.model.discs]
-    force = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
-    return RollerPassages(
-        drive=analysis.drive,
-        torque=analysis.torque,
-        crank_angle=angle,
-        inner_load=np.stack([each.inner_load for each in rollers], axis=1),
-        outer_load=np.stack([each.outer_load for each in rollers], axis=1),
-        on_inner=np.stack([place - angle[:, None] for place in places], axis=1),
-        in_bore=np.stack(
-            [np.angle(each.outer_direction) - turn for each, turn in zip(rollers, turned, strict=True)], axis=1
-        ),
-        largest_force=force.max(axis=0),
-        laminae=laminae_of(analysis),
-    )
 
 
 def entry_loads(parts: Sequence[RollerPassages], speed: float | None, share: float) -> EntryLoads:
@@ -466,29 +396,3 @@ def _modified(entry: EntryLife, drive: Drive, bearing: RollerBearing) -> EntryLi
     limit = bearing.fatigue_load_limit / entry.equivalent_load if entry.equivalent_load > 0.0 else float("inf")
     factor = life_modification_factor(ratio, lubricant.contamination, limit)
     return replace(entry, viscosity_ratio=ratio, modification=factor)
-
-
-def laminae_of(analysis: LoadedAnalysis) -> tuple[Laminae, Laminae]:
-    """Return how the rollers of an analysis spread their loads on the inner race and in the bore.
-
-    By the profile, where the engine has one along the length; even with edge factors in plane strain, which has none.
-    Effective radii are those of the drawing: errors of single rollers are thousandths of them.
-    """
-    drive = analysis.drive
-    if analysis.engine.compliance == "fe":
-        return EvenLaminae(), EvenLaminae()
-    part, materials = drive.crank_bearing, drive.materials
-    profile = generator_profile(part.roller_profile, part.roller_length, part.roller_radius)
-
-    def solved(curvature: float, race_modulus: float) -> SolvedLaminae:
-        return SolvedLaminae(
-            profile=profile,
-            length=part.roller_length,
-            effective_radius=1.0 / (1.0 / part.roller_radius + curvature),
-            contact_modulus=race_modulus,
-        )
-
-    return (
-        solved(1.0 / part.inner_race_radius, contact_modulus(materials.inner_race, materials.roller)),
-        solved(-1.0 / drive.bore_radius, contact_modulus(materials.disc, materials.roller)),
-    )

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 import ltca.analysis.life.bearing_lives as module
+import ltca.analysis.life.passages as passages
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.life.bearing_lives import (
     EntryLoads,
     bearing_lives,
     entry_loads,
-    laminae_of,
     lives_of_entries,
     lives_over,
     passages_of_duty,
-    roller_passages,
 )
 from ltca.analysis.life.laminae import EvenLaminae, SolvedLaminae
 from ltca.analysis.life.life_text import life_content, life_lines, life_summary
 from ltca.analysis.life.modification import reference_viscosity
+from ltca.analysis.life.passages import laminae_of, roller_passages
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import contact_modulus
 from ltca.errors import ConvergenceError, DriveError
@@ -55,7 +55,7 @@ def power_mean(load, power):
 def even(monkeypatch):
     """Even loads over the length without edges: what is left is who turns to what."""
     plain = EvenLaminae(edges=False)
-    monkeypatch.setattr(module, "laminae_of", lambda analysis: (plain, plain))
+    monkeypatch.setattr(passages, "laminae_of", lambda analysis: (plain, plain))
 
 
 @pytest.mark.usefixtures("even")
