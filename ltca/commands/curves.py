@@ -162,7 +162,7 @@ def execute(arguments: argparse.Namespace) -> int:
     cases = file.select_warm(arguments.case)
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)
-    from ltca.analysis.memory_need import positions_together, require_room_for
+    from ltca.analysis.memory_need import require_room_for_parts
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
     limits, engine = Limits(*asked), compliance_of(arguments)
@@ -171,7 +171,7 @@ def execute(arguments: argparse.Namespace) -> int:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])
         turns = arguments.turns or drive.pin_wheel.number_of_pins
         positions = turns * positions_per_turn(drive)
-        require_room_for([drive], min(positions, positions_together(drive)), out, f"--turns {turns}")
+        require_room_for_parts(drive, positions, out, f"--turns {turns}")
         if turns < drive.pin_wheel.number_of_pins:
             _require_turns(drive, turns)
         elif arguments.turns is None and positions > MANY:

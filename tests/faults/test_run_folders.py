@@ -162,15 +162,15 @@ def test_an_interrupted_study_is_not_made_useless_by_another_command(words, tmp_
     assert names(out) == before
 
 
-@pytest.mark.parametrize("name", ["figures", "summary.json"])
-def test_a_link_in_the_place_of_what_a_run_wrote_is_the_users(name, tmp_path, capsys):
+@pytest.mark.parametrize(("name", "words"), [("figures", ["--figures"]), ("summary.json", [])])
+def test_a_link_in_the_place_of_what_a_run_wrote_is_the_users(name, words, tmp_path, capsys):
     """Figures went through a link to a folder elsewhere, where no manifest lists them."""
     (tmp_path / "elsewhere").mkdir()
     out = tmp_path / "out"
     put(out, summary_json="{}", figures__fig24_pin_load_svg="")
     (out / name).rename(tmp_path / "elsewhere" / "moved")
     (out / name).symlink_to(tmp_path / "elsewhere" / "moved")
-    assert main(["run", "paper", "--angles", "0", "--out", str(out)]) == 2
+    assert main(["run", "paper", "--angles", "0", *words, "--out", str(out)]) == 2
     assert f"{name} is there" in capsys.readouterr().err
     assert (out / name).is_symlink()
 

@@ -247,7 +247,7 @@ def test_play_that_is_gone_is_warned_of():
 def test_no_geometry_is_made_of_lengths_that_are_not_warm_yet():
     hot = with_fields(PAPER, EXPANSION | warmth(20.0, 60.0, 60.0))
     for made in (FlankProfile.of_drive, Placement.of_drive, ContactGeometry.of_drive, type(hot).shape_fingerprint):
-        with pytest.raises(DriveError, match="warm_drive"):
+        with pytest.raises(DriveError, match="warm the drive first"):
             made(hot)
 
 

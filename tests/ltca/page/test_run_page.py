@@ -178,7 +178,7 @@ def test_nothing_to_compare_with(tmp_path):
             read_compared(path)
     broken = tmp_path / "results.nc"
     broken.write_bytes(b"no netCDF")
-    with pytest.raises(DriveError, match="is no result of cyclo run"):
+    with pytest.raises(DriveError, match="cannot be read as results of cyclo run"):
         read_compared(tmp_path)
 
 
