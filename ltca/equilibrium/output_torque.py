@@ -109,6 +109,8 @@ def input_moment(
 STRENGTH_STEP, LEAST_STRENGTH_STEP = 0.25, 0.01
 """Part of the friction by which it grows at first where positions do not balance at once, and below which a step that fails is
 taken for the end: a drive that jams is told at which hundredth of its friction it does."""
+JAMMED = 2.0
+"""Growth of the loads by friction from which an end of the balance is called a jam."""
 
 
 def solve_at_output(
@@ -197,8 +199,10 @@ def _jam(
     told = ", ".join(
         f"friction.{name} = {reached * value:.3g} to {lost * value:.3g} of {value:g}" for name, value in given.items()
     )
+    # Near the end loads grow without bound; where they have not, the search may as well have lost its way.
+    ended = "the drive jams" if grown[row] >= JAMMED * without[row] else "no balance was found"
     jammed = ConvergenceError(
-        f"the drive jams between {reached:.1%} and {lost:.1%} of its friction ({told}): wheel pins carry {without[row]:.4g} N "
+        f"{ended} between {reached:.1%} and {lost:.1%} of its friction ({told}): wheel pins carry {without[row]:.4g} N "
         f"without friction, {grown[row]:.4g} N at {reached:.1%} of it (position {row} of {grown.size}), and nothing balances "
         f"beyond; {failure}"
     )

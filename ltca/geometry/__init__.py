@@ -17,7 +17,7 @@ interference       How far parts overlap as they are drawn, before any body yiel
                    without load
 first_contact      Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry
                    (Eq. 2–6)
-play               How far the wheel can turn while no body gives: the play of all clearances together, disc floating
+play               How far the wheel can turn while no body gives: the play of all clearances together, discs floating
 separation         True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65)
 =================  ============================================================
 """

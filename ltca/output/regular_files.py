@@ -76,17 +76,3 @@ def read_regular(path: Path, largest: int) -> bytes:
     """
     with regular_file(path, largest) as stream:
         return stream.read(largest)
-
-
-def require_regular(path: Path, largest: int | None = None) -> None:
-    """Refuse what a library is not to open by its name; see `regular_file`, whose errors it raises.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    largest : int, optional
-        Bytes that no such file has more of.
-    """
-    with regular_file(path, largest):
-        pass
