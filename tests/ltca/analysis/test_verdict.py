@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ltca.analysis.half_width_guard import displacement_warning
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.advice import _all_sizes, advise
@@ -405,8 +406,9 @@ def test_the_equivalent_amplitude_of_what_can_be_said_by_hand():
         found = moved_to(100.0 * swept)
         assert (found.equivalent_amplitude, found.ratio) == pytest.approx((100.0, -1.0), rel=1e-12)
     # Fibres stand by 5°: of a pulsating moment between two of them 0.1 % is lost.
-    between = moved_to([0.0, 100.0 * np.exp(1j * np.radians(2.5))]).equivalent_amplitude
-    assert between == pytest.approx(100.0 * np.cos(np.radians(2.5)) / np.sqrt(2.0), rel=1e-12)
+    for degrees in np.arange(2.5, 360.0, 5.0):
+        between = moved_to([0.0, 100.0 * np.exp(1j * np.radians(degrees))]).equivalent_amplitude
+        assert between == pytest.approx(100.0 * np.cos(np.radians(2.5)) / np.sqrt(2.0), rel=1e-12)
     assert moved_to([0.0, 100.0], rolls=True).equivalent_amplitude == 100.0
 
 
@@ -415,6 +417,9 @@ def test_pins_that_take_each_others_places_have_one_history():
     stress = np.array([[100.0, -100.0], [100.0, -100.0]], dtype=complex)[..., None]
     assert worst_cycle(stress, alike=False, rolls=False).equivalent_amplitude == 0.0  # each still
     assert worst_cycle(stress, alike=True, rolls=False).equivalent_amplitude == pytest.approx(100.0)
+    for still in ([100.0, -50.0], [-50.0, 100.0]):  # from −50 to 100 on either
+        found = worst_cycle(np.array([still], dtype=complex)[..., None], alike=True, rolls=False)
+        assert (found.equivalent_amplitude, found.ratio) == pytest.approx((np.sqrt(100.0 * 75.0), -0.5))
 
 
 @pytest.fixture(scope="module")
@@ -457,6 +462,16 @@ def test_bending_fatigue_is_that_of_whole_turns(bent):
     values = {one.quantity: one for one in find_values(some, summarise(some), lives=False)}
     assert values["shaft_pin_bending_amplitude"].value is None
     assert values["shaft_pin_bending_amplitude"].reason == "positions cover no whole turns"
+
+
+def test_displacements_are_told_from_a_tenth_of_the_eccentricity():
+    """Directions turn by 0.1 rad there. Of several positions the largest counts, whatever has no answer."""
+    unknown = np.full(3, np.nan)
+    below, above = np.array([0.1, np.nan, 0.2399]), np.array([0.2401, np.nan, 0.1])
+    assert displacement_warning(2.4, {"the wheel moves": ("a field", below), "cranks yield": ("b", unknown)}) is None
+    warning = displacement_warning(2.4, {"the wheel moves": ("a field", below), "cranks yield": ("b", above)})
+    assert "cranks yield by 0.24 mm, 0.1 eccentricities (b)" in warning
+    assert "the wheel" not in warning
 
 
 @pytest.mark.slow

@@ -10,10 +10,16 @@ from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.values import find_values
 from ltca.geometry.placement import position_angles
-from ltca.studies.design_search.closed_forms import Setting, closed_forms, lives_by_loads, shape_values
+from ltca.studies.design_search.closed_forms import (
+    Setting,
+    closed_forms,
+    flank_values,
+    lives_by_loads,
+    shape_values,
+)
 from ltca.studies.design_search.demands import find_demands
 from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
-from ltca.studies.design_search.refinement import most_rollers
+from ltca.studies.design_search.refinement import CONTINUOUS, _between, most_rollers
 from ltca.studies.design_search.requirements import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
 from ltca.studies.design_search.sizes import Sizes, drive_of, stack_length
@@ -119,6 +125,32 @@ def test_closed_forms_are_near_the_loaded_paper_drive():
         "backlash_output",
     ):
         assert abs(np.log(told[name] / loaded[name])) < 0.25, name
+
+
+@pytest.mark.parametrize("pin", [4.0, 6.5])
+def test_pins_without_clearance_rub_off_what_the_pitch_point_says(pin):
+    """4 μ M (R − r)/(π e z_P²) a radian of the crank: the disc turns at 1/z_P about the pitch point, d − r from the contact.
+
+    F = 4 M l/(z_P (e z_P)²) with the lever l = e z_P R sin φ/d (Σ sin²φ/d² = z_P/(4 R²)), d² = R² + (e z_P)² − 2 R e z_P cos φ, so
+    ∫ l (d − r) dφ over half a turn is 2 e z_P (R − r); there are z_P/(2 π) pins to a radian.
+    """
+    text = PAPER.replace("0.15", "0.0").replace("0.09", "0.0") + "[friction]\npin = 0.05\n" + STEEL
+    setting = Setting.of(parse_requirements(text))
+    told = float(flank_values(Sizes.of_rows([ROW | {"pin_radius": pin}]), setting)["flank_loss"][0])
+    # sums over 56 places: the kinks of sin at both ends leave (2π/56)²/12, 0.1 %
+    assert told == pytest.approx(4.0 * 0.05 * 377_300.0 * (88.0 - pin) / (np.pi * 4.0 * 14.0**2), rel=2e-3)
+
+
+def test_sizes_between_two_have_one_ratio_to_both():
+    first, second = dict(ROW), ROW | {"pin_circle": 66.0, "thickness": 20.0, "bore": 29.5, "holes": 6.0}
+    middle = _between(first, second)
+    assert middle.keys() == ROW.keys()
+    for name, value in middle.items():
+        if name in CONTINUOUS:
+            assert value / first[name] == pytest.approx(second[name] / value, rel=1e-12), name
+        else:
+            assert value == first[name], name
+    assert {"pin_circle", "thickness", "bore"} <= set(CONTINUOUS)
 
 
 @pytest.mark.parametrize("spring", [True, False])
