@@ -297,7 +297,7 @@ def test_bad_input_is_one_clear_line(rv, words, message):
 
 @pytest.mark.parametrize("hole", [0, 1, 2])
 def test_bores_stand_clear_of_every_hole(rv, hole):
-    """Three bores on 42 mm, holes every 120° on 45 mm: d² = 42² + 45² − 2·42·45 cos of the angle between them (law of cosines)."""
+    """Three bores on 42 mm, holes every 120° on 45 mm: d² = 42² + 45² − 2·42·45 cos of the angle between them."""
     drive, reach = kind(rv, "holes"), 9.26 + 0.005 + 18.0 + 0.0025  # radii and half of the clearances
     touch = np.degrees(np.arccos((42.0**2 + 45.0**2 - reach**2) / (2.0 * 42.0 * 45.0)))  # 36.3°
     for side in (touch, -touch):

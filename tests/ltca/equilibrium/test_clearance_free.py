@@ -75,7 +75,9 @@ def test_cells_that_do_not_settle_are_counted(monkeypatch):
     cells, holes = [patch.carrying.copy() for patch in system.patches.values()], system.hole_carrying.copy()
     with pytest.raises(ConvergenceError, match="do not settle") as caught:
         system.solve()
-    changed = [np.count_nonzero(one != patch.carrying) for one, patch in zip(cells, system.patches.values(), strict=True)]
+    changed = [
+        np.count_nonzero(one != patch.carrying) for one, patch in zip(cells, system.patches.values(), strict=True)
+    ]
     assert np.count_nonzero(changed) > 3
     # one more where the first step was cut, as it says
     told = sum(changed) + np.count_nonzero(holes != system.hole_carrying)

@@ -131,7 +131,7 @@ def test_closed_forms_are_near_the_loaded_paper_drive():
 def test_pins_without_clearance_rub_off_what_the_pitch_point_says(pin):
     """4 μ M (R − r)/(π e z_P²) a radian of the crank: the disc turns at 1/z_P about the pitch point, d − r from the contact.
 
-    F = 4 M l/(z_P (e z_P)²) with the lever l = e z_P R sin φ/d (Σ sin²φ/d² = z_P/(4 R²)), d² = R² + (e z_P)² − 2 R e z_P cos φ, so
+    F = 4 M l/(z_P (e z_P)²) with the lever l = e z_P R sin φ/d (Σ sin²φ/d² = z_P/(4 R²)), d² = R² + (e z_P)² − 2 R e z_P cos φ:
     ∫ l (d − r) dφ over half a turn is 2 e z_P (R − r); there are z_P/(2 π) pins to a radian.
     """
     text = PAPER.replace("0.15", "0.0").replace("0.09", "0.0") + "[friction]\npin = 0.05\n" + STEEL
