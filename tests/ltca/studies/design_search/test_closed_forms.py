@@ -18,7 +18,7 @@ from ltca.studies.design_search.closed_forms import (
     shape_values,
 )
 from ltca.studies.design_search.demands import find_demands
-from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
+from ltca.studies.design_search.enumeration import _different, enumerate_candidates, teeth
 from ltca.studies.design_search.refinement import CONTINUOUS, _between, most_rollers
 from ltca.studies.design_search.requirements import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
@@ -189,6 +189,23 @@ def test_what_is_kept_keeps_its_walls_and_comes_from_stock():
     assert {
         (2.0 * r, long) for r, long in zip(found.sizes.roller_radius, found.sizes.roller_length, strict=True)
     } <= stock
+
+
+@pytest.mark.parametrize("judged", [True, False])
+def test_of_flanks_in_one_room_the_least_pressed_is_kept(judged):
+    """Pins of different sizes that end at the same radius, for two eccentricities: whether a limit is set on pressure or none."""
+    requirements = parse_requirements(PAPER + STEEL)
+    demands = [one for one in find_demands(requirements) if judged or one.quantity != "pin_pressure_mid"]
+    assert judged == any(one.quantity == "pin_pressure_mid" for one in demands)
+    radii, eccentricities = [5.0, 6.5, 8.0, 5.0, 6.5, 8.0], [3.5] * 3 + [4.0] * 3
+    sizes = Sizes.of_rows(
+        [
+            ROW | {"pin_radius": radius, "pin_circle": 94.5 - radius, "eccentricity": e}
+            for radius, e in zip(radii, eccentricities, strict=True)
+        ]
+    )
+    pressure = np.array([900.0, 700.0, 800.0, 650.0, 950.0, 1000.0])
+    assert set(_different(sizes, {"pin_pressure_mid": pressure}, demands, ()).tolist()) == {1, 3}
 
 
 def test_teeth_of_an_rv_reducer_give_its_ratio():
