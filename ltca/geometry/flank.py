@@ -358,11 +358,8 @@ class FlankProfile:
             step = step.clip(-bound, bound)
             if iteration > 5:  # nearly every point is there by now: only those that creep need a bracket
                 low, high = np.where(value < 0.0, theta, low), np.where(value > 0.0, theta, high)
-                bracketed = np.isfinite(high - low)
-                # Across nearly all of the bracket is outside, too: its ends would send each other back for ever.
-                margin = 0.05 * np.where(bracketed, high - low, 0.0)
-                far = np.where(value < 0.0, theta - step > high - margin, theta - step < low + margin)
-                outside = bracketed & far
+                # A step starts at one end. Nearly to the other is outside, too: they would send each other back for ever.
+                outside = np.abs(step) > 0.95 * (high - low)
                 step[outside] = theta[outside] - 0.5 * (low[outside] + high[outside])
             theta = theta - step
             slope_before, last = slope, step

@@ -295,6 +295,22 @@ def test_bad_input_is_one_clear_line(rv, words, message):
     assert all("\n" not in problem for problem in caught.value.problems)
 
 
+@pytest.mark.parametrize("hole", [0, 1, 2])
+def test_bores_stand_clear_of_every_hole(rv, hole):
+    """Three bores on 42 mm, holes every 120° on 45 mm: d² = 42² + 45² − 2·42·45 cos of the angle between them."""
+    drive, reach = kind(rv, "holes"), 9.26 + 0.005 + 18.0 + 0.0025  # radii and half of the clearances
+    touch = np.degrees(np.arccos((42.0**2 + 45.0**2 - reach**2) / (2.0 * 42.0 * 45.0)))  # 36.3°
+    for side in (touch, -touch):
+        beyond, within = 120.0 * hole + side * 1.001, 120.0 * hole + side * 0.999
+        with_fields(drive, {"crank.angle": float(np.radians(beyond))})
+        with pytest.raises(DriveError, match=r"a bore and a hole .* cut into each other"):
+            with_fields(drive, {"crank.angle": float(np.radians(within))})
+    distance = np.sqrt(42.0**2 + 45.0**2 - 2.0 * 42.0 * 45.0 * np.cos(np.radians(25.0)))
+    with pytest.raises(DriveError) as caught:
+        with_fields(drive, {"crank.angle": float(np.radians(120.0 * hole + 25.0))})
+    assert f"cut into each other by {reach - distance:.6g} mm" in str(caught.value)
+
+
 @pytest.mark.parametrize("name", ["cranks", "wheel", "central crank yields"])
 def test_shares_of_the_compliance(rv, name):
     """∂c/∂ ln k of a support is −share · c: the compliance of the wheel's angle from the tangent, its supports stiffened."""

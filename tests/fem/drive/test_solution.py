@@ -170,6 +170,17 @@ def test_deformed_bodies_touch(coarse, coarse_fields):
     assert count > 12
 
 
+def test_pins_and_rollers_without_load_keep_their_shape(coarse, coarse_fields):
+    """What nothing presses on neither moves nor is strained; what carries does both."""
+    idle = {"pin": coarse.contacts.pin_load == 0.0, "roller": coarse.contacts.roller_load_outer == 0.0}
+    for kind, without in idle.items():
+        assert 0 < np.count_nonzero(without) < without.size
+        bodies = [field for field in coarse_fields if field.kind == kind]
+        for field, free in zip(bodies, without, strict=True):
+            moved, strained = np.abs(field.elastic).max(), field.stress.von_mises.max()
+            assert (moved == 0.0, strained == 0.0) == (free, free), field.body.name
+
+
 def test_rigid_motions_start_from_the_nominal_places(coarse_fields):
     """Less its rigid motion every body stands where the drive puts it: pins on their circle, the disc on its eccentric."""
     disc, *rest = coarse_fields

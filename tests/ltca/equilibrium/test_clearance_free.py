@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
+from ltca.equilibrium import clearance_free
 from ltca.equilibrium.clearance_free import analyse_without_clearance
-from ltca.errors import DriveError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
 PAPER = parse_drive(shipped_drive()).cases
@@ -65,3 +66,19 @@ def test_reverse_direction_is_the_mirror_image():
 def test_drives_with_clearance_are_refused():
     with pytest.raises(DriveError, match=r"clearance\.bearing = 0\.03 mm: must be 0 mm"):
         analyse_without_clearance(PAPER["CS-3"], 0.0)
+
+
+def test_cells_that_do_not_settle_are_counted(monkeypatch):
+    """The history of the error is how many cells and holes changed, of all contacts together."""
+    monkeypatch.setattr(clearance_free, "FACTORISATIONS", 1)
+    system = clearance_free._System(PAPER["CS-1"], 0.3, -377_300.0, 6)
+    cells, holes = [patch.carrying.copy() for patch in system.patches.values()], system.hole_carrying.copy()
+    with pytest.raises(ConvergenceError, match="do not settle") as caught:
+        system.solve()
+    changed = [
+        np.count_nonzero(one != patch.carrying) for one, patch in zip(cells, system.patches.values(), strict=True)
+    ]
+    assert np.count_nonzero(changed) > 3
+    # one more where the first step was cut, as it says
+    told = sum(changed) + np.count_nonzero(holes != system.hole_carrying)
+    assert caught.value.history[0] - told in (0, 1)

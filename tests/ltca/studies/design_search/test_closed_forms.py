@@ -10,10 +10,16 @@ from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
 from ltca.analysis.verdict.values import find_values
 from ltca.geometry.placement import position_angles
-from ltca.studies.design_search.closed_forms import Setting, closed_forms, lives_by_loads, shape_values
+from ltca.studies.design_search.closed_forms import (
+    Setting,
+    closed_forms,
+    flank_values,
+    lives_by_loads,
+    shape_values,
+)
 from ltca.studies.design_search.demands import find_demands
-from ltca.studies.design_search.enumeration import enumerate_candidates, teeth
-from ltca.studies.design_search.refinement import most_rollers
+from ltca.studies.design_search.enumeration import _different, enumerate_candidates, teeth
+from ltca.studies.design_search.refinement import CONTINUOUS, _between, most_rollers
 from ltca.studies.design_search.requirements import parse_requirements
 from ltca.studies.design_search.search import rounded_safely
 from ltca.studies.design_search.sizes import Sizes, drive_of, stack_length
@@ -121,6 +127,32 @@ def test_closed_forms_are_near_the_loaded_paper_drive():
         assert abs(np.log(told[name] / loaded[name])) < 0.25, name
 
 
+@pytest.mark.parametrize("pin", [4.0, 6.5])
+def test_pins_without_clearance_rub_off_what_the_pitch_point_says(pin):
+    """4 μ M (R − r)/(π e z_P²) a radian of the crank: the disc turns at 1/z_P about the pitch point, d − r from the contact.
+
+    F = 4 M l/(z_P (e z_P)²) with the lever l = e z_P R sin φ/d (Σ sin²φ/d² = z_P/(4 R²)), d² = R² + (e z_P)² − 2 R e z_P cos φ:
+    ∫ l (d − r) dφ over half a turn is 2 e z_P (R − r); there are z_P/(2 π) pins to a radian.
+    """
+    text = PAPER.replace("0.15", "0.0").replace("0.09", "0.0") + "[friction]\npin = 0.05\n" + STEEL
+    setting = Setting.of(parse_requirements(text))
+    told = float(flank_values(Sizes.of_rows([ROW | {"pin_radius": pin}]), setting)["flank_loss"][0])
+    # sums over 56 places: the kinks of sin at both ends leave (2π/56)²/12, 0.1 %
+    assert told == pytest.approx(4.0 * 0.05 * 377_300.0 * (88.0 - pin) / (np.pi * 4.0 * 14.0**2), rel=2e-3)
+
+
+def test_sizes_between_two_have_one_ratio_to_both():
+    first, second = dict(ROW), ROW | {"pin_circle": 66.0, "thickness": 20.0, "bore": 29.5, "holes": 6.0}
+    middle = _between(first, second)
+    assert middle.keys() == ROW.keys()
+    for name, value in middle.items():
+        if name in CONTINUOUS:
+            assert value / first[name] == pytest.approx(second[name] / value, rel=1e-12), name
+        else:
+            assert value == first[name], name
+    assert {"pin_circle", "thickness", "bore"} <= set(CONTINUOUS)
+
+
 @pytest.mark.parametrize("spring", [True, False])
 def test_everything_twice_as_stiff_yields_half(spring):
     """All of it is elastic: with each modulus, the spring of the shaft pins where one is given, and the torque, which closes the
@@ -157,6 +189,23 @@ def test_what_is_kept_keeps_its_walls_and_comes_from_stock():
     assert {
         (2.0 * r, long) for r, long in zip(found.sizes.roller_radius, found.sizes.roller_length, strict=True)
     } <= stock
+
+
+@pytest.mark.parametrize("judged", [True, False])
+def test_of_flanks_in_one_room_the_least_pressed_is_kept(judged):
+    """Pins of different sizes that end at the same radius, for two eccentricities: whether a limit is set on pressure or none."""
+    requirements = parse_requirements(PAPER + STEEL)
+    demands = [one for one in find_demands(requirements) if judged or one.quantity != "pin_pressure_mid"]
+    assert judged == any(one.quantity == "pin_pressure_mid" for one in demands)
+    radii, eccentricities = [5.0, 6.5, 8.0, 5.0, 6.5, 8.0], [3.5] * 3 + [4.0] * 3
+    sizes = Sizes.of_rows(
+        [
+            ROW | {"pin_radius": radius, "pin_circle": 94.5 - radius, "eccentricity": e}
+            for radius, e in zip(radii, eccentricities, strict=True)
+        ]
+    )
+    pressure = np.array([900.0, 700.0, 800.0, 650.0, 950.0, 1000.0])
+    assert set(_different(sizes, {"pin_pressure_mid": pressure}, demands, ()).tolist()) == {1, 3}
 
 
 def test_teeth_of_an_rv_reducer_give_its_ratio():
