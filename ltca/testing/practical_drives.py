@@ -23,6 +23,7 @@ from ltca.equilibrium.reducer import geometries, with_friction
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.flank import FlankProfile
+from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play, largest_overlap, rigid_poses
 from ltca.reading.drive_file import build_drive
 from ltca.reading.physical_checks import is_sound
