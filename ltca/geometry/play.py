@@ -102,6 +102,24 @@ class TurnPlay:
     preloaded: float
 
 
+def preload_words(part: float) -> str:
+    """Return what is said beside a free play of a drive that is preloaded over a part of the turn; nothing for none.
+
+    Parameters
+    ----------
+    part : float
+        Of the turn (`TurnPlay.preloaded`).
+
+    Examples
+    --------
+    >>> preload_words(0.25), preload_words(1.0)
+    ('preloaded over 25 % of the turn', 'preloaded')
+    """
+    if part == 1.0:
+        return "preloaded"
+    return f"preloaded over {100.0 * part:.0f} % of the turn" if part else ""
+
+
 def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
     """Return the largest and the least free play of the wheel over one turn of the crank.
 

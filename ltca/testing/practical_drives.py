@@ -264,7 +264,7 @@ class Comparison:
     ----------
     outcome : {"alike", "settling", "preloaded", "not balanced", "wrong"}
         Settling: the load turns it beyond 1 % and 0.005′ of the free play, by no more than the overlaps under that load allow,
-        and the limit of ever lighter loads is within them.
+        and the limit of ever lighter loads is within them. What is wrong has that limit, or the load, elsewhere.
     free, loaded, yielding : float
         Of the output, arcmin: free, between the torques, and free with those overlaps.
     limit : float
@@ -287,12 +287,13 @@ class Comparison:
 
 
 def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> tuple[FloatArray, FloatArray]:
-    """Return how far a load that vanishes turns the wheel with one disc on it, and how far it is turned without load, rad.
+    """Return how far a load that vanishes turns the wheel at most with one disc on it, and how far it turns without load, rad.
 
     Forces of contact in proportion to a torque that goes to nought still balance it: λ ≥ 0 with Σ λ_i ∇δ_i = e of the wheel's
     torque. Their work on the gaps that are left, Σ λ_i g_i, is how much further the wheel may go before they press, and the least
-    of it over all balances is where the load ends: nothing if the pairs that touch can balance it by themselves. No contact law
-    enters, so that it holds of every one; gaps are straight about the pose, within the tens of nanometres in question.
+    of it over all balances bounds where the load ends: nothing if the pairs that touch balance it by themselves. No contact law
+    enters, so it holds of every one. Gaps are taken as straight about the pose. Where an arc of a race or a hole lies across the
+    turning, a pose found to 1e-7 mm is off by the root of that along it, and the straight gap promises more than the arc has.
 
     Parameters
     ----------

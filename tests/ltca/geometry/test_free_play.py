@@ -8,8 +8,13 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.summary import summarise
+from ltca.analysis.verdict.values import judge_analysis
 from ltca.drive.deviations import OneDisc, Runout
+from ltca.drive.members.limits import Limit
 from ltca.drive.members.temperatures import warm_drive
+from ltca.drive.parts import PlacementErrors
 from ltca.drive.single_discs import single_discs
 from ltca.drive.units.quantities import ARCMIN
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -93,6 +98,30 @@ def test_overlapping_parts_are_preloaded(vary):
     drive = vary(crank_bearing={"roller_errors": {"diameter": [0.002] * 11}}, clearance={"bearing": 0.0})
     found = play_over_a_turn(discs_of(drive))
     assert (found.largest, found.least, found.preloaded) == (0.0, 0.0, 1.0)
+
+
+@pytest.mark.slow
+def test_where_part_of_the_turn_is_preloaded_the_verdict_says_so(paper_cases):
+    """One pin 0.1 mm too far in: no play where it meets the flank, some elsewhere; the limit is judged by the largest."""
+    drive = paper_cases["CS-3"]
+    drive = replace(drive, pin_wheel=replace(drive.pin_wheel, pin_errors=PlacementErrors(radial=(-0.1, *[0.0] * 13))))
+    analysis = analyse(drive, np.array([0.3, 5.9]))
+    summary = summarise(analysis)
+    part = summary["preloaded_part_of_turn"]
+    assert 0.0 < part < 1.0
+    limits = {
+        limit.key: limit
+        for limit in (
+            Limit(quantity="backlash_output", sense="max", value=20.0, source="test"),
+            Limit(quantity="backlash_output", sense="min", value=1.0, source="test"),
+        )
+    }
+    checks = judge_analysis(analysis, summary, limits, lives=False)
+    most, least = (check for check in checks if check.value.quantity == "backlash_output")
+    words = f"preloaded over {100.0 * part:.0f} % of the turn"
+    assert (most.value.part, most.fails) == (words, False)
+    assert most.value.value == pytest.approx(play_over_a_turn(discs_of(drive)).largest * ARCMIN, rel=1e-12)
+    assert (least.value.part, least.value.value, least.fails) == (f"least, {words}", 0.0, True)
 
 
 def test_the_largest_of_a_turn_is_found_between_positions(paper_cases):
