@@ -48,6 +48,10 @@ ROUNDS, SHRINKING, PIVOTS = 60, 12, 400
 """Programmes, those after which steps get shorter, pivots of each."""
 KEPT = 8
 """Programmes of which the tangents of arcs are kept."""
+DEGENERATE = 1e-9
+"""Determinant of a corner, of normals of length one, below which no programme is started from it."""
+FEWER = 0.7
+"""Part of a batch that still pivots below which it is gathered."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Part of a turn between positions."""
 POSITIONS, REFINEMENTS, PLACES = 48, 2, 3
@@ -96,6 +100,24 @@ class TurnPlay:
     least: float
     crank_angle: float
     preloaded: float
+
+
+def preload_words(part: float) -> str:
+    """Return what is said beside a free play of a drive that is preloaded over a part of the turn; nothing for none.
+
+    Parameters
+    ----------
+    part : float
+        Of the turn (`TurnPlay.preloaded`).
+
+    Examples
+    --------
+    >>> preload_words(0.25), preload_words(1.0)
+    ('preloaded over 25 % of the turn', 'preloaded')
+    """
+    if part == 1.0:
+        return "preloaded"
+    return f"preloaded over {100.0 * part:.0f} % of the turn" if part else ""
 
 
 def play_over_a_turn(discs: Sequence[ContactGeometry]) -> TurnPlay:
@@ -263,6 +285,7 @@ class _Programme:
         pose, left, bound = np.zeros((size, RIGID)), np.zeros(size), np.full(size, self.bound)
         going = np.arange(size)
         tangents, pairs = np.zeros((size, 0, RIGID + 1)), np.zeros((size, 0), dtype=np.intp)
+        start: Rows | None = None
         history: list[float] = []
         for turn in range(ROUNDS):
             place = pose[going] * self.lever
@@ -279,6 +302,7 @@ class _Programme:
                 np.concatenate([gap, room], axis=1),
                 sense[going],
                 bound[going],
+                start,
             )
             gain = sense[going] * step[:, WHEEL_ANGLE]
             left[going] = np.maximum(RELIEF - gap.min(axis=1), 0.0)
@@ -291,7 +315,7 @@ class _Programme:
             stay = ~found
             if not stay.any():
                 return pose, left
-            told = np.where(active < arcs, active, -1)
+            told = np.where(active < arcs, np.maximum(active, -1), -1)
             drop = max(tangents.shape[1] - (KEPT - 1) * (RIGID + 1), 0)
             tangents = np.concatenate([tangents[:, drop:], np.zeros((size, RIGID + 1, RIGID + 1))], axis=1)
             pairs = np.concatenate([pairs[:, drop:], np.zeros((size, RIGID + 1), dtype=np.intp)], axis=1)
@@ -299,6 +323,9 @@ class _Programme:
             pairs[going, -(RIGID + 1) :] = np.maximum(told, 0)
             if turn >= SHRINKING:
                 bound[going] = 0.7 * np.minimum(bound[going], np.abs(step).max(axis=1))
+            # What stopped this programme is where the next one begins; tangents of the oldest go.
+            old = active >= gap.shape[1]
+            start = np.where(old, np.where(active - drop < gap.shape[1], -1, active - drop), active)[stay]
             going, step = going[stay], step[stay]
             pose[going] += step / self.lever
             if np.max(np.abs(pose[:, WHEEL_ANGLE])) > self.pitch:
@@ -325,7 +352,7 @@ def _tangents_of(slope: FloatArray, gap: FloatArray, place: FloatArray, chosen: 
 
 
 def _farthest(
-    normal: FloatArray, room: FloatArray, sense: FloatArray, bound: FloatArray
+    normal: FloatArray, room: FloatArray, sense: FloatArray, bound: FloatArray, start: Rows | None = None
 ) -> tuple[FloatArray, FloatArray, Rows]:
     """Turn the wheel as far as linear gaps allow, after the least overlap: normal · d ≤ room + t, |d| ≤ bound, t ≥ 0.
 
@@ -339,6 +366,8 @@ def _farthest(
         +1 or −1.
     bound : array, shape (rows,)
         Of every coordinate, mm.
+    start : array of int, shape (rows, 5), optional
+        What stopped a programme much like this one.
 
     Returns
     -------
@@ -347,42 +376,55 @@ def _farthest(
     overlap : array, shape (rows,)
         t, mm.
     active : array of int, shape (rows, 5)
-        The pairs that stop it; numbers beyond them are bounds.
+        The pairs that stop it; numbers below zero are bounds.
     """
     rows, pairs, size = normal.shape
-    sides = np.concatenate([np.eye(size), -np.eye(size)])
-    matrix = np.zeros((rows, pairs + 2 * size + 1, size + 1))
-    matrix[:, :pairs, :size], matrix[:, :pairs, size] = normal, -1.0
-    matrix[:, pairs : pairs + 2 * size, :size] = sides
-    matrix[:, -1, size] = -1.0
-    limit = np.concatenate([room, np.repeat(bound[:, None], 2 * size, axis=1), np.zeros((rows, 1))], axis=1)
+    fixed = 2 * size + 1
+    matrix = np.zeros((rows, pairs + fixed, size + 1))
+    matrix[:, : 2 * size, :size] = np.concatenate([np.eye(size), -np.eye(size)])
+    matrix[:, 2 * size, size] = -1.0
+    matrix[:, fixed:, :size], matrix[:, fixed:, size] = normal, -1.0
+    limit = np.concatenate([np.repeat(bound[:, None], 2 * size, axis=1), np.zeros((rows, 1)), room], axis=1)
     wish = np.tile(np.array([1.0, 1.7, 2.3, 3.1, 0.0]) * NUDGE, (rows, 1))
     wish[:, size - 1] += sense
     wish[:, size] = -PENALTY
     # The corner of the bounds that the wish points to, without overlap, is the best of all without pairs.
-    first = np.where(wish[:, :size] > 0.0, 0, size) + np.arange(size) + pairs
-    basis = np.concatenate([first, np.full((rows, 1), pairs + 2 * size)], axis=1)
-    answer = np.zeros((rows, size + 1))
+    first = np.where(wish[:, :size] > 0.0, 0, size) + np.arange(size)
+    first = np.concatenate([first, np.full((rows, 1), 2 * size)], axis=1)
+    basis = _as_good_as_first(matrix, wish, first, first if start is None else start + fixed)
+    answer, stopping = np.zeros((rows, size + 1)), basis.copy()
+    # Rows whose corner keeps all bounds stay as they are until moving the others together is worth it.
     going = np.arange(rows)
     for _ in range(PIVOTS):
-        mine, here = matrix[going], basis[going]
-        corner = np.take_along_axis(mine, here[..., None], axis=1)
-        inverse = np.linalg.inv(corner)
-        point = np.matmul(inverse, np.take_along_axis(limit[going], here, axis=1)[..., None])[..., 0]
-        answer[going] = point
-        beyond = np.matmul(mine, point[..., None])[..., 0] - limit[going]
-        np.put_along_axis(beyond, here, 0.0, axis=1)
+        each = np.arange(going.size)[:, None]
+        inverse = np.linalg.inv(matrix[each, basis])
+        point = np.matmul(inverse, limit[each, basis][..., None])
+        beyond = np.matmul(matrix, point)[..., 0] - limit
+        beyond[each, basis] = 0.0
         entering = np.argmax(beyond, axis=1)
-        each = np.arange(going.size)
-        over = beyond[each, entering] > 1e-13
+        over = beyond[each[:, 0], entering] > 1e-13
+        answer[going], stopping[going] = point[..., 0], basis
         if not over.any():
             break
-        going, inverse, entering, here = going[over], inverse[over], entering[over], here[over]
-        price = np.matmul(wish[going][:, None], inverse)[:, 0]
-        share = np.matmul(mine[over][np.arange(going.size), entering][:, None], inverse)[:, 0]
-        ratio = np.where(share > 1e-11, np.maximum(price, 0.0) / np.where(share > 1e-11, share, 1.0), np.inf)
-        leaving = np.argmin(ratio, axis=1)
-        basis[going, leaving] = entering
+        if over.mean() < FEWER:
+            going, matrix, limit, wish = going[over], matrix[over], limit[over], wish[over]
+            basis, inverse, entering, each = basis[over], inverse[over], entering[over], each[: over.sum()]
+            over = over[over]
+        price = np.matmul(wish[:, None], inverse)[:, 0]
+        share = np.matmul(matrix[each, entering[:, None]], inverse)[:, 0]
+        rises = share > 1e-11
+        ratio = np.where(rises, np.maximum(price, 0.0) / np.where(rises, share, 1.0), np.inf)
+        basis[each[over, 0], np.argmin(ratio, axis=1)[over]] = entering[over]
     else:
         raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
-    return answer[:, :size], answer[:, size], basis
+    return answer[:, :size], answer[:, size], stopping - fixed
+
+
+def _as_good_as_first(matrix: FloatArray, wish: FloatArray, first: Rows, start: Rows) -> Rows:
+    """Corners to start from: those where the wish is within what stops it, as the dual method needs it, or the first."""
+    each = np.arange(first.shape[0])[:, None]
+    start = np.where((start < matrix.shape[1]).all(axis=1, keepdims=True), start, first)
+    known = np.abs(np.linalg.det(matrix[each, start])) > DEGENERATE
+    start = np.where(known[:, None], start, first)
+    price = np.matmul(wish[:, None], np.linalg.inv(matrix[each, start]))[:, 0]
+    return np.where(np.all(price >= 0.0, axis=1, keepdims=True), start, first)

@@ -16,7 +16,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
-from ltca.geometry.play import play_over_a_turn
+from ltca.geometry.play import play_over_a_turn, preload_words
 
 Rows = list[tuple[str, str]]
 
@@ -73,8 +73,15 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
         (
             "backlash at the output, all clearances",
-            f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′"
-            + (", preloaded" if turn.preloaded == 1.0 else ", preloaded at places" if turn.preloaded else ""),
+            ", ".join(
+                filter(
+                    None,
+                    (
+                        f"{leverage * turn.least:z.2f}′ … {leverage * turn.largest:z.2f}′",
+                        preload_words(turn.preloaded),
+                    ),
+                )
+            ),
         ),
         (
             f"flank: backlash at {at}, wheel held",

@@ -23,7 +23,8 @@ from ltca.equilibrium.reducer import geometries, with_friction
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.flank import FlankProfile
-from ltca.geometry.play import free_play, largest_overlap
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import free_play, largest_overlap, rigid_poses
 from ltca.reading.drive_file import build_drive
 from ltca.reading.physical_checks import is_sound
 
@@ -262,15 +263,19 @@ class Comparison:
     Attributes
     ----------
     outcome : {"alike", "settling", "preloaded", "not balanced", "wrong"}
-        Settling: beyond 1 % and 0.005′, by no more than the overlaps under that load allow.
+        Settling: the load turns it beyond 1 % and 0.005′ of the free play, by no more than the overlaps under that load allow,
+        and the limit of ever lighter loads is within them. What is wrong has that limit, or the load, elsewhere.
     free, loaded, yielding : float
         Of the output, arcmin: free, between the torques, and free with those overlaps.
+    limit : float
+        Between torques of either sense that vanish, by `light_limit`, arcmin.
     part : float
         Of the torque.
     """
 
     outcome: str
     free: float
+    limit: float = np.nan
     loaded: float = np.nan
     yielding: float = np.nan
     part: float = np.nan
@@ -279,6 +284,87 @@ class Comparison:
     def difference(self) -> float:
         """Between loaded and free play, arcmin."""
         return abs(self.loaded - self.free)
+
+
+def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> tuple[FloatArray, FloatArray]:
+    """Return how far a load that vanishes turns the wheel at most with one disc on it, and how far it turns without load, rad.
+
+    Forces of contact in proportion to a torque that goes to nought still balance it: λ ≥ 0 with Σ λ_i ∇δ_i = e of the wheel's
+    torque. Their work on the gaps that are left, Σ λ_i g_i, is how much further the wheel may go before they press, and the least
+    of it over all balances bounds where the load ends: nothing if the pairs that touch balance it by themselves. No contact law
+    enters, so it holds of every one. Gaps are taken as straight about the pose. Where an arc of a race or a hole lies across the
+    turning, a pose found to 1e-7 mm is off by the root of that along it, and the straight gap promises more than the arc has.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        Of one disc.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    sense : {+1, −1}
+        Of the wheel.
+
+    Returns
+    -------
+    limit, free : array, shape (positions,)
+        Wheel angles, counter-clockwise positive.
+    """
+    from scipy.optimize import linprog
+
+    pose = rigid_poses(geometry, crank_angle, sense)
+    approach, gradient = pair_approaches(geometry, crank_angle, pose)
+    reach = float(geometry.placement.eccentricity.max()) * geometry.placement.reduction_ratio
+    # All of one size: rotations by the lever of the wheel.
+    scaled = gradient / np.array([1.0, 1.0, reach, reach])
+    torque = np.array([0.0, 0.0, 0.0, float(sense)])
+    further = [
+        linprog(np.maximum(-gap, 0.0), A_eq=slope.T, b_eq=torque).fun
+        for gap, slope in zip(approach, scaled, strict=True)
+    ]
+    free = pose[:, WHEEL_ANGLE]
+    return free + sense * np.array(further, dtype=float) / reach, free
+
+
+def pair_approaches(
+    geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the approaches of pins, holes and rollers that stand outermost, mm, and their gradients by the pose.
+
+    Parameters
+    ----------
+    geometry : ContactGeometry
+        Of one disc.
+    crank_angle : array, shape (positions,)
+        φ_C, rad.
+    pose : array, shape (positions, 4)
+        q of `ltca.geometry.pairs`.
+
+    Returns
+    -------
+    approach : array, shape (positions, pairs)
+    gradient : array, shape (positions, pairs, 4)
+    """
+    flank, holes, rays = (
+        geometry.flank(crank_angle, pose),
+        geometry.holes(crank_angle, pose),
+        geometry.rollers(crank_angle),
+    )
+    bores, count = geometry.bores(crank_angle, pose), rays.direction.shape[1]
+    arm = rays.outermost * rays.direction - bores.each(bores.displacement, count)
+    outward = -(arm / np.abs(arm)).conjugate()[..., None]
+    return (
+        np.concatenate([flank.approach, holes.approach, np.abs(arm) - rays.bore_play], axis=1),
+        np.concatenate([flank.gradient, holes.gradient, (outward * bores.each(bores.gradient, count)).real], axis=1),
+    )
+
+
+def _limit(discs: list[ContactGeometry], angle: FloatArray) -> float:
+    """Between the limits of vanishing torques of either sense, of all discs together, rad."""
+    ends = []
+    for sense in (1, -1):
+        limits = [light_limit(disc, angle, sense)[0] for disc in discs]
+        ends.append(sense * min(sense * float(limit[0]) for limit in limits))
+    return ends[0] - ends[1]
 
 
 def compare_with_load(seed: int) -> list[Comparison]:
@@ -313,6 +399,10 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
         if found.preloaded[row]:
             answers.append(Comparison(outcome="preloaded", free=free))
             continue
+        limit = _limit(discs, np.array([angle])) * scale
+        if not abs(limit - free) <= max(0.005, 0.01 * free):
+            answers.append(Comparison(outcome="wrong", free=free, limit=limit))
+            continue
         for part in PARTS:
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
@@ -332,8 +422,10 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
                 outcome = "alike"
             elif free - 1e-3 <= turned <= yielding + 1e-3:
                 outcome = "settling"
-            answers.append(Comparison(outcome=outcome, free=free, loaded=turned, yielding=yielding, part=part))
+            answers.append(
+                Comparison(outcome=outcome, free=free, limit=limit, loaded=turned, yielding=yielding, part=part)
+            )
             break
         else:
-            answers.append(Comparison(outcome="not balanced", free=free))
+            answers.append(Comparison(outcome="not balanced", free=free, limit=limit))
     return answers

@@ -25,6 +25,7 @@ from ltca.drive.members.judgement import WHOLE, Check, Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
+from ltca.geometry.play import preload_words
 
 FloatArray = NDArray[np.float64]
 
@@ -137,7 +138,7 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
     yield Value(
         quantity="backlash_output",
         value=play,
-        part="preloaded" if summary["preloaded_part_of_turn"] == 1.0 else "",
+        part=preload_words(summary["preloaded_part_of_turn"] or 0.0),
         reason="nothing stops the wheel within half a pin pitch" if play is None else "",
         least=summary["min_backlash_output_arcmin"],
     )

@@ -209,7 +209,9 @@ def judge(
 
 
 def _judged_by(limit: Limit, value: Value) -> Value:
-    return value if limit.sense == "max" or value.least is None else replace(value, value=value.least, part="least")
+    if limit.sense == "max" or value.least is None:
+        return value
+    return replace(value, value=value.least, part=", ".join(filter(None, ("least", value.part))))
 
 
 _BOTH = {"roller_pressure_mid_outer": "roller_pressure_mid", "roller_pressure_mid_inner": "roller_pressure_mid"}
