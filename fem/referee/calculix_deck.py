@@ -15,8 +15,7 @@ codes. What differs from our own model:
 **Why a hundred nodes carry a shaft pin.** Ours carries it by the mean displacement of its whole area, which is force spread
 evenly over all nodes. An equation over all of them makes each pin a dense block, and CalculiX sets its structure up anew
 in every iteration: at four times the default size 10 s each instead of 2 to 3. Spread over so many places, force and moment
-the same, it is the same but next to these places: that yields by 0.1 % of what the spring does, and the contact
-feels it by as little.
+the same, it is the same but next to these places: that moves the pin by 0.2 % of what its contact yields.
 
 **When an answer counts.** With given points that touch the problem is linear: CalculiX solves it, frees the points that
 pull, closes those that overlap and solves again. It ends as soon as the *number* of points changes by less than a
