@@ -417,11 +417,11 @@ def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, Float
     _, nearest = cKDTree(body.mesh.doflocs.T).query(np.column_stack([seeds.real, seeds.imag]))
     nodes = np.unique(nearest)
     _, owner = cKDTree(body.mesh.doflocs.T[nodes]).query(body.mesh.doflocs.T)
-    shares = np.bincount(owner, weights=areas, minlength=len(nodes))
+    nearby = np.bincount(owner, weights=areas, minlength=len(nodes)).astype(float)
     # Least change that gives the resultant its size and its place.
     modes = np.vstack([np.ones(len(nodes)), body.mesh.doflocs[:, nodes]])
-    shares += np.linalg.lstsq(modes, np.array([1.0, 0.0, 0.0]) - modes @ shares, rcond=None)[0]
-    return nodes, shares
+    change = np.linalg.lstsq(modes, np.array([1.0, 0.0, 0.0]) - modes @ nearby, rcond=None)[0]
+    return nodes, nearby + change
 
 
 def _nodes_beside_centre(body: BodyMesh, direction: complex) -> tuple[int, int]:
