@@ -70,10 +70,6 @@ def execute(arguments: argparse.Namespace) -> int:
 
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
-    if arguments.export or referee:
-        from ltca.drive.plane_strain import require_rigid_shaft_pins
-
-        require_rigid_shaft_pins(drive, "the CalculiX deck")
     name = file.name
     out = arguments.out or default_folder(name, "fem")
     discs = drive.disc.number_of_discs

@@ -8,7 +8,14 @@ codes. What differs from our own model:
   leave these supports with next to nothing to carry, and a mean over all nodes would fill the matrix);
 - contact is a penalty at many points of each face: pressure = `PENALTY_FACTOR` E/b times penetration, b being the
   half-width expected of the contact;
-- rollers that carry nothing are left out, because nothing would hold them.
+- rollers that carry nothing are left out, because nothing would hold them;
+- elastic shaft pins (``pin_shaft.elastic_contact``) sit on their springs by a hundred nodes, each for the area about it, and
+  two nodes keep them from turning.
+
+**Why a hundred nodes carry a shaft pin.** Ours carries it by the mean displacement of its whole area, which is force spread
+evenly over all nodes. An equation over all of them makes each pin a dense block, and CalculiX sets its structure up anew
+in every iteration: at four times the default size 10 s each instead of 2 to 3. Spread over so many places, force and moment
+the same, it is the same but next to these places: that moves the pin by 0.2 % of what its contact yields.
 
 **When an answer counts.** With given points that touch the problem is linear: CalculiX solves it, frees the points that
 pull, closes those that overlap and solves again. It ends as soon as the *number* of points changes by less than a
@@ -33,8 +40,9 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
-from fem.body.elasticity import unknowns_of_boundary
+from fem.body.elasticity import area_loads, unknowns_of_boundary
 from fem.body.surface import OppositeZone
 from fem.contact.coupling import Pose
 from fem.drive.full_solution import FullSolution
@@ -42,7 +50,6 @@ from fem.drive.model import ContactPair, DriveModel
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.mesh.mesh_file import element_nodes
 from ltca.drive.parts import Material
-from ltca.drive.plane_strain import require_rigid_shaft_pins
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
 
@@ -56,6 +63,8 @@ PENALTY_FACTOR = 100.0
 CONTACT_CONTROLS = "0.,0.,100,200"
 # Half-angle of the rigid shaft-pin arcs is this many times the zone they face.
 RIGID_REACH = 1.3
+# Nodes that carry an elastic shaft pin, see above.
+SUPPORTS = 100
 
 
 def find_calculix() -> str:
@@ -179,12 +188,9 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
     ------
     CycloError
         For plane stress, which the deck does not have; when the file cannot be written.
-    DriveError
-        For elastic shaft pins, which it does not have either.
     """
     if solution.plane_state != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
-    require_rigid_shaft_pins(solution.model.drive, "the CalculiX deck")
     model = solution.model
     deck = _Deck()
     deck.lines += [
@@ -202,6 +208,8 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
             _tie_core(deck, model.circle_centre("pin", pair.index, solution.pose), pair, wheel)
         elif pair.kind == "roller_outer":
             _guide_roller(deck, complex(model.roller_rays[pair.index]), pair)
+        elif pair.kind == "hole" and pair.group >= 0:
+            _carry_shaft_pin(deck, solution, pair)
     _add_step(deck, pairs, wheel, solution.state.wheel_moment)
     with whole_file(path) as part:
         part.write_text("\n".join(deck.lines) + "\n", encoding="ascii")
@@ -237,10 +245,10 @@ def _add_bodies(deck: _Deck, solution: FullSolution, pairs: list[ContactPair]) -
         name = _race_name(model, crank)
         deck.add_body(name, model.meshes.inner_race, Pose(centre=centre), materials.inner_race, thickness)
     for pair in pairs:
-        if pair.kind in ("pin", "roller_outer"):
+        if pair.group >= 0 and pair.kind != "roller_inner":
             # The mesh in the frame of its group, whose zones are known, turned to this body.
             centre = model.circle_centre(pair.kind, pair.index, pose)
-            material = materials.wheel_pin if pair.kind == "pin" else materials.roller
+            material = {"pin": materials.wheel_pin, "hole": materials.shaft_pin}.get(pair.kind, materials.roller)
             at = Pose(centre=centre, rotation=pair.turn)
             deck.add_body(_body_name(pair), model.groups[pair.group].body, at, material, thickness)
 
@@ -251,7 +259,7 @@ def _add_contact(deck: _Deck, solution: FullSolution, pair: ContactPair, penalty
     drive, name = model.drive, pair_name(pair)
     carrier, _, elements = deck.placed[_carrier_name(model, pair)]
     faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
-    if pair.kind == "hole":
+    if pair.group < 0:
         opposite = _add_rigid_arc(
             deck, pair, model.disc_pose(pose), model.circle_centre("hole", pair.index, pose),
             drive.hole_stiffness, drive.disc.thickness, complex(pose.shaft_pin_displacements[pair.index]),
@@ -304,12 +312,9 @@ def _tie_core(deck: _Deck, centre: complex, pair: ContactPair, wheel: int) -> No
 def _guide_roller(deck: _Deck, ray: complex, pair: ContactPair) -> None:
     """Hold a roller across its ray at two nodes near its axis of load."""
     body, offset, _ = deck.placed[_body_name(pair)]
-    places = (body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]) * np.exp(1j * pair.turn)
-    radius = float(np.abs(places).max())
     across = 1j * ray
-    for target in (-0.3 * radius * ray, 0.3 * radius * ray):
-        node = offset + int(np.argmin(np.abs(places - target))) + 1
-        terms = [(node, 1, across.real), (node, 2, across.imag)]
+    for node in _nodes_beside_centre(body, ray * np.exp(-1j * pair.turn)):
+        terms = [(offset + node + 1, 1, across.real), (offset + node + 1, 2, across.imag)]
         deck.equate(sorted(terms, key=lambda term: -abs(term[2])))
 
 
@@ -346,18 +351,81 @@ def _add_rigid_arc(
     for node in range(len(places)):
         deck.equate([(offset + node, 1, 1.0), (reference, 1, -1.0)])
         deck.equate([(offset + node, 2, 1.0), (reference, 2, -1.0)])
+    _add_spring(deck, reference, pair.index, stiffness, displaced)
+    order = nodes[0].tolist()
+    side = next(i for i in range(4) if {order[i], order[(i + 1) % 4]} == {0, 2})
+    return [f"{elements + i + 1},S{side + 1}" for i in range(count)]
+
+
+def _add_spring(deck: _Deck, reference: int, index: int, stiffness: float, displaced: complex) -> None:
+    """Hold the node of a shaft pin by its spring, N/mm."""
     # The pose holds the pin displaced by F/k; springs start without force, so a force makes up for it.
     for direction in (1, 2):
         deck.springs += [
-            f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING_{pair.index}_{direction}",
+            f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING_{index}_{direction}",
             f"{deck.next_element},{reference}",
-            f"*SPRING, ELSET=SPRING_{pair.index}_{direction}",
+            f"*SPRING, ELSET=SPRING_{index}_{direction}",
             str(direction),
             f"{stiffness:.10e}",
         ]
         deck.next_element += 1
     deck.springs += ["*BOUNDARY", f"{reference},3,3"]
     deck.preload.append((reference, -stiffness * displaced))
-    order = nodes[0].tolist()
-    side = next(i for i in range(4) if {order[i], order[(i + 1) % 4]} == {0, 2})
-    return [f"{elements + i + 1},S{side + 1}" for i in range(count)]
+
+
+def _carry_shaft_pin(deck: _Deck, solution: FullSolution, pair: ContactPair) -> None:
+    """Carry an elastic shaft pin evenly over its cross-section on its spring, without rotation."""
+    model, pose = solution.model, solution.pose
+    body, offset, _ = deck.placed[_body_name(pair)]
+    reference = deck.add_nodes(np.array([model.circle_centre("hole", pair.index, pose)])) + 1
+    displaced = complex(pose.shaft_pin_displacements[pair.index])
+    _add_spring(deck, reference, pair.index, model.drive.hole_stiffness, displaced)
+    nodes, shares = even_support(body)
+    carried = list(zip((offset + 1 + nodes).tolist(), shares.tolist(), strict=True))
+    for direction in (1, 2):
+        deck.equate([(reference, direction, -1.0), *((node, direction, share) for node, share in carried)])
+    # Frictionless contact at a circle has no moment: two nodes keep the pin from turning and carry next to nothing.
+    across = 1j * np.exp(1j * pair.turn)
+    first, second = (offset + node + 1 for node in _nodes_beside_centre(body, 1.0))
+    terms = [(first, 1, across.real), (first, 2, across.imag), (second, 1, -across.real), (second, 2, -across.imag)]
+    deck.equate(sorted(terms, key=lambda term: -abs(term[2])))
+
+
+def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, FloatArray]:
+    """Return some nodes of a round body, and forces on them that stand for one spread evenly over its area.
+
+    Parameters
+    ----------
+    body : BodyMesh
+        Circle about the origin.
+    count : int
+        About so many nodes.
+
+    Returns
+    -------
+    nodes : array of int, shape (k,)
+        Evenly spread; no more than `count`.
+    shares : array, shape (k,)
+        Of the force: areas nearest to each node, resultant through the origin. They sum to one.
+    """
+    areas = area_loads(body)[::2, 0]
+    areas = areas / np.sum(areas)
+    places = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    number = np.arange(count)
+    # A sunflower's seeds have equal areas.
+    seeds = np.abs(places).max() * np.sqrt((number + 0.5) / count) * np.exp(1j * np.pi * (3.0 - np.sqrt(5.0)) * number)
+    _, nearest = cKDTree(body.mesh.doflocs.T).query(np.column_stack([seeds.real, seeds.imag]))
+    nodes = np.unique(nearest)
+    _, owner = cKDTree(body.mesh.doflocs.T[nodes]).query(body.mesh.doflocs.T)
+    nearby = np.bincount(owner, weights=areas, minlength=len(nodes)).astype(float)
+    # Least change that gives the resultant its size and its place.
+    modes = np.vstack([np.ones(len(nodes)), body.mesh.doflocs[:, nodes]])
+    change = np.linalg.lstsq(modes, np.array([1.0, 0.0, 0.0]) - modes @ nearby, rcond=None)[0]
+    return nodes, nearby + change
+
+
+def _nodes_beside_centre(body: BodyMesh, direction: complex) -> tuple[int, int]:
+    """Return the nodes nearest to 0.3 of the radius on both sides of the centre of a round body."""
+    places = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    reach = 0.3 * float(np.abs(places).max()) * direction
+    return int(np.argmin(np.abs(places + reach))), int(np.argmin(np.abs(places - reach)))

@@ -103,26 +103,6 @@ def shaft_pins_yield(drive: Drive) -> bool:
     return shaft is None or shaft.elastic_contact or shaft.seat.kind == "sleeve"
 
 
-def require_rigid_shaft_pins(drive: Drive, model: str) -> None:
-    """Refuse shaft pins that yield at their holes.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    model : str
-        What it is refused by, for the message.
-
-    Raises
-    ------
-    DriveError
-        With the field.
-    """
-    if drive.pin_shaft is not None and shaft_pins_yield(drive):
-        told = f"must be false for {model}, whose shaft pins are rigid circles on springs"
-        raise DriveError([f"pin_shaft.elastic_contact = true (the default): {told}"])
-
-
 def hole_words(drive: Drive, *, rigid_shaft_pins: bool) -> str:
     """Return what to say beside the pressures at the holes of a model; nothing where shaft pins yield as they should."""
     if drive.pin_shaft is None or drive.pin_shaft.elastic_contact:

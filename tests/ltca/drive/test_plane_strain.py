@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ltca.drive.plane_strain import require_plane_strain, require_rigid_shaft_pins
+from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -57,13 +57,6 @@ def test_shorter_rollers_are_refused(paper_cases):
 )
 def test_even_drives_are_taken(fields, paper_cases):
     require_plane_strain(with_fields(paper_cases["CS-6"], fields), "compliance fe")
-
-
-def test_shaft_pins_that_yield_are_refused_by_name_where_they_are_rigid(paper_cases):
-    rigid = paper_cases["CS-1"]
-    require_rigid_shaft_pins(rigid, "the CalculiX deck")
-    with pytest.raises(DriveError, match=r"pin_shaft\.elastic_contact = true .*must be false for the CalculiX deck"):
-        require_rigid_shaft_pins(with_fields(rigid, {"pin_shaft.elastic_contact": True}), "the CalculiX deck")
 
 
 def test_a_file_says_whether_shaft_pins_yield(paper_cases):
