@@ -3,7 +3,7 @@ r"""A round body held along an inner circle, loaded by a patch on its outer one:
 Plane elasticity in Kolosov's potentials (Muskhelishvili, *Some Basic Problems of the Mathematical Theory of Elasticity*,
 § 56–60): with :math:`\varphi = A \ln z + \sum a_n z^n` and :math:`\psi = -\kappa A \ln z + \sum b_n z^n` the harmonics
 :math:`\pm m` of displacement and traction take four coefficients, which the held circle and the load give.
-Beside it what a thin wall, as a beam, bends under a patch.
+Beside it what a thin wall, as a beam, bends under a patch, and what stations far apart miss of what happens across it.
 """
 
 from __future__ import annotations
@@ -140,18 +140,7 @@ def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArr
     boundary = dataset["station_boundary"].values
     points = dataset["station_x"].values + 1j * dataset["station_y"].values
     width, wider = dataset["station_half_width"].values[stations], dataset["wide_half_width"].values
-    numbers = np.unique(boundary).tolist()
-    curves = {number: _between(points[boundary == number]) for number in numbers}
-    thickness = {
-        number: np.min(
-            [
-                np.full(curves[number].size, np.inf),
-                *(_clearance(curves[number], curves[one]) for one in numbers if one != number),
-            ],
-            axis=0,
-        )
-        for number in numbers
-    }
+    curves, thickness = _walls(boundary, points)
     found = np.zeros(len(stations))
     for place, station in enumerate(stations.tolist()):
         number = int(boundary[station])
@@ -169,6 +158,59 @@ def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArr
         bent = (wider[place] ** 2 - width[place] ** 2) / walls[here] ** 2 * length / walls[here]
         found[place] = 3.0 * np.pi / 8.0 * bent / np.log(wider[place] / width[place])
     return np.where(np.isfinite(found), found, 0.0)
+
+
+def missed_between_stations(dataset: xr.Dataset) -> float:
+    r"""Return the part of what crosses the thinnest wall that sums over stations may miss or count twice.
+
+    A load on one side of a wall of thickness h is felt on the other over a length of about h: like :math:`1/(x^2 + h^2)`,
+    with poles at :math:`\pm ih`. Of such a function a sum at places s apart is off by
+
+    .. math:: \coth\frac{\pi h}{s} - 1 = \frac{2}{e^{2\pi h/s} - 1}
+
+    of its integral at most (Trefethen and Weideman, SIAM Review 56, 2014, the trapezoidal rule), by 0.004 where stations are
+    as far apart as the wall is thick.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of coefficients.
+
+    Returns
+    -------
+    float
+        The largest of all stations and walls; zero of bodies with one boundary.
+    """
+    boundary = dataset["station_boundary"].values
+    curves, thickness = _walls(boundary, dataset["station_x"].values + 1j * dataset["station_y"].values)
+    apart, thin = [], []
+    for number, curve in curves.items():
+        # From each station to the next one.
+        apart.append(np.abs(np.roll(curve, -1) - curve).reshape(-1, PER_STATION).sum(axis=1))
+        thin.append(np.minimum(thickness[number], np.roll(thickness[number], -1)).reshape(-1, PER_STATION).min(axis=1))
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        missed = 2.0 / np.expm1(2.0 * np.pi * np.concatenate(thin) / np.concatenate(apart))
+    # Walls without thickness are left to other laws.
+    return float(np.max(missed[np.isfinite(missed)], initial=0.0))
+
+
+def _walls(
+    boundary: NDArray[np.integer], points: ComplexArray
+) -> tuple[dict[int, ComplexArray], dict[int, FloatArray]]:
+    """Return points along each boundary, `PER_STATION` for each station, and how far the next boundary is from them, mm."""
+    numbers = np.unique(boundary).tolist()
+    curves = {number: _between(points[boundary == number]) for number in numbers}
+    thickness = {
+        number: np.min(
+            [
+                np.full(curves[number].size, np.inf),
+                *(_clearance(curves[number], curves[one]) for one in numbers if one != number),
+            ],
+            axis=0,
+        )
+        for number in numbers
+    }
+    return curves, thickness
 
 
 def _between(points: ComplexArray) -> ComplexArray:
