@@ -103,27 +103,38 @@ def _balance(modes: FloatArray, area: FloatArray, resultant: FloatArray) -> Floa
 def order_nodes(body: BodyMesh) -> IntArray:
     """Return an elimination order of the nodes that keeps the factor sparse.
 
-    Nested dissection by METIS where the extra ``fast`` is installed. Else minimum degree of the graph of the vertices,
-    which SuperLU finds while it factorises a scalar matrix of that graph, each mid-side node just before the first of its
-    edge's ends: a quarter of the nodes to order, and a tenth less fill than minimum degree of all nodes.
+    Nested dissection by METIS where the extra ``fast`` is installed and copes with the mesh. Else minimum degree of the
+    graph of the vertices, which SuperLU finds while it factorises a scalar matrix of that graph, each mid-side node just
+    before the first of its edge's ends: a quarter of the nodes to order, and a tenth less fill than minimum degree of all
+    nodes.
     """
-    mesh = body.mesh
     try:
-        import pymetis
-    except ImportError:
-        graph = _graph(mesh.t, mesh.nvertices)
-        graph.data[:] = -1.0
-        graph.setdiag(PROXY_DIAGONAL)
-        factor = spla.splu(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
-        place = factor.perm_c.astype(np.float64)
-        if body.order == 2:
-            place = np.concatenate([place, place[mesh.facets].min(axis=0) - 0.5])
-        return np.argsort(place, kind="stable").astype(np.int64)
+        return _nested_dissection(body)
+    except (ImportError, RuntimeError):
+        # METIS not there, or out of its depth (its C++ exceptions arrive as RuntimeError: "unknown exception").
+        return _minimum_degree(body)
+
+
+def _nested_dissection(body: BodyMesh) -> IntArray:
+    import pymetis
+
     graph = _graph(element_nodes(body), body.node_count)
     graph.setdiag(0.0)
     graph.eliminate_zeros()
     order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
     return np.asarray(order, dtype=np.int64)
+
+
+def _minimum_degree(body: BodyMesh) -> IntArray:
+    mesh = body.mesh
+    graph = _graph(mesh.t, mesh.nvertices)
+    graph.data[:] = -1.0
+    graph.setdiag(PROXY_DIAGONAL)
+    factor = spla.splu(graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    place = factor.perm_c.astype(np.float64)
+    if body.order == 2:
+        place = np.concatenate([place, place[mesh.facets].min(axis=0) - 0.5])
+    return np.argsort(place, kind="stable").astype(np.int64)
 
 
 def _graph(corners: IntArray, count: int) -> sp.csc_matrix:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -106,6 +107,8 @@ def derive_coefficients(
     shapes = DriveShapes.of_drive(nominal, core_radius=core_radius, race_bore_radius=race_bore_radius)
     places = DiscStations.of_disc(shapes.disc, stations)
     require_disc_memory(shapes.disc, places, size, processes)
+    if (coarse_walls := places.coarse_walls) is not None:
+        print(f"warning: {drive.name}: {coarse_walls}", file=sys.stderr)
     bodies = _Bodies(
         shapes=shapes,
         places=places,

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.shapes import Curve, DiscShape, Shape
+from ltca.reading.held_ring import LARGEST_DISTANCE, missed_between_stations
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -124,6 +125,19 @@ class DiscStations:
             points=np.concatenate([curve.points(own) for curve, own in zip(shape.curves, parameters, strict=True)]),
             normals=np.concatenate([curve.normals(own) for curve, own in zip(shape.curves, parameters, strict=True)]),
             half_width=np.repeat(widths, numbers),
+        )
+
+    @property
+    def coarse_walls(self) -> str | None:
+        """What to know before anything is derived at stations too far apart for a wall; None where they follow all walls."""
+        missed, wall, distance = missed_between_stations(self.boundary, self.points)
+        if missed < 1.0:
+            return None
+        times = distance / (LARGEST_DISTANCE * wall)
+        return (
+            f"stations {distance:.3g} mm apart on a wall of {wall:.3g} mm do not follow what happens across it: loads and "
+            f"stresses there are coarse, and two laws of the stresses say nothing; {times:.2g} times as many "
+            f"(cyclo derive --stations) stand at most {LARGEST_DISTANCE * wall:.3g} mm apart"
         )
 
     def resultants(self) -> FloatArray:

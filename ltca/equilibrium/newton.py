@@ -302,7 +302,9 @@ class Search:
             high[far], high_slope[far] = fraction[far], end[far]
             back = np.nonzero(far)[0]
             width = high[back] - low[back]
-            place = -low_slope[back] / (high_slope[back] - low_slope[back])
+            rise = high_slope[back] - low_slope[back]
+            # With friction a direction may lead uphill from the start, as steeply as at its end.
+            place = np.divide(-low_slope[back], rise, out=np.zeros(back.size), where=rise != 0.0)
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
             again = self.evaluate(rows[back], pose[back], Start.onward(response).take(back))

@@ -169,7 +169,15 @@ def solve_at_output(
         except ConvergenceError:
             lost = strength
             if step <= LEAST_STRENGTH_STEP:
-                raise _jam(drives, reached, lost, loads, found.response.pin_load.sum(axis=1), failure) from None
+                raise _jam(
+                    drives,
+                    np.atleast_1d(crank_angle),
+                    reached,
+                    lost,
+                    loads,
+                    found.response.pin_load.sum(axis=1),
+                    failure,
+                ) from None
             step *= 0.5
             continue
         reached = strength
@@ -180,6 +188,7 @@ def solve_at_output(
 
 def _jam(
     drives: Drive | Sequence[Drive],
+    crank_angle: FloatArray,
     reached: float,
     lost: float,
     without: FloatArray,
@@ -189,7 +198,8 @@ def _jam(
     """Return what to say of positions that balance up to a part of their friction: that they jam, and at which coefficients.
 
     Friction goes with the loads. What is left of a unit load's moment falls as friction rises, and the loads grow by its
-    inverse; where that comes down to nothing before the whole friction counts no load whatever balances the torque.
+    inverse; where that comes down to nothing before the whole friction counts no load whatever balances the torque. What
+    the search made of the whole friction at once (that the teeth slip) tells nothing of that.
     """
     row = int(np.argmax(grown / np.maximum(without, 1e-300)))
     each = [drives] if isinstance(drives, Drive) else list(drives)
@@ -203,8 +213,8 @@ def _jam(
     ended = "the drive jams" if grown[row] >= JAMMED * without[row] else "no balance was found"
     jammed = ConvergenceError(
         f"{ended} between {reached:.1%} and {lost:.1%} of its friction ({told}): wheel pins carry {without[row]:.4g} N "
-        f"without friction, {grown[row]:.4g} N at {reached:.1%} of it (position {row} of {grown.size}), and nothing balances "
-        f"beyond; {failure}"
+        f"without friction, {grown[row]:.4g} N at {reached:.1%} of it at crank angle {crank_angle[row]:.6g} rad (position {row} "
+        f"of {grown.size}), and nothing balances beyond"
     )
     jammed.history = failure.history
     return jammed

@@ -80,6 +80,24 @@ def test_orders_of_elimination_agree(ring, monkeypatch):
     np.testing.assert_allclose(without, with_metis, atol=1e-11 * np.abs(with_metis).max())
 
 
+def test_a_mesh_that_metis_gives_up_on_is_ordered_without_it(ring, monkeypatch):
+    """A slender wall ended as "unforeseen RuntimeError: Caught an unknown exception!" of its C++."""
+    pymetis = pytest.importorskip("pymetis")
+    body, stiffness, loads = ring
+    expected = condense_body(body, stiffness, loads).compliance
+    asked = []
+
+    def gives_up(graph):
+        asked.append(graph)
+        raise RuntimeError("Caught an unknown exception!")
+
+    monkeypatch.setattr(pymetis, "nested_dissection", gives_up)
+    found = condense_body(body, stiffness, loads).compliance
+    assert len(asked) == 1
+    # Another order of the same elimination: round-off, as above.
+    np.testing.assert_allclose(found, expected, atol=1e-11 * np.abs(expected).max())
+
+
 def test_resultants_are_forces_and_moments(ring):
     body, stiffness, loads = ring
     condensed = condense_body(body, stiffness, loads, centre=2.0 - 1.0j)

@@ -15,7 +15,7 @@ from ltca.reading.coefficient_laws import (
     station_resultants,
     unstated_laws,
 )
-from ltca.reading.held_ring import wall_bending
+from ltca.reading.held_ring import LARGEST_DISTANCE, missed_between_stations, wall_bending
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 RADIUS, COUNT, THICKNESS = 20.0, 24, 11.8
@@ -181,6 +181,25 @@ def test_a_thin_wall_may_bend_between_a_patch_and_a_wider_one():
         # the circumference by chords, and distances by points a twelfth of a station apart
         np.testing.assert_allclose(found, expected, rtol=2e-3)
     assert np.all(wall_bending(made(), np.array([3, 17])) == 0.0)  # one boundary, no wall
+
+
+def test_what_stations_miss_of_a_function_with_a_pole_a_wall_away():
+    """Σ s/(h² + (x + ks)²) is at most coth(πh/s) of the integral π/h: by the sum itself, on a ring nearly straight."""
+    for thickness in (1.0, 2.0, 6.0):
+        data = ring(thickness)
+        points = data["station_x"].values + 1j * data["station_y"].values
+        missed, wall, distance = missed_between_stations(data["station_boundary"].values, points)
+        # From the outer wall, whose stations are farther apart; by chords a twelfth of a station long.
+        assert wall == pytest.approx(thickness, rel=2e-3)
+        assert distance == pytest.approx(2.0 * np.pi * RADIUS / COUNT, rel=2e-4)
+        places = distance * np.arange(-200_000, 200_001)
+        summed = distance * np.sum(thickness / np.pi / (thickness**2 + places**2))
+        # What lies beyond 200,000 stations, and the 2e-3 above.
+        assert missed == pytest.approx(summed - 1.0, rel=4e-3, abs=2e-5)
+    one = made()
+    points = one["station_x"].values + 1j * one["station_y"].values
+    assert missed_between_stations(one["station_boundary"].values, points)[0] == 0.0
+    assert 2.0 / np.expm1(2.0 * np.pi / LARGEST_DISTANCE) == pytest.approx(1.0, rel=1e-12)
 
 
 def test_coefficients_of_a_thin_wall_are_not_refused_for_its_bending():
