@@ -109,14 +109,14 @@ def size_of_overload(largest: Callable[[float], float], discs: int) -> float | N
     """
     goal, size = OVERLOAD / discs, SIZES[0]
     low, high = 0.0, math.inf
-    while high - low > 0.01 * size:
+    while high - low > max(0.01 * size, 0.001):
         found = largest(size) - 1.0 / discs
         if abs(found / goal - 1.0) < 0.01:
             break
         low, high = (size, high) if found < goal else (low, size)
-        size *= goal / max(found, 0.1 * goal)
-        if size > LARGEST and high == math.inf:
+        if low >= LARGEST:
             return None
+        size = min(size * goal / max(found, 0.1 * goal), LARGEST)
         if not low < size < high:
             size = 0.5 * (low + high)
     return size

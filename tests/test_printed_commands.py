@@ -90,7 +90,7 @@ LEFT_OUT = {
     r"--load-rating \"5 kN\"$": "an option behind the name of its command",
     r" --write\b": "would replace tests/budget.toml; the same without it is run",
     r"validation\.levels\.other_codes": "asks codes that are not everywhere, and would replace their stored answers",
-    r"mutants\.py": "its map alone takes longer than all tests; tests/benchmarks has its parts",
+    r"mutants\.py": "its map alone takes longer than all tests; tests/test_mutants.py runs its parts",
     r"random_drives\.py --count N$": "a usage; its number is a placeholder",
 }
 """Commands that no test runs, and why; each is parsed all the same. So are mentions: `cyclo run`, without what it needs."""
