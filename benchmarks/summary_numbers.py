@@ -123,7 +123,7 @@ def main() -> None:
                         site, shipped if shipped.exists() else own, arguments.positions, folder / f"{side}{number}"
                     )
                 )
-            print(f"\n#### `{drive}`\n")
+            print(f"\n#### `{drive}`\n", flush=True)
             if found[0] is None or found[1] is None:
                 which = arguments.before if found[0] is None else arguments.after or "the tree"
                 print(f"{which} does not read it.")

@@ -15,6 +15,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
+import math
 import resource
 import tempfile
 import time
@@ -37,7 +38,7 @@ def cpu_seconds() -> float:
 
 
 def measure(study: Study, where: Workers, folder: StudyFolder) -> tuple[float, float]:
-    """Run the study and return its positions per second, whole and steady."""
+    """Run the study and return its positions per second, whole and steady (nan where each worker had one batch alone)."""
     workers = max(where.processes, 1)
     began, load = time.perf_counter(), os.getloadavg()[0]
     cpu = cpu_seconds()
@@ -51,7 +52,7 @@ def measure(study: Study, where: Workers, folder: StudyFolder) -> tuple[float, f
             steady += len(result.messages)
     ended = time.perf_counter()
     positions = study.positions
-    whole, rate = solved * positions / (ended - began), steady * positions / (ended - first)
+    whole, rate = solved * positions / (ended - began), steady * positions / (ended - first) if steady else math.nan
     used = 1e6 * (cpu_seconds() - cpu) / (solved * positions)
     name = where.scheduler or f"{where.processes} worker{'s' if where.processes > 1 else ''}"
     print(f"  {name:<24}{whole:>10.0f}{rate:>10.0f}{used:>12.0f}{load:>10.1f} → {os.getloadavg()[0]:.1f}")

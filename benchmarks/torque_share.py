@@ -14,6 +14,7 @@ common one by a tenth of the wind-up T/(n K).
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import time
 from collections.abc import Callable, Mapping
@@ -103,17 +104,22 @@ def spring_shares(drive: Drive, angle: FloatArray, torque: float) -> FloatArray:
 def size_of_overload(largest: Callable[[float], float], discs: int) -> float | None:
     """Return the size in µm at which the largest share is 1.1/n within 1 % of the overload, None beyond `LARGEST`.
 
-    Shares grow nearly in proportion to errors: the size is scaled until it fits.
+    Shares grow nearly in proportion to errors: the size is scaled until it fits. Where contacts come and go they jump, and
+    halving what is left finds the size at which they pass it.
     """
     goal, size = OVERLOAD / discs, SIZES[0]
-    for _ in range(20):
+    low, high = 0.0, math.inf
+    while high - low > max(0.01 * size, 0.001):
         found = largest(size) - 1.0 / discs
         if abs(found / goal - 1.0) < 0.01:
-            return size
-        size *= min(goal / found, 10.0)
-        if size > LARGEST:
+            break
+        low, high = (size, high) if found < goal else (low, size)
+        if low >= LARGEST:
             return None
-    raise ValueError(f"no size found for a largest share of {goal + 1.0 / discs:g}")
+        size = min(size * goal / max(found, 0.1 * goal), LARGEST)
+        if not low < size < high:
+            size = 0.5 * (low + high)
+    return size
 
 
 def print_errors(drive: Drive, angle: FloatArray, torque: float) -> None:

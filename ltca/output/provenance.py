@@ -17,6 +17,7 @@ from pathlib import Path
 
 from ltca.errors import FaultError
 from ltca.output.files import whole_file
+from ltca.output.regular_files import read_regular
 
 SOURCES = (".py", ".toml", ".json", ".nc")
 
@@ -67,7 +68,7 @@ def _package_hash(root: Path) -> str:
         {"python": sys.version.encode(), "this file": Path(__file__).read_bytes(), **sources},
     )
     with suppress(OSError, RuntimeError, ValueError):  # no home, no such file, no text
-        kept = (cache_home() / "code" / raw).read_text(encoding="ascii")
+        kept = read_regular(cache_home() / "code" / raw, 64).decode("ascii")
         if re.fullmatch("[0-9a-f]{64}", kept):
             return kept
     answer = _hash_of({name: _meaning(name, content) for name, content in sources.items()})

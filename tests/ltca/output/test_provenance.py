@@ -1,5 +1,6 @@
 """The hash of the code: of syntax trees and relative places, nothing else."""
 
+import os
 import shutil
 import sys
 
@@ -101,6 +102,15 @@ def test_the_cache_is_only_a_cache(package, tmp_path, monkeypatch):
     assert kept[0].read_text() == whole
     monkeypatch.setenv("XDG_CACHE_HOME", str(kept[0]))  # a file where a folder should be
     assert package("without", WRITTEN) == first
+
+
+def test_a_pipe_in_the_place_of_what_is_kept_is_not_waited_for(package, tmp_path):
+    first = package("here", WRITTEN)
+    (kept,) = (tmp_path / "cache" / "cyclo" / "code").iterdir()
+    kept.unlink()
+    os.mkfifo(kept)
+    assert package("there", WRITTEN) == first
+    assert kept.is_file()
 
 
 def test_comments_in_data_change_nothing(package, tmp_path):
