@@ -13,6 +13,7 @@ from ltca.reading.arguments import (
     count_argument,
     default_folder,
     quantity_argument,
+    tell_unit_mistakes,
 )
 
 if TYPE_CHECKING:
@@ -81,6 +82,7 @@ def execute(arguments: argparse.Namespace) -> int:
         raise DriveError([f"--chord {arguments.chord:g} mm: is for --format stl, {arguments.format} is exact"])
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select([arguments.case] if arguments.case else None).items()))
+    tell_unit_mistakes([drive])
     _require_libraries(arguments.format)
     parts = make_parts(drive, case, arguments.part, disc=arguments.disc, compensation=arguments.compensate)
     for part in parts:

@@ -62,8 +62,10 @@ def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
     CycloError
         When the file is broken or has no such case.
     """
+    from ltca.reading.arguments import tell_unit_mistakes
     from ltca.reading.drive_file import load_drive
 
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select_warm([arguments.case] if arguments.case else None).items()))
+    tell_unit_mistakes([file.cases[case]])
     return file, case, drive

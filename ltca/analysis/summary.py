@@ -140,7 +140,7 @@ def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, floa
     """Free play of the output with every clearance over a turn: the largest, which is what is judged, and the least."""
     try:
         found = play_over_a_turn(discs)
-    except ConvergenceError:  # nothing stops the wheel: there is no play to tell
+    except ConvergenceError:  # nothing stops the wheel, or no pose was found: there is no play to tell
         return dict.fromkeys(FREE_PLAY, np.nan)
     scale = abs(drive.output_per_wheel_angle) * ARCMIN
     return dict(zip(FREE_PLAY, (scale * found.largest, scale * found.least, found.preloaded), strict=True))

@@ -17,6 +17,7 @@ from ltca.reading.arguments import (
     count_argument,
     default_folder,
     quantity_argument,
+    tell_unit_mistakes,
 )
 
 if TYPE_CHECKING:
@@ -160,6 +161,7 @@ def execute(arguments: argparse.Namespace) -> int:
     check_compliance(arguments)
     file = load_drive(arguments.drive)
     cases = file.select_warm(arguments.case)
+    tell_unit_mistakes(file.cases[name] for name in cases)
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)
     from ltca.analysis.memory_need import require_room_for_parts

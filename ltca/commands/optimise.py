@@ -16,6 +16,7 @@ from ltca.reading.arguments import (
     add_page_argument,
     count_argument,
     default_folder,
+    tell_unit_mistakes,
 )
 
 if TYPE_CHECKING:
@@ -80,6 +81,7 @@ def execute(arguments: argparse.Namespace) -> int:
     out = arguments.out or default_folder(name, "optimise")
     require_folder(out)
     engine = compliance_of(arguments)
+    tell_unit_mistakes([file.cases[case]])
     problem = _problem(file.cases[case], arguments)
     figures = figure_files(arguments.figures, "pareto" if len(problem.aims) == 2 else "search")
     page = [] if arguments.no_page else ["report.html"]

@@ -10,7 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltca.commands.compliance_arguments import add_compliance_arguments
-from ltca.reading.arguments import add_figures_argument, add_out_argument, add_page_argument, count_argument
+from ltca.reading.arguments import (
+    add_figures_argument,
+    add_out_argument,
+    add_page_argument,
+    count_argument,
+    tell_unit_mistakes,
+)
 
 if TYPE_CHECKING:
     from ltca.studies.execution.storage import StudyFolder
@@ -169,6 +175,7 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
     warning = sampling_warning(study.cases[0][1], position_angles(study.positions), refined=False)
     if warning is not None:
         tell(f"warning: {warning}")
+    tell_unit_mistakes(drive for _, drive in study.cases)
     with progress("samples", study.design.samples) as bar:
 
         def advance(samples: int, rate: float) -> None:

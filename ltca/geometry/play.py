@@ -11,7 +11,8 @@ farthest pose may lie where an arc and the turning have one tangent, which is no
 earlier poses stay bounds and close it in. The programmes are solved by the dual simplex method, all positions at once.
 
 The wheel is common to all discs: the play is what the angles of all of them have in common. Where parts overlap in every pose the
-drive is preloaded and has no free play; what it yields is the loaded analysis's.
+drive is preloaded: parts that overlap where they do so least keep that overlap, and the play is what the others leave, none where
+they hold the wheel themselves. What a drive yields beyond is the loaded analysis's.
 """
 
 from __future__ import annotations
@@ -69,7 +70,7 @@ class Play:
     forward, backward : array, shape (positions,)
         Wheel angles at which it stops, counter-clockwise and clockwise, rad; alike where it is not free.
     preloaded : array of bool, shape (positions,)
-        Whether parts overlap in every pose.
+        Whether parts overlap in every pose; forward and backward are then what those leave that overlap no more than they must.
     """
 
     forward: FloatArray
@@ -178,13 +179,32 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     for disc in discs:
         pose, left = _Programme(disc.take(rows), angle[rows], room[rows]).farthest(sense)
         turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
+        pressed = np.flatnonzero(np.any(left.reshape(2, -1) > CLOSED, axis=0))
+        if pressed.size:
+            turned[:, pressed] = _beside_preload(
+                disc, angle[pressed], room[pressed], pose.reshape(2, -1, RIGID)[:, pressed]
+            )
+            preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
-        preloaded |= np.any(left.reshape(2, -1) > CLOSED, axis=0)
     # Of discs that are free by themselves no angle may suit all.
     preloaded |= (backward - forward) * max(_reach(disc) for disc in discs) > GAIN
-    shut = preloaded | (forward < backward)
+    shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
+
+
+def _beside_preload(disc: ContactGeometry, angle: FloatArray, room: FloatArray, poses: FloatArray) -> FloatArray:
+    """Return the farthest wheel angles of a disc that is pressed in every pose, forward and backward, shape (2, positions).
+
+    Rollers that are too thick press a disc and leave its flank as free as it was: pairs keep the overlap that they have in the
+    middle of the two poses with the least of it, and the wheel turns in what the others leave.
+    """
+    rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
+    programme = _Programme(disc.take(rows), angle[rows], room[rows])
+    gap, _, _ = programme.gaps(np.arange(rows.size), np.tile(poses.mean(axis=0), (2, 1)))
+    programme.room = programme.room + RELIEF + np.maximum(-gap, 0.0)
+    pose, _ = programme.farthest(sense)
+    return np.asarray(pose[:, WHEEL_ANGLE].reshape(2, -1))
 
 
 def largest_overlap(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray) -> FloatArray:
@@ -256,7 +276,7 @@ class _Programme:
     def __init__(self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None) -> None:
         place = geometry.placement
         self.geometry, self.angle = geometry, angle
-        self.room = RELIEF + (np.zeros(angle.size) if room is None else room)
+        self.room = RELIEF + (np.zeros((angle.size, 1)) if room is None else room[:, None])
         self.lever = np.array([1.0, 1.0, _reach(geometry), _reach(geometry)])
         self.bound = STEP * min(float(place.wheel_pin_radii.min()), float(place.eccentricity.min()))
         self.pitch = np.pi / place.reduction_ratio
@@ -277,7 +297,7 @@ class _Programme:
         flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=self.known.take(rows))
         gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
         slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever
-        return gap + self.room[rows, None], slope, gap.shape[1] - flank.approach.shape[1]
+        return gap + self.room[rows], slope, gap.shape[1] - flank.approach.shape[1]
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and what parts overlap there, mm."""

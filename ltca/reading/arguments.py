@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ltca.drive.parts import Drive
 
 DRIVE = "drive file (TOML), or 'paper' for the shipped drive"
 LONGEST_PART = 255
@@ -282,3 +286,17 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
         return number
 
     return read
+
+
+def tell_unit_mistakes(drives: Iterable[Drive]) -> None:
+    """Point out on stderr what drives have that no drive has, once each: values that were probably meant in another unit.
+
+    Parameters
+    ----------
+    drives : iterable of Drive
+        As they are written.
+    """
+    from ltca.drive.unit_mistakes import unit_warnings
+
+    for text in dict.fromkeys(warning for drive in drives for warning in unit_warnings(drive)):
+        print(f"warning: {text}", file=sys.stderr)

@@ -20,7 +20,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.values import find_values
 from ltca.drive.fields import field_kinds, read_field
-from ltca.drive.members.judgement import Check, Value
+from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
 from ltca.errors import CycloError
@@ -122,7 +122,7 @@ def advise(
         else:
             continue
         for quantity, check in wanted.items():
-            before, after = base.get(quantity), changed.get(quantity)
+            before, after = _judged(base, check), _judged(changed, check)
             if not before or not after or before * after <= 0.0:
                 continue
             elasticity = log(after / before) / log(1.0 + step)
@@ -167,10 +167,17 @@ def _driver(drive: Drive, one: _Input, elasticity: float, check: Check, part: fl
     return Driver(input=one.name, elasticity=elasticity, change=told, factor=factor)
 
 
-def _values(drive: Drive, crank_angle: FloatArray, torque: float | None) -> dict[str, float | None]:
+def _values(drive: Drive, crank_angle: FloatArray, torque: float | None) -> dict[str, Value]:
     analysis = analyse(drive, crank_angle, torque)
-    found: list[Value] = find_values(analysis, summarise(analysis))
-    return {value.quantity: value.value for value in found}
+    return {value.quantity: value for value in find_values(analysis, summarise(analysis))}
+
+
+def _judged(values: Mapping[str, Value], check: Check) -> float | None:
+    """Return what the limit of a check goes by."""
+    value = values.get(check.value.quantity)
+    if value is None or check.limit is None:
+        return None if value is None else value.value
+    return judged_by(check.limit, value).value
 
 
 def _inputs(drive: Drive, torque: float) -> list[_Input]:

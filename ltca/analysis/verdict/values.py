@@ -139,7 +139,9 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
         quantity="backlash_output",
         value=play,
         part=preload_words(summary["preloaded_part_of_turn"] or 0.0),
-        reason="nothing stops the wheel within half a pin pitch" if play is None else "",
+        reason=""
+        if play is not None
+        else "no pose of rigid parts stops the wheel within half a pin pitch, or none was found",
         least=summary["min_backlash_output_arcmin"],
     )
     yield Value(quantity="mean_loaded_pins", value=summary["mean_loaded_pins"])

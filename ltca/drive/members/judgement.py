@@ -195,7 +195,7 @@ def judge(
         if demanded is not None and value.quantity in demanded:
             found.append(demanded[value.quantity])
         judged = value if found or not lacking else replace(value, reason=lacking)
-        checks += [Check(value=_judged_by(limit, judged), limit=limit, asked=limit in own) for limit in found] or [
+        checks += [Check(value=judged_by(limit, judged), limit=limit, asked=limit in own) for limit in found] or [
             Check(value=judged, limit=None)
         ]
     told = {value.quantity for value in values} | {_BOTH.get(value.quantity) for value in values}
@@ -208,7 +208,16 @@ def judge(
     return checks
 
 
-def _judged_by(limit: Limit, value: Value) -> Value:
+def judged_by(limit: Limit, value: Value) -> Value:
+    """Return the value that a limit goes by: the least of what has a range where it is a lower limit.
+
+    Parameters
+    ----------
+    limit : Limit
+        Upper or lower.
+    value : Value
+        Largest, and least where there is a range.
+    """
     if limit.sense == "max" or value.least is None:
         return value
     return replace(value, value=value.least, part=", ".join(filter(None, ("least", value.part))))

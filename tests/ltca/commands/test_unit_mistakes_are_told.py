@@ -1,0 +1,28 @@
+"""Values in a unit nobody meant are pointed out by every command, not by `run` and `check` alone."""
+
+import re
+
+import pytest
+
+from ltca.commands.program import main
+from ltca.reading.drive_file import shipped_drive
+
+COMMANDS = {
+    "curves": ["--turns", "1", "--no-page"],
+    "tolerance": ["--samples", "2", "--positions", "2", "--no-page"],
+    "export": ["--format", "csv", "--part", "disc"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", COMMANDS)
+def test_degrees_as_radians_are_pointed_out(command, tmp_path, capsys):
+    """`tolerance` took phases = [0, 180] without a word."""
+    path = tmp_path / "drive.toml"
+    text = shipped_drive("robot-joint")
+    changed = re.sub(r"phases = .*", "phases = [0.0, 180.0]", text)
+    assert changed != text
+    path.write_text(changed, encoding="utf-8")
+    main([command, str(path), *COMMANDS[command], "--out", str(tmp_path / "out")])
+    out = capsys.readouterr()
+    assert (out.err + out.out).count("phases") >= 1
