@@ -191,6 +191,12 @@ def test_what_is_kept_keeps_its_walls_and_comes_from_stock():
     } <= stock
 
 
+def test_backlash_that_is_asked_is_judged_in_minutes_of_arc():
+    requirements = parse_requirements(PAPER.replace("[shop]", 'backlash = "0.05 deg"\n[shop]') + STEEL)
+    (demand,) = (one for one in find_demands(requirements) if one.quantity == "backlash_output")
+    assert demand.value == pytest.approx(3.0, rel=1e-12)
+
+
 @pytest.mark.parametrize("judged", [True, False])
 def test_of_flanks_in_one_room_the_least_pressed_is_kept(judged):
     """Pins of different sizes that end at the same radius, for two eccentricities: whether a limit is set on pressure or none."""
