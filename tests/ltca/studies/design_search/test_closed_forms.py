@@ -17,7 +17,7 @@ from ltca.studies.design_search.closed_forms import (
     lives_by_loads,
     shape_values,
 )
-from ltca.studies.design_search.demands import find_demands
+from ltca.studies.design_search.demands import find_demands, written_limits
 from ltca.studies.design_search.enumeration import _different, enumerate_candidates, teeth
 from ltca.studies.design_search.refinement import CONTINUOUS, _between, most_rollers
 from ltca.studies.design_search.requirements import parse_requirements
@@ -189,6 +189,13 @@ def test_what_is_kept_keeps_its_walls_and_comes_from_stock():
     assert {
         (2.0 * r, long) for r, long in zip(found.sizes.roller_radius, found.sizes.roller_length, strict=True)
     } <= stock
+
+
+def test_backlash_that_is_asked_is_judged_in_minutes_of_arc():
+    requirements = parse_requirements(PAPER.replace("[shop]", 'backlash = "0.05 deg"\n[shop]') + STEEL)
+    (demand,) = (one for one in find_demands(requirements) if one.quantity == "backlash_output")
+    (limit,) = (one for one in written_limits(requirements).values() if one.quantity == "backlash_output")
+    assert (demand.value, limit.value) == pytest.approx((3.0, 3.0), rel=1e-12)
 
 
 @pytest.mark.parametrize("judged", [True, False])
