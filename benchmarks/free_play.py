@@ -5,8 +5,8 @@ output on half-spaces, and the wheel turns between. Where that is too little to 
 within 1 % or 0.005′ of the free play. Flanks of equal offsets have no gap where they have no lever: pins there touch first, and a
 millionth of the torque still presses them by tenths of a nanometre, which are hundredths of an arcminute of the wheel; what they
 turn goes on falling with the torque, down to what can be balanced. "Settling" is such a one: between the free play and the
-play of parts that may overlap as much as they do under that load. What counts for all of them, those without balance too, is the
-limit of loads that vanish (`ltca.testing.practical_drives.light_limit`): the free play by the same bound, or it is told "wrong".
+play of parts that may overlap as much as they do under that load. For these
+the limit of loads that vanish (`ltca.testing.practical_drives.light_limit`, a bound) has to be the free play by 1 % or 0.005′.
 """
 
 from __future__ import annotations

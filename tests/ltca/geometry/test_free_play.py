@@ -167,7 +167,7 @@ def test_loads_that_vanish_end_at_the_free_play(seed):
 def test_loads_of_a_millionth_turn_practical_drives_as_far(seed):
     """1 % or 0.005′; where pins with next to no lever touch first the load goes on, as far as its overlaps allow.
 
-    The limit of loads that vanish is within 1 % or 0.005′ of all, or the outcome is "wrong" (`Comparison`).
+    Of these the limit of loads that vanish is within 1 % or 0.005′ of the free play, or the outcome is "wrong" (`Comparison`).
     """
     found = compare_with_load(seed)
     assert not [one for one in found if one.outcome in ("wrong", "not balanced")], found
