@@ -37,7 +37,7 @@ CODE = re.compile(r"``([^`]+)``|`([^`]+)`")
 FENCE = re.compile(r"```(\w*)\n(.*?)```", re.DOTALL)
 COMMAND = re.compile(r"(?:\.venv/bin/)?(?:cyclo|python3?)\s+\S")
 PLACEHOLDERS = {"DRIVE": "paper", "REQUIREMENTS.toml": "requirements.toml", "FILE": "file.nc", "NAME": "CS-1", "N": "1",
-                "K": "0", "C": "0.1", "H": "0.1", "DIR": "out", "COMMAND": "run"}  # fmt: skip
+                "K": "0", "C": "0.1", "H": "0.1", "DIR": "out", "φ": "0.5", "COMMAND": "run"}  # fmt: skip
 """What stands in usage lines for a value."""
 
 READERS = {
