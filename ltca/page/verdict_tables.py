@@ -70,7 +70,7 @@ def verdict_tables(checks: Checks) -> list[Table]:
     return found
 
 
-def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, float]:
+def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, bool, float]:
     """What fails comes first, then the least safety."""
     keys = [urgency(check) for check in line[1].values()]
     return min(failed for failed, _ in keys), min(safety for _, safety in keys)

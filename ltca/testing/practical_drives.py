@@ -359,7 +359,7 @@ def pair_approaches(
     )
 
 
-def _limit(discs: list[ContactGeometry], angle: FloatArray) -> float:
+def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
     """Between the limits of vanishing torques of either sense, of all discs together, rad."""
     ends = []
     for sense in (1, -1):

@@ -68,9 +68,10 @@ def verdict_line(checks: Sequence[Check]) -> str:
     return told + (f"; {failed} of {len(judged)} checks fail" if failed > 1 else "")
 
 
-def urgency(check: Check) -> tuple[bool, float]:
-    """Return a key that puts what fails first, then the least safety; margins without one come last."""
-    return not check.fails, float("inf") if check.safety is None else check.safety
+def urgency(check: Check) -> tuple[bool, bool, float]:
+    """Return a key that puts what fails first, the drive before how finely it was looked at, then the least safety."""
+    of_sampling = check.value.quantity == "distinct_mesh_phases"
+    return not check.fails, of_sampling, float("inf") if check.safety is None else check.safety
 
 
 def _symbol(unit: str) -> str:
