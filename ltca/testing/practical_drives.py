@@ -6,6 +6,7 @@ no clearance, equal radii, full and hundredth torque.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -359,7 +360,7 @@ def pair_approaches(
     )
 
 
-def _limit(discs: list[ContactGeometry], angle: FloatArray) -> float:
+def _limit(discs: Sequence[ContactGeometry], angle: FloatArray) -> float:
     """Between the limits of vanishing torques of either sense, of all discs together, rad."""
     ends = []
     for sense in (1, -1):
