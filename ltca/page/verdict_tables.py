@@ -71,9 +71,9 @@ def verdict_tables(checks: Checks) -> list[Table]:
 
 
 def _urgency(line: tuple[Any, dict[str, Check]]) -> tuple[bool, bool, float]:
-    """What fails comes first, then the least safety."""
-    keys = [urgency(check) for check in line[1].values()]
-    return min(failed for failed, _ in keys), min(safety for _, safety in keys)
+    """What fails in any case comes first, then the least safety of all."""
+    failed, sampling, safety = zip(*(urgency(check) for check in line[1].values()), strict=True)
+    return min(failed), min(sampling), min(safety)
 
 
 def _by_check(checks: Checks, wanted: Any) -> dict[tuple[str, str, str], dict[str, Check]]:

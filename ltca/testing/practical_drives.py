@@ -7,6 +7,7 @@ no clearance, equal radii, full and hundredth torque.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
