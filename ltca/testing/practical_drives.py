@@ -7,7 +7,6 @@ no clearance, equal radii, full and hundredth torque.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
