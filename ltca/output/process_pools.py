@@ -33,6 +33,8 @@ from ltca.output.processes import interrupts_held
 
 PREFIX = "cyclo-pool-"
 LOCK = "lock"
+SHORT_PLACE, LONGEST_PLACE = "/tmp", 69
+"""Where sockets go when the path of the folder for temporary files is longer: theirs may have 107 bytes, names in it take 38."""
 FRESH = 10.0
 """Age, s, up to which a folder may be one that is about to be locked."""
 NOTICING = 5.0
@@ -151,6 +153,8 @@ def make_pool_folder() -> None:
     """Let `multiprocessing` put sockets into a folder of ours, once in a process; remove those of dead ones before."""
     config = current_process()._config  # type: ignore[attr-defined]
     place = Path(tempfile.gettempdir())
+    if len(os.fsencode(place)) > LONGEST_PLACE and os.path.isdir(SHORT_PLACE):
+        place = Path(SHORT_PLACE)
     remove_stale_folders(place)
     if os.path.isdir(config.get("tempdir") or ""):
         return

@@ -132,6 +132,7 @@ def wait_for(folder, pattern, process, seconds=60.0):
     assert list(folder.glob(pattern))
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]

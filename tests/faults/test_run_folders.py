@@ -89,7 +89,7 @@ def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path, monke
     monkeypatch.setattr(run_figures, "FIGURES", {name: run_figures.FIGURES[name] for name in FIGURES})
     out = tmp_path / "out"
     words = ["run", "paper", "--case", "CS-1", "--out", str(out)]
-    assert main([*words, "--angles", "0.1"]) == 0
+    assert main([*words, "--angles", "0.1", "--figures"]) == 0
     assert (out / "figures").is_dir()
     (out / "notes.txt").write_text("the user's")
     (out / "figures" / "mine.png").write_text("the user's")

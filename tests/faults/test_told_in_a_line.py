@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from multiprocessing.context import BaseContext
+from pathlib import Path
 
 import pytest
 
@@ -152,12 +154,31 @@ if __name__ == "__main__":
 """
 
 
-def test_the_folder_of_a_pool_ends_with_it_also_after_a_kill(tmp_path):
+@pytest.fixture
+def short_place():
+    """A folder for temporary files with a path that leaves room for the names of sockets."""
+    with tempfile.TemporaryDirectory(prefix="t-", dir="/tmp") as name:
+        yield Path(name)
+
+
+def test_a_long_path_of_temporary_files_is_no_end_of_a_pool(tmp_path):
+    """Paths of sockets have 107 bytes at the most: a pool ended in "AF_UNIX path too long"."""
+    place = tmp_path / ("long" * 20)
+    place.mkdir()
+    (tmp_path / "pool.py").write_text(DYING)
+    words = [sys.executable, str(tmp_path / "pool.py")]
+    environment = {**os.environ, "TMPDIR": str(place)}
+    done = subprocess.run(words, input="", capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout)
+    assert list(place.iterdir()) == []
+
+
+def test_the_folder_of_a_pool_ends_with_it_also_after_a_kill(tmp_path, short_place):
     """Of ten killed runs with two workers ten left a pymp-* in the folder for temporary files."""
     script = tmp_path / "pool.py"
     script.write_text(DYING)
-    place = tmp_path / "tmp"
-    place.mkdir()
+    place = short_place
     with subprocess.Popen(
         [sys.executable, str(script)],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": str(place)},

@@ -276,6 +276,7 @@ def test_halving_divides_the_error():
     assert abs(values[0] - values[1]) > 4.0 * abs(values[1] - values[2])
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_mesh_halved(disc_shape, stations, disc):
     """The issue's bound: 0.3 % of the largest entry once rigid motions are projected out; measured 0.05 % at the default.

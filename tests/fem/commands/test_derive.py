@@ -157,7 +157,9 @@ def spoiled(dataset, name):
     elif name == "stress left by even pressure on all walls":
         wrong["disc_stress"].values[:] = np.abs(wrong["disc_stress"].values)  # signs lost: nothing cancels
     elif name == "stress along closed walls against their displacement":
-        wrong["disc_stress"].values[:] *= 1.2
+        wrong["disc_stress"].values[:] *= (
+            1.5  # a quarter of the stations: the walls' bound is 0.30 here, 0.10 with all of them
+        )
     elif name == "convergence of the stresses: change from a mesh of twice the size":
         wrong.attrs["convergence_stress"] = 0.5
     else:

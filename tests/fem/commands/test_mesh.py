@@ -74,6 +74,7 @@ def test_falls_back_to_matplotlib_with_a_message(
     assert read_msh(tmp_path / "disc.msh").order == 1
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_size_halves_the_elements(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mesh, "_draw", lambda *_: None)

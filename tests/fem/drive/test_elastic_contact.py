@@ -46,7 +46,13 @@ def joint():
     return with_fields(drive, one | {"load.torque": 0.5 * drive.load.torque})
 
 
-@pytest.mark.parametrize("make", [lambda: load_drive("paper").cases["CS-1"], joint], ids=["paper", "joint"])
+@pytest.mark.parametrize(
+    "make",
+    [
+        pytest.param(lambda: load_drive("paper").cases["CS-1"], id="paper"),
+        pytest.param(joint, id="joint", marks=pytest.mark.nightly),
+    ],
+)
 def test_fe_agrees_with_meshed_shaft_pins(make, tmp_path):
     drive = with_fields(make(), {"pin_shaft.elastic_contact": True})
     path = tmp_path / "coefficients.nc"

@@ -26,6 +26,7 @@ def answer(solution):
     return {name: value for name, value in summarise(solution).items() if not name.startswith("seconds")}
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_a_position_after_its_neighbour_is_that_position_alone(paper_cases):
     """To the last bit, not to a tolerance: so a resumed or reordered series ends with the same files."""

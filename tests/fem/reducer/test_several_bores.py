@@ -196,6 +196,7 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(solved, small):
         assert away < flexible, name
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_the_ltca_on_plane_strain_bodies_says_the_same(small, tmp_path):
     """Loads within 1 % of the largest of a kind on these meshes, wheel within 0.3″; half of that per cent on default ones.

@@ -60,6 +60,7 @@ def test_direct_agrees_with_tables_in_six_cases(case):
     compare_direct(CASES[case], position_angles(8) + 0.1)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_grid_halved():
     """Mid pressure moves by less than 0.3 %, load by less than 0.05 % (measured 0.04 %, 0.01 %)."""

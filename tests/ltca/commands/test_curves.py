@@ -98,7 +98,7 @@ def test_torque_curve_is_drawn_as_it_is_kept(told):
     assert all(f"{np.degrees(angle):.3g}°" in label for angle in kept["crank_angle_rad"])
     # the chord whose slope is the stiffness, with its value
     stiff = np.array(kept["stiffness_N_mm_per_rad"]) / ARCMIN / 1e3
-    (told,) = [text.get_text() for text in whole.texts if "stiffness" in text.get_text()]
+    (told,) = [text.get_text() for text in whole.texts if "cycloid stage" in text.get_text()]
     assert f"{stiff.min():.4g} … {stiff.max():.4g} N m/′" in told
     (chord,) = [line for line in whole.get_lines() if line.get_linewidth() == 4.0]
     slope = np.ptp(chord.get_ydata()) / np.ptp(chord.get_xdata())

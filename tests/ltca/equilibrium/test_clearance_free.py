@@ -32,7 +32,7 @@ def _differences(drive, angle, torque):
     "drive",
     [
         pytest.param(PAPER["CS-1"], id="paper", marks=pytest.mark.slow),
-        pytest.param(WITHOUT_OFFSETS, id="no offsets", marks=pytest.mark.slow),
+        pytest.param(WITHOUT_OFFSETS, id="no offsets", marks=[pytest.mark.slow, pytest.mark.nightly]),
     ],
 )
 def test_agreement_is_limited_by_linearisation_alone(drive):
@@ -45,6 +45,7 @@ def test_agreement_is_limited_by_linearisation_alone(drive):
     assert linear.residual < 1e-9 * 6737.5
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.0, 1.0, 2.0, 4.5])
 def test_other_angles_of_the_paper_agree(angle):
@@ -53,6 +54,7 @@ def test_other_angles_of_the_paper_agree(angle):
     assert np.all(differences < 3e-4)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_reverse_direction_is_the_mirror_image():
     reverse = parse_drive(shipped_drive().replace('direction = "ccw"', 'direction = "cw"')).cases["CS-1"]

@@ -137,7 +137,9 @@ def test_words_of_the_picture_of_the_drive_stand_apart(two):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [kind if kind == "paper" else pytest.param(kind, marks=pytest.mark.nightly) for kind in KINDS]
+)
 def test_words_of_every_figure_of_a_run_stand_apart(kind):
     analyses, dataset = solved(kind, 25)
     # The others are drawn as these are, or in the quick set.

@@ -115,6 +115,7 @@ def test_no_relief_is_the_uncrowned_law():
     np.testing.assert_allclose(found, expected, rtol=1e-4)  # both tables are good to some 1e-5
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_radii_between_the_nodes():
     law = ProfiledLineContactLaw.for_radii(LOGARITHMIC, MODULUS, 1.0, 6.0)

@@ -89,7 +89,10 @@ def drive_of(kind):
     return DriveFile(name=odd, source="", cases={odd: drive}, tolerances={}, limits={odd: {}}, text=odd)
 
 
-@pytest.mark.parametrize("kind", ["paper", "robot-joint", "rv", "sleeved", "plastic"])
+@pytest.mark.parametrize(
+    "kind",
+    ["paper", "rv", *(pytest.param(kind, marks=pytest.mark.nightly) for kind in ("robot-joint", "sleeved", "plastic"))],
+)
 def test_arrows_are_the_values_of_the_dataset(kind, run_of, chromium, tmp_path):
     run, dataset = run_of(drive_of(kind), positions=3)
     if kind == "paper":  # beside itself: both arrows are alike

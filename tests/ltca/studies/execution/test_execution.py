@@ -275,6 +275,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_memory_is_flat_against_the_number_of_samples(tmp_path):
     """Four times the samples: the factors alone of the greater would be 6 MB more if they were kept."""

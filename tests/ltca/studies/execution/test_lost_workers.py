@@ -116,6 +116,7 @@ def children():
     return found
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_killed_study_resumes_to_the_same_dataset(tmp_path):
     """kill −9 for the main process of the command in the middle, then --resume: byte for byte the undisturbed files."""
@@ -148,6 +149,7 @@ def test_killed_study_resumes_to_the_same_dataset(tmp_path):
     same_files(StudyFolder(path=one), StudyFolder(path=other))
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_dask_cluster_of_processes_survives_a_killed_worker(study, straight, tmp_path):
     """A scheduler and two workers as separate processes; one of them is killed in the middle."""
