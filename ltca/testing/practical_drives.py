@@ -319,10 +319,14 @@ def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     # All of one size: rotations by the lever of the wheel.
     scaled = gradient / np.array([1.0, 1.0, reach, reach])
     torque = np.array([0.0, 0.0, 0.0, float(sense)])
-    further = [
-        linprog(np.maximum(-gap, 0.0), A_eq=slope.T, b_eq=torque).fun
-        for gap, slope in zip(approach, scaled, strict=True)
-    ]
+    further = []
+    for gap, slope in zip(approach, scaled, strict=True):
+        # Of some programmes older versions of HiGHS say "unknown" by one method and solve them by the other.
+        for method in ("highs", "highs-ds", "highs-ipm"):
+            found = linprog(np.maximum(-gap, 0.0), A_eq=slope.T, b_eq=torque, method=method)
+            if found.success:
+                break
+        further.append(found.fun)
     free = pose[:, WHEEL_ANGLE]
     return free + sense * np.array(further, dtype=float) / reach, free
 
