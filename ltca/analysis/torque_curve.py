@@ -1,7 +1,7 @@
 """Torque against wind-up over both directions, and what is read from it: backlash, lost motion, torsional stiffness.
 
-The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; what remains
-between the branches at vanishing torque is the play of all clearances together (`ltca.geometry.play`). The stiffness is that of
+The crank is held, the output is loaded one way and the other. Without friction the curve has no loop; towards vanishing torque
+its branches end at the two stops of the free play (`ltca.geometry.play`), which is the backlash. The stiffness is that of
 the cycloid stage: flanks, pins, crank bearings and, where the file has them, beams and supports; the ring that carries the wheel
 pins, carrier, main bearing and a first stage yield on top of it. With friction the curve is what the bodies
 yield, and the loop about it is told beside it (`ltca.analysis.friction.hysteresis`). Torques and angles are those of the output,
@@ -22,9 +22,10 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import with_friction
+from ltca.equilibrium.reducer import geometries, with_friction
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.play import free_play
 
 FloatArray = NDArray[np.float64]
 
@@ -53,8 +54,7 @@ class TorqueCurve:
     output_angle : array, shape (angles, points)
         Deviation of the output, rad: that of the wheel with the pin shaft held.
     backlash : array, shape (angles,)
-        Between the branches at the smallest torques, rad: the free play of all clearances (`ltca.geometry.play`) and what so
-        little torque winds up.
+        Free play of the output with every clearance (`ltca.geometry.play`), rad.
     lost_motion : array, shape (angles,)
         Between ± `lost_motion_part` of the rated torque, rad; with friction between the middles of the loop there.
     stiffness : array, shape (angles, 2)
@@ -108,7 +108,7 @@ def torque_curve(
     Raises
     ------
     ConvergenceError
-        When a position does not balance.
+        When a position does not balance, or nothing stops the output without load.
     DriveError
         When the lost motion is to be read elsewhere.
     """
@@ -147,7 +147,7 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=at(SMALLEST) - at(-SMALLEST),
+        backlash=abs(drive.output_per_wheel_angle) * free_play(geometries(model), angles).play,
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),
         lost_motion_part=lost_motion,

@@ -32,12 +32,13 @@ def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapp
     summaries : mapping of str to mapping
         Their scalars.
     """
-    rows = list[list[Cell]]()
+    rows, equal = list[list[Cell]](), list[str]()
     for name, analysis in analyses.items():
         wound = np.abs(analysis.transmission_error - analysis.transmission_error_light)
         wound = wound[analysis.balanced & analysis.balanced_light]
         light = analysis.drive.load.light_torque
         if not (wound.size and np.all(wound > 0.0)):
+            equal.append(name)
             continue
         play = summaries[name]["backlash_output_arcmin"]
         stiffness = abs(analysis.torque - light) / wound
@@ -47,6 +48,10 @@ def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapp
         "Least … largest over the positions, between the answers at the light torque and at the torque. The whole curve, both "
         "ways, with lost motion and loops of friction: cyclo curves."
     ]
+    if equal:
+        notes.append(
+            f"{', '.join(equal)}: the light torque winds up no less than the torque, so nothing stands between them."
+        )
     stiffness_title = "stiffness of the cycloid stage there, N·m/′"
     columns = ["case", "backlash at the output, ′", "torques, N·m", "wind-up between them, ′", stiffness_title]
     table = Table(name="wind_up", caption="", columns=columns, rows=rows)

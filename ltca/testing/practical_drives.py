@@ -253,6 +253,9 @@ FloatArray = NDArray[np.float64]
 
 PARTS = (1e-6, 1e-5, 1e-4)
 """Parts of the torque, the next where one is too little to be balanced."""
+NANOMETRE = 1e-6
+"""mm. Unit of the gaps in `light_limit`: HiGHS leaves reduced costs of 1e-7 of a cost, and in mm a pin with next to no lever
+(force 1e4 times that of the wheel) may hide a bound that is 3 % less behind that."""
 BESIDE = 1.1
 """From the crank angle of the drive to the second one, rad."""
 
@@ -323,10 +326,10 @@ def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     for gap, slope in zip(approach, scaled, strict=True):
         # Of some programmes older versions of HiGHS say "unknown" by one method and solve them by the other.
         for method in ("highs", "highs-ds", "highs-ipm"):
-            found = linprog(np.maximum(-gap, 0.0), A_eq=slope.T, b_eq=torque, method=method)
+            found = linprog(np.maximum(-gap, 0.0) / NANOMETRE, A_eq=slope.T, b_eq=torque, method=method)
             if found.success:
                 break
-        further.append(found.fun)
+        further.append(found.fun * NANOMETRE)
     free = pose[:, WHEEL_ANGLE]
     return free + sense * np.array(further, dtype=float) / reach, free
 

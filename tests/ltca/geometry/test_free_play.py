@@ -145,12 +145,13 @@ def test_the_largest_of_a_turn_is_found_between_positions(paper_cases):
     assert found.least == pytest.approx(dense.min(), rel=2e-3)
 
 
-@pytest.mark.parametrize("seed", [10, 13, 33, 1])
+@pytest.mark.parametrize("seed", [10, 13, 33, 1, 271])
 def test_loads_that_vanish_end_at_the_free_play(seed):
     """Equal offsets of seeds 10, 13, 33: pins without lever touch first, and 1e-6 of the torque turns them on by 0.02–0.04′.
 
     1e-7 and 1e-8 of it do so by 0.004 and 0.0004′ (seed 10, second angle), or cannot be balanced. Contact forces that balance a
     torque going to nought say where all of them end, without a contact law; seed 1 cannot be balanced at any of these torques.
+    Seed 271 has a pin of next to no lever; with gaps in mm the solver of the bound left it 3 % too far.
     """
     drive, angle = practical_drive(seed)
     discs, angles = discs_of(warm_drive(drive)), np.array([angle, angle + 1.1])
