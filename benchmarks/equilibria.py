@@ -30,10 +30,11 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
-from ltca.compliance.response import ComplianceModel, Start
+from ltca.compliance.response import Start
 from ltca.drive.parts import Drive, Installation
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
@@ -49,7 +50,7 @@ def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium,
     return answer, seconds
 
 
-def one_evaluation(model: ComplianceModel, angles: np.ndarray, pose: np.ndarray) -> float:
+def one_evaluation(model: Reducer, angles: np.ndarray, pose: np.ndarray) -> float:
     """Return processor seconds of one evaluation at poses, from its neighbour's start."""
     start = Start.after(model.respond(angles, pose))
     began = time.process_time()
@@ -100,12 +101,15 @@ def main() -> None:
             path = Path(folder) / "closed_form.nc"
             closed_form_coefficients(drive, half_width=0.05, depth=300.0).to_netcdf(path, engine="h5netcdf")
         coefficients = load_coefficients(path, drive)
-    tables = HalfSpaceCompliance.of_drive(drive)
+    tables = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     print(f"{angles.size} positions of the paper's CS-1, one core, best of {arguments.rounds}")
     print(f"{'':<12}{'equilibria/s':>14}{'iterations':>12}{'ms/evaluation':>15}{'time by half-space':>20}")
     near, base = best(arguments.rounds, lambda: solve_equilibrium(tables, angles, moment))
-    models: dict[str, ComplianceModel] = {"half-space": tables}
-    models |= {name: CoupledCompliance.of_drive(drive, coefficients, field) for name, field in NEAR_FIELDS.items()}
+    models: dict[str, Reducer] = {"half-space": tables}
+    models |= {
+        name: Reducer(discs=(CoupledCompliance.of_drive(drive, coefficients, field),))
+        for name, field in NEAR_FIELDS.items()
+    }
     for name, model in models.items():
         found, seconds = near, base
         if name != "half-space":

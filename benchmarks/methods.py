@@ -21,6 +21,7 @@ import numpy as np
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 
@@ -35,13 +36,16 @@ def main() -> None:
     angles = position_angles(arguments.positions)
     few = angles[:: arguments.every]
     solve_equilibrium(
-        HalfSpaceCompliance.of_drive(cases["CS-1"]), few, cases["CS-1"].wheel_moment()
+        Reducer(discs=(HalfSpaceCompliance.of_drive(cases["CS-1"]),)), few, cases["CS-1"].wheel_moment()
     )  # builds the table
     print("case   tables  direct  cold start   ratios        largest difference, % of the largest")
     print("       ms/pos  ms/pos      ms/pos                 load     mid pressure   of either start")
     for name, drive in cases.items():
         moment = drive.wheel_moment()
-        tables, grids = HalfSpaceCompliance.of_drive(drive), GridCompliance.of_drive(drive)
+        tables, grids = (
+            Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)),
+            Reducer(discs=(GridCompliance.of_drive(drive),)),
+        )
         solve_equilibrium(grids, few[:1], moment)  # the matrices of the grids are kept, as tables are
         start = time.perf_counter()
         balanced = solve_equilibrium(tables, angles, moment)

@@ -24,6 +24,7 @@ from ltca.drive.parts import Clearance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.clearance_free import analyse_without_clearance
 from ltca.equilibrium.paper_method import iterate_held_wheel, lead_of_pose, pose_of_lead
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 
@@ -38,7 +39,7 @@ def main() -> None:
     free = replace(cases["CS-1"], clearance=Clearance())
     paper_start = np.array([analyse_without_clearance(free, float(angle)).pose for angle in angles])
     for name, drive in cases.items():
-        model, moment = HalfSpaceCompliance.of_drive(drive), drive.wheel_moment()
+        model, moment = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), drive.wheel_moment()
         starts = {
             "clearance-free solution (the paper's start)": paper_start,
             "our solution at 95 % of the torque": solve_equilibrium(model, angles, 0.95 * moment).pose,

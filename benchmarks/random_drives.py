@@ -28,7 +28,6 @@ from ltca.analysis.friction.losses import losses
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import friction_of, with_friction
 from ltca.errors import ConvergenceError
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.crank_drives import crank_drive
@@ -41,12 +40,12 @@ def try_friction_drive(seed: int) -> tuple[str, str, int]:
     """Return outcome, detail and iterations of a drive with friction, moved by its input and by its output."""
     drive, angle = friction_drive(seed)
     model = HalfSpace().prepare(drive).model
-    friction, outcome, problems, iterations = friction_of(model), "balanced", [], 0
+    friction, outcome, problems, iterations = model.friction, "balanced", [], 0
     assert isinstance(friction, TurningFriction)
     for driven_by in ("input", "output"):
         own = replace(drive, load=replace(drive.load, driven_by=driven_by))
         rubs = friction if driven_by == drive.load.driven_by else friction.reversed()
-        moving = with_friction(model, rubs)
+        moving = replace(model, friction=rubs)
         try:
             balanced = solve_at_output(moving, own, np.array([angle]), drive.load.torque)
         except ConvergenceError as error:

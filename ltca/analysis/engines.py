@@ -21,7 +21,7 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
-from ltca.compliance.response import ComplianceModel, Start
+from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import (
@@ -35,7 +35,7 @@ from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
 from ltca.equilibrium.paper_method import solve_paper_equilibrium
-from ltca.equilibrium.reducer import reducer_of
+from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
 from ltca.errors import DriveError, did_you_mean, shortened
@@ -57,7 +57,7 @@ class PreparedEngine(Protocol):
     """An engine built for one drive."""
 
     @property
-    def model(self) -> ComplianceModel:
+    def model(self) -> Reducer:
         """The compliance whose loads balance."""
         ...
 
@@ -92,7 +92,7 @@ class Engine(Protocol):
         """Return the engine built for a drive."""
         ...
 
-    def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
+    def build(self, drives: Sequence[Drive], positions: int) -> Reducer:
         """Return the compliance of drives at a number of positions each; of one drive where `batches` is False."""
         ...
 
@@ -102,7 +102,7 @@ class _OnTables:
     """Equilibrium on a model whose loads come cheaply from anywhere."""
 
     drive: Drive
-    model: ComplianceModel
+    model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         return solve_at_output(self.model, self.drive, crank_angle, torque, start)
@@ -113,8 +113,8 @@ class _FromTables:
     """Equilibrium on a dearer model, started from the solution on tables."""
 
     drive: Drive
-    tables: ComplianceModel
-    model: ComplianceModel
+    tables: Reducer
+    model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         near = solve_at_output(self.tables, self.drive, crank_angle, torque, start)
@@ -128,8 +128,8 @@ class _HeldWheel:
     """The paper's iteration, started from the solution on tables at a little less torque."""
 
     drive: Drive
-    tables: ComplianceModel
-    model: ComplianceModel
+    tables: Reducer
+    model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
@@ -137,6 +137,16 @@ class _HeldWheel:
             return solve_paper_equilibrium(self.model, angle, moment, near.pose)
 
         return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
+
+
+def _on_tables(drive: Drive) -> Reducer:
+    """Return the model of a warm drive on tabulated laws."""
+    return Reducer(
+        discs=tuple(HalfSpaceCompliance.of_drive(single) for single in single_discs(drive)),
+        supports=support_stiffness(drive),
+        pins=SharedPins.of_drive(drive),
+        friction=TurningFriction.of_drive(drive),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,12 +205,10 @@ class HalfSpace:
             require_frictionless(drive, f"method {self.method}")
             require_fixed_pins(drive, f"method {self.method}")
         singles = single_discs(drive)
-        supports, pins = support_stiffness(drive), SharedPins.of_drive(drive)
-        friction = TurningFriction.of_drive(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins, friction)
-        model = tables
+        tables = model = _on_tables(drive)
         if self.contacts == "grids":
-            model = reducer_of([GridCompliance.of_drive(single) for single in singles], supports)
+            grids = tuple(GridCompliance.of_drive(single) for single in singles)
+            model = replace(tables, discs=grids, pins=None, friction=None)
         if self.method == "paper":
             require_rigid_members(drive, "method paper")
             require_one_bore(drive, "method paper")
@@ -213,13 +221,13 @@ class HalfSpace:
             return _FromTables(drive=drive, tables=tables, model=model)
         return _OnTables(drive=drive, model=tables)
 
-    def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
+    def build(self, drives: Sequence[Drive], positions: int) -> Reducer:
         """Return the tables of several drives, each at the same number of positions."""
         drives = [warm_drive(drive) for drive in drives]
         discs = zip(*(single_discs(drive) for drive in drives), strict=True)
         supports, pins = support_stiffnesses(drives, positions), SharedPins.of_drives(drives, positions)
-        parts = [HalfSpaceCompliance.of_drives(each, positions) for each in discs]
-        return reducer_of(parts, supports, pins, TurningFriction.of_drives(drives))
+        parts = tuple(HalfSpaceCompliance.of_drives(each, positions) for each in discs)
+        return Reducer(discs=parts, supports=supports, pins=pins, friction=TurningFriction.of_drives(drives))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -288,7 +296,7 @@ class _Coupled:
         found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
-    def model(self, drive: Drive) -> ComplianceModel:
+    def model(self, drive: Drive) -> Reducer:
         """Return the coupled compliance of a drive.
 
         Raises
@@ -304,25 +312,18 @@ class _Coupled:
             )
         near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
         each = found if len(found) == len(singles) else found * len(singles)
-        return reducer_of(
-            [
-                CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)
-                for single, own in zip(singles, each, strict=True)
-            ],
-            support_stiffness(drive),
-            SharedPins.of_drive(drive),
-            TurningFriction.of_drive(drive),
+        discs = tuple(
+            CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)
+            for single, own in zip(singles, each, strict=True)
         )
+        return replace(_on_tables(drive), discs=discs)
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         drive = warm_drive(drive)
-        singles, supports = single_discs(drive), support_stiffness(drive)
-        pins, friction = SharedPins.of_drive(drive), TurningFriction.of_drive(drive)
-        tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports, pins, friction)
-        return _FromTables(drive=drive, tables=tables, model=self.model(drive))
+        return _FromTables(drive=drive, tables=_on_tables(drive), model=self.model(drive))
 
-    def build(self, drives: Sequence[Drive], positions: int) -> ComplianceModel:
+    def build(self, drives: Sequence[Drive], positions: int) -> Reducer:
         """Return the compliance of one drive.
 
         Raises

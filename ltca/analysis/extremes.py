@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
-from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.neighbours import pose_between
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import bearing_forces
+from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.placement import Placement, position_angles
 
@@ -359,7 +359,7 @@ class _Stage:
 
     @classmethod
     def of(
-        cls, model: ComplianceModel, found: Equilibrium, torque: float, signals: dict[str, FloatArray], passages: int
+        cls, model: Reducer, found: Equilibrium, torque: float, signals: dict[str, FloatArray], passages: int
     ) -> _Stage:
         groups, column = {}, 0
         for name, values in signals.items():

@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel, ContactPressures, Response, split_shifts
+from ltca.compliance.response import ContactPressures, Response, split_shifts
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import pins_are_fixed
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
@@ -235,14 +236,14 @@ def _roller_departure(drive: Drive, pressures: ContactPressures) -> float:
     return largest
 
 
-def pin_deflections(drive: Drive, model: ComplianceModel, found: Equilibrium) -> dict[str, FloatArray]:
+def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
     """Return how far pins that are beams move at a disc under the forces of all discs, mm, shape (positions, pairs).
 
     Parameters
     ----------
     drive : Drive
         Of one disc.
-    model : ComplianceModel
+    model : Reducer
         Of that disc.
     found : Equilibrium
         Of that disc.

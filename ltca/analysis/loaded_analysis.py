@@ -19,7 +19,7 @@ from ltca.analysis.half_width_guard import (
 )
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel, ContactPressures, take_positions
+from ltca.compliance.response import ContactPressures, take_positions
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
@@ -33,14 +33,7 @@ from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
 from ltca.equilibrium.partial_balance import PartlyBalanced, balance_what_can_be, nothing_balanced
-from ltca.equilibrium.reducer import (
-    bearing_forces,
-    disc_pressures,
-    disc_responses,
-    disc_torques,
-    friction_of,
-    with_friction,
-)
+from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, disc_torques
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.frozen_arrays import freeze
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -68,7 +61,7 @@ class LoadedAnalysis:
         What it ran on.
     full, light : Equilibrium
         At that torque and at the light torque.
-    model : ComplianceModel
+    model : Reducer
         The compliance behind both.
     pressures : ContactPressures
         Pressures and half-widths at that torque.
@@ -89,7 +82,7 @@ class LoadedAnalysis:
     engine: Engine
     full: Equilibrium
     light: Equilibrium
-    model: ComplianceModel
+    model: Reducer
     pressures: ContactPressures
     bearing_radial: FloatArray
     bearing_tangential: FloatArray
@@ -116,9 +109,6 @@ class LoadedAnalysis:
         What each carries of the torque is in `disc_torques`.
         """
         singles = single_discs(self.drive)
-        if self.model.discs == (self.model,):
-            # One disc: all that differs is that errors given as its own (disc.of, crank.of) are those of the drive.
-            return (self if singles[0] is self.drive else replace(self, drive=singles[0]),)
         pressures = disc_pressures(self.pressures, len(singles))
         return tuple(
             replace(
@@ -126,7 +116,7 @@ class LoadedAnalysis:
                 drive=single,
                 full=equilibrium_of_disc(self.model, self.full, number),
                 light=equilibrium_of_disc(self.model, self.light, number),
-                model=model,
+                model=Reducer(discs=(model,)),
                 pressures=pressures[number],
                 bearing_radial=self.bearing_radial[:, number : number + 1],
                 bearing_tangential=self.bearing_tangential[:, number : number + 1],
@@ -165,10 +155,10 @@ class LoadedAnalysis:
     @property
     def losses_back(self) -> Losses | None:
         """The same with the motion reversed."""
-        friction = friction_of(self.model)
+        friction = self.model.friction
         if self.back is None or not isinstance(friction, TurningFriction):
             return None
-        return losses(with_friction(self.model, friction.reversed()), self.drive, self.back, self.torque)
+        return losses(replace(self.model, friction=friction.reversed()), self.drive, self.back, self.torque)
 
     @property
     def moves_back(self) -> NDArray[np.bool_]:
@@ -243,9 +233,10 @@ class LoadedAnalysis:
             )
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
-            if isinstance(disc.model, HalfSpaceCompliance):
+            (contacts,) = disc.model.discs
+            if isinstance(contacts, HalfSpaceCompliance):
                 of = "" if len(discs) == 1 else f"disc {number}: "
-                told = separation_warning(disc.model, disc.drive, disc.full, disc.pressures)
+                told = separation_warning(contacts, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)
         return [warning for warning in found if warning is not None]
 
@@ -379,13 +370,13 @@ def analyse(
 
 
 def _turned_back(
-    model: ComplianceModel, drive: Drive, full: PartlyBalanced, angle: FloatArray, torque: float
+    model: Reducer, drive: Drive, full: PartlyBalanced, angle: FloatArray, torque: float
 ) -> Equilibrium | None:
     """The positions of a drive with friction, its motion reversed."""
-    friction = friction_of(model)
+    friction = model.friction
     if not isinstance(friction, TurningFriction):
         return None
-    other, near = with_friction(model, friction.reversed()), full.found
+    other, near = replace(model, friction=friction.reversed()), full.found
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
         return solve_at_output(other, drive, near.crank_angle[rows], torque, near.pose[rows])
@@ -398,9 +389,9 @@ def _turned_back(
     return replace(full.spread(of_these), crank_angle=angle)
 
 
-def _wall_stresses(model: ComplianceModel, full: Equilibrium, pressures: ContactPressures) -> tuple[WallStresses, ...]:
+def _wall_stresses(model: Reducer, full: Equilibrium, pressures: ContactPressures) -> tuple[WallStresses, ...]:
     count = len(model.discs)
-    parts = zip(model.discs, disc_responses(full.response), disc_pressures(pressures, count), strict=True)
+    parts = zip(model.discs, full.response.parts, disc_pressures(pressures, count), strict=True)
     return tuple(
         wall_stresses(disc, response, own, full.pose[:, model.coordinates.columns(number)[DISC_ROTATION]])
         for number, (disc, response, own) in enumerate(parts)

@@ -13,7 +13,6 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import seat_values
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.equilibrium.reducer import geometries
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
@@ -68,7 +67,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         The keys of ``summary.json``, their units in their names; None where the engine or the positions cannot say a
         value, as positions that are no full turn say nothing of it.
     """
-    geometry = geometries(analysis.model)
+    geometry = analysis.model.geometries
     full, contacts = analysis.full, analysis.full.response
     angle = full.crank_angle
     radial, tangential = analysis.bearing_radial, analysis.bearing_tangential

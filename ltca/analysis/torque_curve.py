@@ -10,7 +10,7 @@ whichever member that is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,6 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import geometries, with_friction
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.play import free_play
@@ -127,9 +126,9 @@ def torque_curve(
     # other way, and so does what opposes it.
     opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
     loads = np.tile(opposing * torque, angles.size)
-    tables = with_friction(HalfSpace().prepare(drive).model, None)
+    tables = replace(HalfSpace().prepare(drive).model, friction=None)
     found = solve_at_output(tables, drive, held, loads)
-    model = tables if engine is None else with_friction(engine.prepare(drive).model, None)
+    model = tables if engine is None else replace(engine.prepare(drive).model, friction=None)
     if not isinstance(model.discs[0], HalfSpaceCompliance):
         found = solve_at_output(model, drive, held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
@@ -147,7 +146,7 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=abs(drive.output_per_wheel_angle) * free_play(geometries(model), angles).play,
+        backlash=abs(drive.output_per_wheel_angle) * free_play(model.geometries, angles).play,
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),
         lost_motion_part=lost_motion,

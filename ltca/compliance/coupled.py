@@ -21,6 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +31,8 @@ from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_of_law
 from ltca.compliance.response import (
     ContactPressures,
+    DiscResponse,
     KindPressures,
-    Response,
     Start,
     bearing_bend,
     coupled_slopes,
@@ -46,7 +47,7 @@ from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
+from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
@@ -157,19 +158,13 @@ class CoupledCompliance:
             own=own,
         )
 
-    @property
-    def discs(self) -> tuple[CoupledCompliance, ...]:
-        """The model itself: it is that of one disc."""
-        return (self,)
-
-    @property
-    def coordinates(self) -> Coordinates:
-        """What its poses are made of."""
-        return self.geometry.coordinates
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Self:
+        """Return the model of some positions: itself, all are of one drive."""
+        return self
 
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> Response:
+    ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
 
         Raises
@@ -184,10 +179,10 @@ class CoupledCompliance:
         for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK))):
             bodies = UndeformedBodies(self.geometry, *take_positions((crank_angle, pose, pins), rows))
             parts.append(self._solve(bodies, start, rows))
-        joined: Response = join_positions(parts)
+        joined: DiscResponse = join_positions(parts)
         return joined
 
-    def _solve(self, bodies: UndeformedBodies, start: Start | None, rows: NDArray[np.intp]) -> Response:
+    def _solve(self, bodies: UndeformedBodies, start: Start | None, rows: NDArray[np.intp]) -> DiscResponse:
         guess = bodies.geometric * np.where(bodies.geometric > 0.0, 0.5, 1.0)  # a fair share of a rigid overlap
         if start is not None:
             for row, warm in enumerate(start.warm_start[rows]):
@@ -200,7 +195,7 @@ class CoupledCompliance:
                 return response
         raise AssertionError("all contacts are taken, none is left out")
 
-    def pressures(self, response: Response) -> ContactPressures:
+    def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the near fields."""
         laws, near = self.near_field, np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
@@ -338,7 +333,7 @@ class _Batch:
                 return near, matrix  # round-off of radii of 100 mm
         raise ConvergenceError("near-field approaches do not settle; largest residual in mm", history)
 
-    def response(self, solution: tuple[FloatArray, FloatArray]) -> Response | None:
+    def response(self, solution: tuple[FloatArray, FloatArray]) -> DiscResponse | None:
         """Return forces and tangent at the solution; None where a contact that was left out is pressed together."""
         near, matrix = solution
         bodies, (on_flank, in_bore, in_holes), outer = self.bodies, self.loaded, self.outer
@@ -395,7 +390,7 @@ class _Batch:
         warm_start = np.empty(near.shape[0], dtype=object)
         warm_start[:] = list(everywhere)
         kept = np.r_[:pins, pins + rollers : contacts]
-        return Response(
+        return DiscResponse(
             force=resultant(flank, pin_load, holes, hole_load, state, bodies.bores),
             tangent=tangent,
             flank=flank,

@@ -10,25 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.compliance.pressures import elastic_hole_pressures
-from ltca.compliance.response import (
-    ContactPressures,
-    KindPressures,
-    Response,
-    Start,
-    assemble_response,
-)
+from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures, Start, assemble_response
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Pieces, Separation, press, recover_patches
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
-from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
@@ -127,19 +120,13 @@ class GridCompliance:
             hole_law=SpringLaw(stiffness=drive.hole_stiffness),
         )
 
-    @property
-    def discs(self) -> tuple[GridCompliance, ...]:
-        """The model itself: it is that of one disc."""
-        return (self,)
-
-    @property
-    def coordinates(self) -> Coordinates:
-        """What its poses are made of."""
-        return self.geometry.coordinates
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Self:
+        """Return the model of some positions: itself, all are of one drive."""
+        return self
 
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> Response:
+    ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
 
         Raises
@@ -178,7 +165,7 @@ class GridCompliance:
             flank, pin_load, pin_stiffness, holes, hole_load, hole_stiffness, rollers, bores, warm_start=warm_start
         )
 
-    def pressures(self, response: Response) -> ContactPressures:
+    def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the grids, those of the shaft pins from their loads."""
         flank, rollers = response.flank, response.rollers
         pins, inner, outer = self._laws(flank, self._known(flank.approach.shape[0], response.warm_start))

@@ -10,17 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_law
-from ltca.compliance.response import (
-    ContactPressures,
-    Response,
-    Start,
-    assemble_response,
-    split_shifts,
-)
+from ltca.compliance.response import ContactPressures, DiscResponse, Start, assemble_response, split_shifts
 from ltca.compliance.rollers import RollerLaws, balance_rollers
 from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, Material, contact_modulus
-from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_stiffness, tip_share
@@ -152,19 +145,9 @@ class HalfSpaceCompliance:
             kinds=self.kinds,
         )
 
-    @property
-    def discs(self) -> tuple[HalfSpaceCompliance, ...]:
-        """The model itself: it is that of one disc."""
-        return (self,)
-
-    @property
-    def coordinates(self) -> Coordinates:
-        """What its poses are made of."""
-        return self.geometry.coordinates
-
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> Response:
+    ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions.
 
         Parameters
@@ -180,7 +163,7 @@ class HalfSpaceCompliance:
 
         Returns
         -------
-        Response
+        DiscResponse
             Generalised force, tangent and every pair's load.
 
         Notes
@@ -216,7 +199,7 @@ class HalfSpaceCompliance:
             shifts=shifts,
         )
 
-    def pressures(self, response: Response) -> ContactPressures:
+    def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return the pressures from the laws."""
         flank, rollers, laws, kinds = response.flank, response.rollers, self.roller_laws, self.kinds
         return ContactPressures(

@@ -1,20 +1,20 @@
-"""What a compliance model answers: loads of all contact pairs at a pose, their generalised force and its tangent.
+"""What the model of a disc answers: loads of all contact pairs at a pose, their generalised force and its tangent.
 
-A compliance model answers one question for a batch of positions, `respond`: which generalised force do the
-contacts exert at this pose, and what is its tangent? `ltca.equilibrium.balance` asks nothing else.
+The model of a disc answers one question for a batch of positions, `DiscModel.respond`: which generalised force do the
+contacts exert at this pose, and what is its tangent? `ltca.equilibrium.reducer` puts the discs together.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.rollers import RollerState
-from ltca.geometry.coordinates import DISC_ROTATION, Coordinates
+from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 
@@ -39,8 +39,8 @@ class PairSlopes:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Response:
-    """Contacts of a batch of positions at given poses.
+class DiscResponse:
+    """Contacts of one disc in a batch of positions at given poses.
 
     Attributes
     ----------
@@ -58,15 +58,13 @@ class Response:
         N.
     warm_start : array of object, shape (positions,)
         What a model wants to find again at the next pose of each position, a value that nothing changes; None where it
-        wants nothing. It saves work and alters no answer. Of several discs shape (positions, discs).
+        wants nothing. It saves work and alters no answer.
     shifts : array of complex, shape (positions, pairs), or None
         Displacements of wheel pins and shaft pins that were given, mm: what the forces of other discs make them yield.
-        Of several discs shape (positions, discs, pairs).
     slopes : PairSlopes or None
         Where they were given.
     friction : array, shape (positions, pairs), or None
-        Forces of wheel pins and shaft pins along their tangents, N; None without friction. Of several discs they are those
-        of its parts.
+        Forces of wheel pins and shaft pins along their tangents, N; None without friction.
     """
 
     force: FloatArray
@@ -80,6 +78,27 @@ class Response:
     shifts: ComplexArray | None = None
     slopes: PairSlopes | None = None
     friction: FloatArray | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response(DiscResponse):
+    """Contacts of all discs of a reducer, disc after disc: of n discs array axes for pairs are n times as long.
+
+    Force and tangent are those of the reducer; ``warm_start`` has shape (positions, discs), ``shifts``
+    (positions, discs, pairs), and slopes and friction are those of the parts.
+
+    Attributes
+    ----------
+    parts : tuple of DiscResponse
+        Of each disc, by its own pose.
+    """
+
+    parts: tuple[DiscResponse, ...]
+
+    @classmethod
+    def of_disc(cls, part: DiscResponse) -> Response:
+        """Return the contacts of one disc as those of a reducer that has no other."""
+        return cls(**{item.name: getattr(part, item.name) for item in fields(DiscResponse)}, parts=(part,))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,48 +147,26 @@ class ContactPressures:
     rigid_shaft_pins: bool
 
 
-class ComplianceModel(Protocol):
-    """What `ltca.equilibrium.balance` needs of the compliance of one or several discs."""
-
-    @property
-    def coordinates(self) -> Coordinates:
-        """What its poses are made of."""
-        ...
-
-    @property
-    def discs(self) -> tuple[DiscModel, ...]:
-        """The compliance of each disc."""
-        ...
-
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
-        """Return the contact forces at the poses of a batch of positions."""
-        ...
-
-    def pressures(self, response: Response) -> ContactPressures:
-        """Return the pressures behind a response of this model."""
-        ...
-
-
-class DiscModel(ComplianceModel, Protocol):
-    """The compliance of one disc: it is its own only one."""
+class DiscModel(Protocol):
+    """How the contacts of one disc yield."""
 
     @property
     def geometry(self) -> ContactGeometry:
         """The contact geometry of the disc in its drive."""
         ...
 
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Self:
+        """Return the model of some positions: itself for one drive, these rows of a batch."""
+        ...
+
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
-    ) -> Response:
+    ) -> DiscResponse:
         """Return the contact forces at the poses of a batch of positions; `shifts` are displacements of the pins, if any."""
         ...
 
-
-class BatchModel(ComplianceModel, Protocol):
-    """A model whose positions may belong to different drives (`ltca.geometry.placement.Placement.is_batch`)."""
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> BatchModel:
-        """Return the model of some of the positions."""
+    def pressures(self, response: DiscResponse) -> ContactPressures:
+        """Return the pressures behind a response of this model."""
         ...
 
 
@@ -184,7 +181,7 @@ class Start:
     share : array, shape (positions, n_BR)
         Shares of `ltca.compliance.rollers`.
     warm_start : array of object, shape (positions,)
-        Of the model, see `Response`.
+        Of the model, see `DiscResponse`.
     known : KnownPins or None
         Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
         where all are asked for.
@@ -249,7 +246,7 @@ def assemble_response(
     bores: BoreMotion,
     warm_start: NDArray[np.object_] | None = None,
     shifts: ComplexArray | None = None,
-) -> Response:
+) -> DiscResponse:
     """Put the loads of uncoupled pairs together: generalised force and tangent.
 
     Parameters
@@ -259,14 +256,14 @@ def assemble_response(
     pin_load, pin_stiffness, hole_load, hole_stiffness : array, shape (positions, pairs)
         N and N/mm.
     warm_start : array of object, shape (positions,), optional
-        See `Response`.
+        See `DiscResponse`.
     shifts : array of complex, shape (positions, pairs), optional
-        See `Response`; slopes are wanted with them.
+        See `DiscResponse`; slopes are wanted with them.
     """
     force = resultant(flank, pin_load, holes, hole_load, rollers, bores)
     tangent = _pair_tangent(flank, pin_load, pin_stiffness) + _pair_tangent(holes, hole_load, hole_stiffness)
     tangent += _roller_tangent(rollers, bores)
-    return Response(
+    return DiscResponse(
         force=force,
         tangent=tangent,
         flank=flank,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.response import ContactPressures, Response
+from ltca.compliance.response import ContactPressures, DiscResponse
 from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
 
 FloatArray = NDArray[np.float64]
@@ -110,7 +110,7 @@ class _PlacedContacts:
 
 
 def wall_stresses(
-    model: CoupledCompliance, response: Response, pressures: ContactPressures, disc_rotation: FloatArray
+    model: CoupledCompliance, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> WallStresses:
     """Return the largest stresses along the walls and the stresses under the contacts.
 
@@ -118,7 +118,7 @@ def wall_stresses(
     ----------
     model : CoupledCompliance
         The model that answered.
-    response : Response
+    response : DiscResponse
         Its loads.
     pressures : ContactPressures
         ``model.pressures(response)``.
@@ -138,7 +138,7 @@ def wall_stresses(
 
 def wall_profiles(
     model: CoupledCompliance,
-    response: Response,
+    response: DiscResponse,
     pressures: ContactPressures,
     disc_rotation: FloatArray,
     *,
@@ -159,7 +159,7 @@ def wall_profiles(
 
 
 def _place_contacts(
-    model: CoupledCompliance, response: Response, pressures: ContactPressures, disc_rotation: FloatArray
+    model: CoupledCompliance, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> tuple[_PlacedContacts, ...]:
     """Return the contacts of flank, each bore and each hole in the frame of the disc."""
     place, turn = model.geometry.placement, disc_rotation[:, None]
@@ -256,7 +256,7 @@ def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes
     }
 
 
-def _unknown(response: Response, lobes: int) -> WallStresses:
+def _unknown(response: DiscResponse, lobes: int) -> WallStresses:
     pins, rollers, holes = (
         np.full(load.shape, np.nan) for load in (response.pin_load, response.rollers.outer_load, response.hole_load)
     )

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Response, Start
+from ltca.compliance.response import Response, Start
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
-from ltca.equilibrium.reducer import at_rows, complete, disc_responses, geometries
+from ltca.equilibrium.reducer import Reducer, complete
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
@@ -63,18 +63,18 @@ class Equilibrium:
     iterations: NDArray[np.intp]
 
 
-def equilibrium_of_disc(model: ComplianceModel, found: Equilibrium, disc: int) -> Equilibrium:
+def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equilibrium:
     """Return what one of several discs has of balanced positions: its pose and contacts, the moment that it carries."""
-    response = disc_responses(found.response)[disc]
+    part = found.response.parts[disc]
     return replace(
         found,
-        wheel_moment=response.force[:, WHEEL_ANGLE],
+        wheel_moment=part.force[:, WHEEL_ANGLE],
         pose=found.pose[:, model.coordinates.columns(disc)],
-        response=response,
+        response=Response.of_disc(part),
     )
 
 
-def lever_arms(model: ComplianceModel) -> FloatArray:
+def lever_arms(model: Reducer) -> FloatArray:
     """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, 1 elsewhere.
 
     Returns
@@ -83,20 +83,20 @@ def lever_arms(model: ComplianceModel) -> FloatArray:
         One row for all positions where they are of one drive.
     """
     coordinates, wheel = model.coordinates, np.ones(1)
-    eccentricities = [geometry.placement.mean_eccentricity for geometry in geometries(model)]
+    eccentricities = [geometry.placement.mean_eccentricity for geometry in model.geometries]
     arms = np.ones((*eccentricities[0].shape[:-1], coordinates.size))
-    for place, geometry, e in zip(coordinates.rotations, geometries(model), eccentricities, strict=False):
+    for place, geometry, e in zip(coordinates.rotations, model.geometries, eccentricities, strict=False):
         wheel = e * geometry.placement.reduction_ratio
         arms[..., place] = (wheel - e)[..., 0]
     arms[..., WHEEL_ANGLE] = wheel[..., 0]
     if coordinates.ring:
-        places = geometries(model)[0].placement.shaft_pin_centres
+        places = model.geometries[0].placement.shaft_pin_centres
         arms[..., coordinates.ring_place.stop - 1] = np.abs(places).mean(axis=-1)
     return arms
 
 
 def solve_equilibrium(
-    model: ComplianceModel,
+    model: Reducer,
     crank_angle: FloatArray,
     wheel_moment: FloatArray | float,
     start: FloatArray | Equilibrium | None = None,
@@ -107,7 +107,7 @@ def solve_equilibrium(
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         Loads at a pose.
     crank_angle : array, shape (positions,)
         Held crank angles φ_C, rad.
@@ -167,7 +167,7 @@ def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start 
     first = leading_positions(model.discs[0].geometry, angle, moment)
     if start is None:
         first = first if first.size == angle.size else first[:1]
-        pose[first] = _at_first_contact(at_rows(model, first), angle[first], moment[first])
+        pose[first] = _at_first_contact(model.take(first), angle[first], moment[first])
     else:
         pose[:] = start
     left = search.iterate(ITERATIONS, first, None if inner is None else inner.take(first))
@@ -183,31 +183,31 @@ def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start 
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
     elif start is None:
-        pose[rest] = _at_first_contact(at_rows(model, rest), angle[rest], moment[rest])
+        pose[rest] = _at_first_contact(model.take(rest), angle[rest], moment[rest])
     return np.union1d(left, search.iterate(ITERATIONS, rest, begin))
 
 
-def _at_first_contact(model: ComplianceModel, angle: FloatArray, moment: FloatArray) -> FloatArray:
+def _at_first_contact(model: Reducer, angle: FloatArray, moment: FloatArray) -> FloatArray:
     """Poses with the discs on the inner-race centres and the wheel turned until the first pin touches one of them."""
     pose = np.zeros((angle.size, model.coordinates.size))
     sense = np.where(moment < 0.0, -1, 1)
     for value in np.unique(sense):
         rows = sense == value
-        turned = [_take_up(geometry.take(rows), angle[rows], int(value)) for geometry in geometries(model)]
+        turned = [_take_up(geometry.take(rows), angle[rows], int(value)) for geometry in model.geometries]
         pose[rows, WHEEL_ANGLE] = value * np.min(value * np.stack(turned), axis=0)
     return pose
 
 
 def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: FloatArray) -> Search:
     """The search for some positions under other torques."""
-    model = at_rows(search.model, rows)
+    model = search.model.take(rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Solve positions from heavier torques down to their own; return those that have no balance there either."""
-    pose = _at_first_contact(at_rows(search.model, rows), search.angle[rows], search.moment[rows])
+    pose = _at_first_contact(search.model.take(rows), search.angle[rows], search.moment[rows])
     level = np.full(rows.size, np.nan)
     for power in range(1, HEAVIEST + 1):
         new = np.nonzero(np.isnan(level))[0]

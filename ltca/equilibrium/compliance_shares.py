@@ -7,12 +7,14 @@ with their contacts. Changes of loads come from two poses beside the balanced on
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Start, bearing_pushes
+from ltca.compliance.response import Start, bearing_pushes
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.reducer import Reducer, disc_responses, friction_of, with_friction
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 FloatArray = NDArray[np.float64]
@@ -22,12 +24,12 @@ STEP = 1e-4
 """Change of the torque, as a part of it: loads follow it in line, and round-off stays below 1e-4 of their change."""
 
 
-def compliance_shares(model: ComplianceModel, found: Equilibrium) -> dict[str, FloatArray]:
+def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
     """Return the shares of the wheel's compliance by part, crank held.
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         What balanced.
     found : Equilibrium
         Balanced positions.
@@ -38,8 +40,8 @@ def compliance_shares(model: ComplianceModel, found: Equilibrium) -> dict[str, F
         By `PARTS`; they add up to one. Not a number where nothing resists a free motion.
     """
     response, size = found.response, found.pose.shape[1]
-    if friction_of(model) is not None:  # what bodies yield, not what rubs
-        model = with_friction(model, None)
+    if model.friction is not None:  # what bodies yield, not what rubs
+        model = replace(model, friction=None)
         response = model.respond(found.crank_angle, found.pose, Start.after(response))
     tangent = response.tangent
     one = np.zeros((found.pose.shape[0], size, 1))
@@ -51,9 +53,9 @@ def compliance_shares(model: ComplianceModel, found: Equilibrium) -> dict[str, F
     start = Start.after(response)
     ends = [model.respond(found.crank_angle, found.pose + side * moved, start) for side in (0.5, -0.5)]
     work = {part: np.zeros(found.pose.shape[0]) for part in PARTS}
-    for number, here in enumerate(disc_responses(response)):
+    for number, here in enumerate(response.parts):
         own = moved[:, model.coordinates.columns(number)]
-        up, down = (disc_responses(end)[number] for end in ends)
+        up, down = (end.parts[number] for end in ends)
         work["pins"] += _taken(here.flank.gradient, own, up.pin_load - down.pin_load)
         work["shaft_pins"] += _taken(here.holes.gradient, own, up.hole_load - down.hole_load)
         bores = model.discs[number].geometry.bores(found.crank_angle, found.pose[:, model.coordinates.columns(number)])

@@ -12,15 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import (
-    ComplianceModel,
-    Response,
-    Start,
-    join_positions,
-    put_positions,
-    take_positions,
-)
-from ltca.equilibrium.reducer import at_rows, friction_of
+from ltca.compliance.response import Response, Start, join_positions, put_positions, take_positions
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -59,7 +52,7 @@ class Search:
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         Loads at a pose.
     angle, moment : array, shape (positions,)
         φ_C, rad, and external moment on the wheel, N·mm.
@@ -79,7 +72,7 @@ class Search:
 
     def __init__(
         self,
-        model: ComplianceModel,
+        model: Reducer,
         angle: FloatArray,
         moment: FloatArray,
         lever: FloatArray,
@@ -92,7 +85,7 @@ class Search:
         """The wheel's places are those of every disc."""
         self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
         self.batch = self.place.is_batch
-        self.symmetric = friction_of(model) is None
+        self.symmetric = model.friction is None
         self.half_pitch = np.pi / self.place.reduction_ratio
         self.rotations = model.coordinates.rotations
         self.history: list[FloatArray] = []
@@ -107,7 +100,7 @@ class Search:
 
     def evaluate(self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None) -> Response:
         """Return the contacts of some positions at poses."""
-        model = self.model if rows.size == self.angle.size else at_rows(self.model, rows)
+        model = self.model if rows.size == self.angle.size else self.model.take(rows)
         return model.respond(self.angle[rows], pose, start)
 
     def scaled(self, rows: NDArray[np.intp], response: Response) -> tuple[FloatArray, FloatArray]:

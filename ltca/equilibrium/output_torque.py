@@ -19,18 +19,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import (
-    ComplianceModel,
-    Response,
-    Start,
-    bearing_pushes,
-    put_positions,
-    take_positions,
-)
+from ltca.compliance.response import Response, Start, bearing_pushes, put_positions, take_positions
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.friction.turning import TurningFriction
-from ltca.equilibrium.reducer import at_rows, disc_responses, friction_of, with_friction
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
 FloatArray = NDArray[np.float64]
@@ -44,7 +37,7 @@ CLOSED = 1e-10
 """Moment left over as a part of the output torque: below what the balance of the forces leaves."""
 
 
-def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
     r"""Return the external moment that holds each crank by virtual work, ccw positive, N·mm, shape (positions, cranks).
 
     It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
@@ -53,7 +46,7 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         What answered.
     crank_angle : array, shape (positions,)
         φ_C, rad.
@@ -62,8 +55,8 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
     response : Response
         Contacts there.
     """
-    cranks, friction = model.discs[0].geometry.placement.cranks, friction_of(model)
-    pushes = [bearing_pushes(part.rollers, cranks) for part in disc_responses(response)]
+    cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
+    pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
     total = model.discs[0].geometry.placement.cage_speed * cage_moments(model, crank_angle, pose, response)
     for disc, push in zip(model.discs, pushes, strict=True):
         place = disc.geometry.placement
@@ -72,7 +65,7 @@ def crank_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatAr
     return total if friction is None else total + friction.of_cranks(pushes)
 
 
-def cage_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
+def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
     """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
     Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
@@ -80,25 +73,25 @@ def cage_moments(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArr
 
     Parameters
     ----------
-    model, crank_angle, pose, response : ComplianceModel, array, array, Response
+    model, crank_angle, pose, response : Reducer, array, array, Response
         As for `crank_moments`.
     """
     cranks = model.discs[0].geometry.placement.cranks
     total = np.zeros((crank_angle.size, cranks))
-    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+    for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
         bores = disc.geometry.bores(crank_angle, pose[:, model.coordinates.columns(number)])
         total += (bores.displacement.conjugate() * bearing_pushes(part.rollers, cranks)).imag
     return total
 
 
 def input_moment(
-    model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response, part: FloatArray
+    model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response, part: FloatArray
 ) -> FloatArray:
     """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
 
     Parameters
     ----------
-    model, crank_angle, pose, response : ComplianceModel, array, array, Response
+    model, crank_angle, pose, response : Reducer, array, array, Response
         As for `crank_moments`.
     part : array, shape (positions,)
         `Drive.input_per_crank_moment`.
@@ -114,7 +107,7 @@ JAMMED = 2.0
 
 
 def solve_at_output(
-    model: ComplianceModel,
+    model: Reducer,
     drives: Drive | Sequence[Drive],
     crank_angle: FloatArray,
     torque: FloatArray | float,
@@ -128,7 +121,7 @@ def solve_at_output(
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         Loads at a pose, of one drive or of a batch.
     drives : Drive or sequence of Drive
         The drive, or the drives of a batch that have equal numbers of positions each, drive by drive.
@@ -152,10 +145,10 @@ def solve_at_output(
     ConvergenceError
         When a position does not balance.
     """
-    friction = friction_of(model)
+    friction = model.friction
     if not isinstance(friction, TurningFriction):
         return _solve(model, drives, crank_angle, torque, start, inner, gaps)
-    smooth = _solve(with_friction(model, None), drives, crank_angle, torque, start, inner, gaps=False)
+    smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner, gaps=False)
     try:
         return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
     except ConvergenceError as error:
@@ -164,7 +157,7 @@ def solve_at_output(
     while reached < 1.0:
         strength = min(reached + step, 1.0)
         try:
-            part = with_friction(model, friction.scaled(strength))
+            part = replace(model, friction=friction.scaled(strength))
             found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
         except ConvergenceError:
             lost = strength
@@ -221,7 +214,7 @@ def _jam(
 
 
 def _solve(
-    model: ComplianceModel,
+    model: Reducer,
     drives: Drive | Sequence[Drive],
     crank_angle: FloatArray,
     torque: FloatArray | float,
@@ -239,7 +232,7 @@ def _solve(
     signed = np.repeat([drive.driving_sign for drive in each], repeats) * loads
 
     def balance(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
-        part = model if rows.size == angle.size else at_rows(model, rows)
+        part = model if rows.size == angle.size else model.take(rows)
         own = None if isinstance(begin, Equilibrium) else inner
         return solve_equilibrium(part, angle[rows], moment, begin, own, gaps)
 
@@ -248,7 +241,7 @@ def _solve(
 
 
 def balance_at_output(
-    model: ComplianceModel,
+    model: Reducer,
     balance: Balance,
     drive: Drive,
     crank_angle: FloatArray,
@@ -259,7 +252,7 @@ def balance_at_output(
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         Whose loads balance.
     balance : callable
         Crank angles, moments on the wheel and starting poses to balanced positions.
@@ -284,7 +277,7 @@ def balance_at_output(
 
 
 def _at_output(
-    model: ComplianceModel,
+    model: Reducer,
     balance: Callable[[NDArray[np.intp], FloatArray, Begin], Equilibrium],
     angle: FloatArray,
     mean: FloatArray,
@@ -316,7 +309,7 @@ def _at_output(
         part = replace(part, iterations=begin.iterations + part.iterations)
         found = part if whole else put_positions(found, open_rows, part)
         before = left[open_rows]
-        model_part = model if whole else at_rows(model, open_rows)
+        model_part = model if whole else model.take(open_rows)
         left[open_rows] = (
             moment[open_rows]
             + input_moment(model_part, angle[open_rows], part.pose, part.response, share[open_rows])

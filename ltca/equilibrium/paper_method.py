@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Response, Start
+from ltca.compliance.response import Response, Start
 from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.newton import TOLERANCE
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
@@ -57,14 +58,12 @@ class PaperIteration:
     history: tuple[tuple[float, ...], ...]
 
 
-def pose_of_lead(
-    model: ComplianceModel, wheel_position: FloatArray, unknowns: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def pose_of_lead(model: Reducer, wheel_position: FloatArray, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return actual crank angle and pose (`ltca.geometry.pairs`) of the unknowns of the paper (Eq. 45–46).
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         For its geometry.
     wheel_position : array, shape (positions,)
         Held φ_P, rad.
@@ -82,7 +81,7 @@ def pose_of_lead(
     return ideal + lead, pose
 
 
-def lead_of_pose(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
+def lead_of_pose(model: Reducer, crank_angle: FloatArray, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return held φ_P and the unknowns of the paper of a pose at an actual crank angle: `pose_of_lead` inverted."""
     place = model.discs[0].geometry.placement
     lead = -place.reduction_ratio * pose[:, WHEEL_ANGLE]
@@ -94,13 +93,13 @@ def lead_of_pose(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArr
 
 
 def iterate_held_wheel(
-    model: ComplianceModel, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
+    model: Reducer, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
 ) -> PaperIteration:
     """Iterate Eq. 90–93 at held wheel from given guesses; failures are told, not raised.
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         Loads at a pose: tables or grids.
     wheel_position, wheel_moment : array, shape (positions,)
         Held φ_P in rad, external moment on the wheel in N·mm.
@@ -135,7 +134,7 @@ def iterate_held_wheel(
 
 
 def _iterate(
-    model: ComplianceModel, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
+    model: Reducer, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
 ) -> PaperIteration:
     lever = lever_arms(model)
     reach = float(model.discs[0].geometry.placement.mean_eccentricity[0])
@@ -197,13 +196,13 @@ def _iterate(
 
 
 def solve_paper_equilibrium(
-    model: ComplianceModel, crank_angle: FloatArray, wheel_moment: FloatArray | float, start: FloatArray
+    model: Reducer, crank_angle: FloatArray, wheel_moment: FloatArray | float, start: FloatArray
 ) -> Equilibrium:
     """Balance every position by the iteration of the paper, at requested actual crank angles.
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         Loads at a pose: tables or grids.
     crank_angle : array, shape (positions,)
         Actual φ_C that the answer shall have, rad.

@@ -10,16 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, Protocol, cast
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.response import (
-    BatchModel,
-    ComplianceModel,
     ContactPressures,
     DiscModel,
+    DiscResponse,
     KindPressures,
     Response,
     Start,
@@ -49,31 +48,18 @@ class JointFriction(Protocol):
         ...
 
     def of_disc(
-        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response, disc: int
+        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
     ) -> Rubbing:
         """Return what friction does to a disc."""
         ...
 
-    def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
+    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, N·mm."""
         ...
 
     def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
         """Return the moment that rubbing takes at every crank, N·mm, shape (positions, cranks)."""
         ...
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReducerResponse(Response):
-    """Contacts of several discs, disc after disc.
-
-    Attributes
-    ----------
-    parts : tuple of Response
-        Of each disc alone, by its own pose.
-    """
-
-    parts: tuple[Response, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,17 +88,25 @@ class Reducer:
         """What its poses are made of."""
         return replace(self.discs[0].geometry.coordinates, discs=len(self.discs))
 
+    @property
+    def geometries(self) -> tuple[ContactGeometry, ...]:
+        """The contact geometry of every disc."""
+        return tuple(disc.geometry for disc in self.discs)
+
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
-        """Return the model of some positions of a batch."""
+        """Return the model of some positions: these rows of a batch, itself where all are of one drive."""
+        by_position = self.friction is not None and self.friction.by_position
+        if not self.discs[0].geometry.placement.is_batch and not by_position:
+            return self  # as every position of one drive has the same supports
         supports = self.supports
         if supports is not None and supports.ndim > 2:
             supports = supports[rows]
-        discs = tuple(cast(DiscModel, at_rows(disc, rows)) for disc in self.discs)
+        discs = tuple(disc.take(rows) for disc in self.discs)
         pins = None if self.pins is None else self.pins.take(rows)
         friction = None if self.friction is None else self.friction.take(rows)
         return Reducer(discs=discs, supports=supports, pins=pins, friction=friction)
 
-    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> ReducerResponse:
+    def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces of all discs.
 
         Parameters
@@ -128,7 +122,7 @@ class Reducer:
         places = [coordinates.columns(number) for number in range(count)]
         starts = [None] * count if start is None else _split_start(start, count)
 
-        def respond(moved: ComplexArray | None) -> tuple[Response, ...]:
+        def respond(moved: ComplexArray | None) -> tuple[DiscResponse, ...]:
             if moved is None and self.friction is not None:
                 moved = self._unmoved(crank_angle.size)  # with which slopes come
             each = [None] * count if moved is None else list(moved.swapaxes(0, 1))
@@ -162,7 +156,7 @@ class Reducer:
             tangent += self.supports
         if self.friction is not None:
             force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, self.discs[0].geometry.placement.reduction_ratio)
-        return ReducerResponse(
+        return Response(
             force=force,
             tangent=tangent,
             flank=_beside([part.flank for part in parts]),
@@ -183,8 +177,7 @@ class Reducer:
 
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures of all discs behind a response of this model."""
-        parts = disc_responses(response)
-        found = [disc.pressures(part) for disc, part in zip(self.discs, parts, strict=True)]
+        found = [disc.pressures(part) for disc, part in zip(self.discs, response.parts, strict=True)]
         kinds = ("pins", "outer", "inner", "holes")
         joined: dict[str, Any] = {kind: _beside_kinds([getattr(each, kind) for each in found]) for kind in kinds}
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
@@ -195,9 +188,9 @@ def _rubbed(
     geometry: ContactGeometry,
     crank_angle: FloatArray,
     pose: FloatArray,
-    part: Response,
+    part: DiscResponse,
     disc: int,
-) -> Response:
+) -> DiscResponse:
     """Contacts of a disc with their friction."""
     found = friction.of_disc(geometry, crank_angle, pose, part, disc)
     return replace(
@@ -205,55 +198,18 @@ def _rubbed(
     )
 
 
-def reducer_of(
-    discs: Sequence[DiscModel],
-    supports: FloatArray | None = None,
-    pins: SharedPins | None = None,
-    friction: JointFriction | None = None,
-) -> ComplianceModel:
-    """Return the model of a drive from those of its discs: of one disc on members that do not yield its own.
-
-    Parameters
-    ----------
-    discs : sequence of DiscModel
-        One for each disc.
-    supports, pins, friction : optional
-        Stiffness of the supports, pins that several discs bend, and what rubs, see `Reducer`.
-    """
-    if len(discs) == 1 and supports is None and friction is None:
-        return discs[0]
-    return Reducer(discs=tuple(discs), supports=supports, pins=pins, friction=friction)
-
-
-def friction_of(model: ComplianceModel) -> JointFriction | None:
-    """Return what rubs in a model."""
-    return model.friction if isinstance(model, Reducer) else None
-
-
-def with_friction(model: ComplianceModel, friction: JointFriction | None) -> ComplianceModel:
-    """Return a model with other friction, or none: of a `Reducer` one, whose answers have the same arrays."""
-    if isinstance(model, Reducer):
-        return replace(model, friction=friction)
-    return reducer_of(model.discs, friction=friction)
-
-
-def disc_responses(response: Response) -> tuple[Response, ...]:
-    """Return the response of each disc."""
-    return response.parts if isinstance(response, ReducerResponse) else (response,)
-
-
-def reach_beyond(model: ComplianceModel, other: ComplianceModel) -> FloatArray:
+def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
     """Return how much deeper pins may be than those of another drive at the same places, mm, shape (…, pins of all discs)."""
-    pairs = zip(geometries(model), geometries(other), strict=True)
+    pairs = zip(model.geometries, other.geometries, strict=True)
     return np.concatenate([mine.reach_beyond(theirs) for mine, theirs in pairs], axis=-1)
 
 
-def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
+def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
     """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         What answered.
     crank_angle : array, shape (positions,)
         φ_C, rad.
@@ -263,12 +219,10 @@ def complete(model: ComplianceModel, crank_angle: FloatArray, pose: FloatArray, 
         Contacts there.
     """
     parts = []
-    for number, (disc, part) in enumerate(zip(model.discs, disc_responses(response), strict=True)):
+    for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
         geometry, own = disc.geometry, model.coordinates.columns(number)
         moved, _ = split_shifts(part.shifts, geometry)
         parts.append(replace(part, flank=geometry.complete_flank(crank_angle, pose[:, own], part.flank, moved)))
-    if not isinstance(response, ReducerResponse):
-        return parts[0]
     return replace(response, flank=_beside([part.flank for part in parts]), parts=tuple(parts))
 
 
@@ -299,12 +253,12 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
     )
 
 
-def bearing_forces(model: ComplianceModel, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
+def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
     """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N.
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         What answered.
     crank_angle : array, shape (positions,)
         φ_C, rad.
@@ -312,7 +266,7 @@ def bearing_forces(model: ComplianceModel, crank_angle: FloatArray, response: Re
         Contacts.
     """
     forces = []
-    for geometry, part in zip(geometries(model), disc_responses(response), strict=True):
+    for geometry, part in zip(model.geometries, response.parts, strict=True):
         ahead = geometry.placement.eccentric_directions(crank_angle)
         forces.append(bearing_pushes(part.rollers, ahead.shape[-1]) * ahead.conjugate())
     return np.stack(forces, axis=1)
@@ -320,20 +274,7 @@ def bearing_forces(model: ComplianceModel, crank_angle: FloatArray, response: Re
 
 def disc_torques(response: Response) -> FloatArray:
     """Return the part of the external moment on the wheel that each disc carries, shape (positions, discs), N·mm."""
-    return np.stack([part.force[:, WHEEL_ANGLE] for part in disc_responses(response)], axis=1)
-
-
-def geometries(model: ComplianceModel) -> tuple[ContactGeometry, ...]:
-    """Return the contact geometry of every disc."""
-    return tuple(disc.geometry for disc in model.discs)
-
-
-def at_rows(model: ComplianceModel, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ComplianceModel:
-    """Return the model at some positions: these rows of a batch, itself where all are of one drive."""
-    friction = friction_of(model)
-    if not model.discs[0].geometry.placement.is_batch and (friction is None or not friction.by_position):
-        return model  # as every position of one drive has the same supports
-    return cast(BatchModel, model).take(rows)
+    return np.stack([part.force[:, WHEEL_ANGLE] for part in response.parts], axis=1)
 
 
 def _split_start(start: Start, count: int) -> list[Start]:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import PairSlopes, Response
+from ltca.compliance.response import DiscResponse, PairSlopes
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates
@@ -63,10 +63,10 @@ class SharedPins:
 
     def settle(
         self,
-        respond: Callable[[ComplexArray], tuple[Response, ...]],
+        respond: Callable[[ComplexArray], tuple[DiscResponse, ...]],
         coordinates: Coordinates,
         shifts: ComplexArray,
-    ) -> tuple[tuple[Response, ...], ComplexArray, SharedTangent]:
+    ) -> tuple[tuple[DiscResponse, ...], ComplexArray, SharedTangent]:
         """Return the contacts of all discs with the pins where all forces hold them.
 
         Parameters
@@ -122,13 +122,13 @@ class SharedTangent:
     ----------
     flexibility : array
         Of `SharedPins`.
-    parts : tuple of Response
+    parts : tuple of DiscResponse
         Contacts of each disc, with their slopes.
     coordinates : Coordinates
         Of the whole.
     """
 
-    def __init__(self, flexibility: FloatArray, parts: tuple[Response, ...], coordinates: Coordinates) -> None:
+    def __init__(self, flexibility: FloatArray, parts: tuple[DiscResponse, ...], coordinates: Coordinates) -> None:
         self.parts, self.coordinates = parts, coordinates
         self.slopes: list[PairSlopes] = [part.slopes for part in parts if part.slopes is not None]
         bends = np.any(flexibility != 0.0, axis=(-2, -1)).reshape(-1, flexibility.shape[-3]).any(axis=0)
@@ -242,7 +242,7 @@ class SharedTangent:
         found = np.linalg.solve(flat, right.swapaxes(1, 2).reshape(positions, discs * pairs, columns))
         return np.asarray(found.reshape(positions, discs, pairs, columns).swapaxes(1, 2))
 
-    def _pairs(self, part: Response, name: str) -> FloatArray:
+    def _pairs(self, part: DiscResponse, name: str) -> FloatArray:
         """What the pairs that matter have on one disc, wheel pins before shaft pins."""
         found: FloatArray = np.concatenate((getattr(part.flank, name), getattr(part.holes, name)), axis=1)[:, self.own]
         return found

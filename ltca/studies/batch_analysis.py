@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.compliance.half_space import batch_signature
-from ltca.compliance.response import ComplianceModel, Start
+from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import at_rows, geometries, reach_beyond
+from ltca.equilibrium.reducer import Reducer, reach_beyond
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
@@ -37,13 +37,13 @@ class Nominal:
     ----------
     full, light : Equilibrium
         At its torque and at its light torque.
-    model : ComplianceModel
+    model : Reducer
         What answered.
     """
 
     full: Equilibrium
     light: Equilibrium
-    model: ComplianceModel
+    model: Reducer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,9 +127,7 @@ class _Batch:
             self.prepared = with_kept_coefficients(settings.engine, drive).prepare(drive)
             self.model = self.prepared.model
 
-    def balance(
-        self, torques: list[float], near: Equilibrium | None, nominal: ComplianceModel | None = None
-    ) -> Equilibrium:
+    def balance(self, torques: list[float], near: Equilibrium | None, nominal: Reducer | None = None) -> Equilibrium:
         """Balance the drives at their torques, from what is near: one position for each of theirs, or for each angle.
 
         The latter is what the model of another drive answered, the nominal one.
@@ -142,7 +140,7 @@ class _Batch:
         rows = np.arange(self.angle.size) % near.crank_angle.size
         inner = Start.onward(near.response).take(rows)
         if nominal is not None:
-            inner = inner.of_others(reach_beyond(self.model, at_rows(nominal, rows)))
+            inner = inner.of_others(reach_beyond(self.model, nominal.take(rows)))
         return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner, gaps=False)
 
 
@@ -228,8 +226,8 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
         near = full if nominal is None else nominal.light
         light = solved.balance([drive.load.light_torque for drive in drives], near, known)
     if "backlash" in stages:
-        play = backlash(geometries(solved.model), solved.angle, WHEEL_ANGLE)
-    free = free_play(geometries(solved.model), solved.angle).play if "play" in stages else None
+        play = backlash(solved.model.geometries, solved.angle, WHEEL_ANGLE)
+    free = free_play(solved.model.geometries, solved.angle).play if "play" in stages else None
     return SampleBatch(
         drives=tuple(drives),
         model=solved.model,

@@ -15,7 +15,6 @@ from ltca.analysis.extremes import refine_extremes
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
-from ltca.equilibrium.reducer import geometries
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.placement import position_angles
@@ -79,10 +78,10 @@ def solve_finely(
     analysis = analyse(drive, position_angles(positions), engine=with_kept_coefficients(engine, drive))
     play = None
     if any(QUANTITIES[name].stage == "backlash" for name in quantities):
-        play = backlash(geometries(analysis.model), position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
+        play = backlash(analysis.model.geometries, position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
     free = None
     if any(QUANTITIES[name].stage == "play" for name in quantities):
-        turn = play_over_a_turn(geometries(analysis.model))
+        turn = play_over_a_turn(analysis.model.geometries)
         free = np.array([turn.least, turn.largest])
     batch = SampleBatch(
         drives=(drive,),

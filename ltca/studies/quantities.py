@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.summary import LOADED_FRACTION
-from ltca.compliance.response import ComplianceModel, ContactPressures
+from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.reducer import bearing_forces
+from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -32,7 +32,7 @@ class SampleBatch:
     ----------
     drives : tuple of Drive
         Of the samples.
-    model : ComplianceModel
+    model : Reducer
         How their bodies yield.
     full : Equilibrium
         At the torque of each drive.
@@ -47,7 +47,7 @@ class SampleBatch:
     """
 
     drives: tuple[Drive, ...]
-    model: ComplianceModel
+    model: Reducer
     full: Equilibrium
     pressures: ContactPressures
     light: Equilibrium | None

@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ComplianceModel, take_positions
+from ltca.compliance.response import take_positions
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.reducer import disc_responses
+from ltca.equilibrium.reducer import Reducer
 from ltca.laws.backed import BackedLaw
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
 from ltca.testing.friction_check import FrictionCheck
@@ -259,7 +259,7 @@ class PotentialEnergy:
 
 def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, row: int) -> dict[str, YieldingPins]:
     """Wheel pins and shaft pins where the loads of an answer hold them."""
-    parts, found = disc_responses(balanced.response), {}
+    parts, found = balanced.response.parts, {}
     tip = ring_tips(drive, balanced.pose[row : row + 1])[0]
     for name, part, law, material in (
         ("wheel_pins", drive.pin_wheel, laws.pin_law, drive.materials.wheel_pin),
@@ -282,7 +282,7 @@ def _yielding(drive: Drive, laws: HalfSpaceCompliance, balanced: Equilibrium, ro
     return found
 
 
-def potential_of(drive: Drive, model: ComplianceModel, balanced: Equilibrium, position: int) -> PotentialEnergy:
+def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: int) -> PotentialEnergy:
     """Return Π about a position that is said to balance; arguments as for `find_imbalance`."""
     laws = cast(HalfSpaceCompliance, model.discs[0])
     pins = _yielding(drive, laws, balanced, position)
@@ -310,14 +310,14 @@ def friction_at(potential: PotentialEnergy, balanced: Equilibrium, position: int
         wheel_column=None if not supported else -6 if has_ring(drive) else -3,
         wheel_place=wheel.bent + wheel.loose,
         shaft_place=shaft.bent + shaft.loose,
-        parts=[take_positions(part, np.array([position])) for part in disc_responses(balanced.response)],
+        parts=[take_positions(part, np.array([position])) for part in balanced.response.parts],
         bearings=potential.bearing_forces(pose),
     )
 
 
 def find_imbalance(
     drive: Drive,
-    model: ComplianceModel,
+    model: Reducer,
     balanced: Equilibrium,
     position: int = 0,
     seed: int = 0,
@@ -330,7 +330,7 @@ def find_imbalance(
     ----------
     drive : Drive
         The drive; its geometry, deviations included, is taken from nowhere else.
-    model : ComplianceModel
+    model : Reducer
         Of half-spaces on tables, for the energies of its laws.
     balanced : Equilibrium
         The solution.

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import Response
+from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, Friction, PinShaft, PinWheel
 from ltca.geometry.coordinates import X, Y
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
@@ -98,7 +98,7 @@ class FrictionCheck:
         The first of its two coordinates, counted from the end; None where it is held.
     wheel_place, shaft_place : array of complex, shape (discs, pins)
         Displacements of pins from where they are drawn, by forces, mm.
-    parts : sequence of Response
+    parts : sequence of DiscResponse
         Contacts of each disc at this position alone: their loads, and the friction that is told of them.
     bearings : array of complex, shape (discs, cranks)
         Force of each crank bearing, N.
@@ -111,7 +111,7 @@ class FrictionCheck:
     wheel_column: int | None
     wheel_place: ComplexArray
     shaft_place: ComplexArray
-    parts: Sequence[Response]
+    parts: Sequence[DiscResponse]
     bearings: ComplexArray
 
     @cached_property

@@ -20,7 +20,6 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Clearance, Drive, Installation
 from ltca.drive.units.quantities import ARCMIN
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import geometries, with_friction
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.flank import FlankProfile
@@ -399,8 +398,8 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
         φ_C, rad.
     """
     drive = warm_drive(drive)
-    model = with_friction(HalfSpace().prepare(drive).model, None)
-    discs, scale = geometries(model), abs(drive.output_per_wheel_angle) * ARCMIN
+    model = replace(HalfSpace().prepare(drive).model, friction=None)
+    discs, scale = model.geometries, abs(drive.output_per_wheel_angle) * ARCMIN
     found = free_play(discs, crank_angle)
     answers, own = [], model.coordinates.own
     for row, angle in enumerate(crank_angle):

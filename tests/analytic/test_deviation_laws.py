@@ -9,6 +9,7 @@ from ltca.analysis.torque_curve import torque_curve
 from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, first_contact
 from ltca.geometry.pairs import ContactGeometry
@@ -54,7 +55,7 @@ def test_one_pin_moved_inward_takes_load_by_the_stiffness_of_the_pairs(paper_cas
     drive = paper_cases["CS-6"]
     angles = np.array([0.3, 1.9])
     model = HalfSpaceCompliance.of_drive(drive)
-    before = solve_equilibrium(model, angles, drive.wheel_moment())
+    before = solve_equilibrium(Reducer(discs=(model,)), angles, drive.wheel_moment())
     law, flank = model.pin_law, before.response.flank
     _, stiffness = law.load_and_stiffness(flank.approach, flank.effective_radius)
     for row in range(2):
@@ -66,7 +67,9 @@ def test_one_pin_moved_inward_takes_load_by_the_stiffness_of_the_pairs(paper_cas
         k = stiffness[row, pin]
         give = np.linalg.solve(before.response.tangent[row], gradient) @ gradient
         moved = moved_inward(drive, pin, 1e-5)
-        after = solve_equilibrium(HalfSpaceCompliance.of_drive(moved), angles[[row]], drive.wheel_moment())
+        after = solve_equilibrium(
+            Reducer(discs=(HalfSpaceCompliance.of_drive(moved),)), angles[[row]], drive.wheel_moment()
+        )
         found = after.response.pin_load[0, pin] - before.response.pin_load[row, pin]
         assert found == pytest.approx(1e-5 * share * k * (1.0 - k * give), rel=2e-3)
         # the moment of all pins still carries the load
@@ -82,7 +85,7 @@ def test_ten_micrometres_are_the_sum_of_their_small_steps(paper_cases):
     for size in sizes:
         moved = drive if pin is None else moved_inward(drive, pin, float(size))
         model = HalfSpaceCompliance.of_drive(moved)
-        found = solve_equilibrium(model, angle, drive.wheel_moment())
+        found = solve_equilibrium(Reducer(discs=(model,)), angle, drive.wheel_moment())
         flank = found.response.flank
         if pin is None:
             pin = int(np.argmax(found.response.pin_load[0]))
@@ -139,7 +142,7 @@ def test_loaded_drive_shows_the_same_order_at_vanishing_torque(paper_cases):
     rigid, _ = first_contact(ContactGeometry.of_drive(drive), angles, WHEEL_ANGLE, -1)
     away = []
     for torque in (1e3, 1e2):
-        found = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), angles, -torque)
+        found = solve_equilibrium(Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), angles, -torque)
         away.append(np.max(np.abs(found.pose[:, WHEEL_ANGLE] - rigid)))
     # elastic wind-up falls with the torque: 7 … 10 for a tenth (line contacts)
     assert 6.0 < away[0] / away[1] < 10.5

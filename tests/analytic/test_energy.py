@@ -8,6 +8,7 @@ import pytest
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 
@@ -25,7 +26,7 @@ def test_stored_energy_is_the_work_of_the_torque(paper_cases, case):
     """U(T₂) − U(T₁) = ∫ T_load d(wheel_angle), contacts entering on the way."""
     model = HalfSpaceCompliance.of_drive(paper_cases[case])
     moments = -np.geomspace(3_000.0, 400_000.0, 241)
-    found = solve_equilibrium(model, np.full(241, 0.8), moments)
+    found = solve_equilibrium(Reducer(discs=(model,)), np.full(241, 0.8), moments)
     energy, wheel = stored_energy(model, found.response), found.pose[:, WHEEL_ANGLE]
     work = np.sum(0.5 * (moments[1:] + moments[:-1]) * np.diff(wheel))
     # trapezoids: (2 %)²/12 of a curve that bends at entering contacts, 1e-4; the energy left out with the change
@@ -49,11 +50,11 @@ def test_crank_torque_is_the_slope_of_the_potential(paper_cases, case):
     h = 2e-4
 
     def potential(angle):
-        found = solve_equilibrium(model, angle, moment)
+        found = solve_equilibrium(Reducer(discs=(model,)), angle, moment)
         return stored_energy(model, found.response) - moment * (angle / u + found.pose[:, WHEEL_ANGLE])
 
     slope = (potential(angles + h) - potential(angles - h)) / (2.0 * h)
-    state = solve_equilibrium(model, angles, moment).response.rollers
+    state = solve_equilibrium(Reducer(discs=(model,)), angles, moment).response.rollers
     ray = np.exp(1j * (19.5 / 49.0 * angles[:, None] + 2.0 * np.pi * np.arange(11) / 11))
     push = state.outer_load * state.outer_direction
     tangential = (push.sum(axis=1) * np.exp(-1j * angles)).imag

@@ -23,7 +23,7 @@ from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.reference.engine_support import refusal
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import reducer_of
+from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -61,9 +61,9 @@ def direct(drive):
     drive = warm_drive(drive)
     singles = single_discs(drive)
     supports = support_stiffness(drive)
-    tables = reducer_of([HalfSpaceCompliance.of_drive(single) for single in singles], supports)
+    tables = Reducer(discs=tuple(HalfSpaceCompliance.of_drive(single) for single in singles), supports=supports)
     near = solve_at_output(tables, drive, ANGLES[:1], drive.load.torque)
-    model = reducer_of([GridCompliance.of_drive(single, cells=4) for single in singles], supports)
+    model = Reducer(discs=tuple(GridCompliance.of_drive(single, cells=4) for single in singles), supports=supports)
     found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque, near.pose)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)

@@ -10,7 +10,7 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import Reducer, disc_responses
+from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.shared_pins import SharedTangent
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -24,7 +24,7 @@ def stored():
 def stored_energy(model, response, pose):
     """ΣU of contacts and supports, N·mm, and ∂U/∂ρ of every wheel pin, N, by differences of the law alone."""
     total, slopes = np.zeros(pose.shape[0]), []
-    for disc, part in zip(model.discs, disc_responses(response), strict=True):
+    for disc, part in zip(model.discs, response.parts, strict=True):
         laws, flank = disc.roller_laws, part.flank
         total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
         total = total + disc.hole_law.energy(part.holes.approach, disc.geometry.placement.hole_effective_radii).sum(
@@ -38,7 +38,7 @@ def stored_energy(model, response, pose):
     if isinstance(model, Reducer) and model.supports is not None:
         total = total + 0.5 * np.einsum("bi,ij,bj->b", pose, model.supports, pose)
     if isinstance(model, Reducer) and model.pins is not None:
-        shared = SharedTangent(model.pins.flexibility, disc_responses(response), model.coordinates)
+        shared = SharedTangent(model.pins.flexibility, response.parts, model.coordinates)
         force = shared.load.swapaxes(1, 2)[..., None] * shared.normal
         total = total + 0.5 * np.einsum("bpdi,pde,bpei->b", force, shared.flexibility, force)
     return total, np.concatenate(slopes, axis=1)
@@ -93,7 +93,7 @@ def scaled_tangent_and_slope(drive, angle, step=1e-7):
     """Tangent at one balanced position and the differences of the force over ±step mm, both by the lever arms."""
     model = HalfSpace().prepare(drive).model
     balanced = solve_at_output(model, drive, angle, drive.load.torque)
-    parts = zip(model.discs, disc_responses(balanced.response), strict=True)
+    parts = zip(model.discs, balanced.response.parts, strict=True)
     held = tuple(replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts)
     several = isinstance(model, Reducer)
     fixed = Reducer(discs=held, supports=model.supports if several else None, pins=model.pins if several else None)

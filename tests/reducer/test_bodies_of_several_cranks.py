@@ -18,7 +18,6 @@ from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import disc_responses
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
@@ -247,7 +246,7 @@ def test_every_disc_is_in_equilibrium_by_hand(small, derived):
     """Forces at the places where pins and rollers touch: no resultant and no moment on any disc, the torque on the wheel."""
     found = analyse(kind(small, "rigid"), ANGLES, engine=PlaneStrain(coefficients=derived))
     wheel = np.zeros(ANGLES.size)
-    for number, part in enumerate(disc_responses(found.full.response)):
+    for number, part in enumerate(found.full.response.parts):
         geometry = found.model.discs[number].geometry
         place, columns = geometry.placement, found.model.coordinates.columns(number)
         rotation = np.exp(1j * found.full.pose[:, columns[DISC_ROTATION], None])
@@ -287,7 +286,7 @@ def test_numbering_of_the_cranks_is_a_matter_of_names(small, closed_forms):
 def test_stress_of_the_bores_is_the_largest_of_all(small, derived):
     """Along each bore clear of its rollers, in both discs: the one of which the part's bores are counted from another."""
     found = analyse(kind(small, "rigid"), ANGLES, engine=Hybrid(coefficients=derived))
-    for number, (walls, part) in enumerate(zip(found.wall_stresses, disc_responses(found.full.response), strict=True)):
+    for number, (walls, part) in enumerate(zip(found.wall_stresses, found.full.response.parts, strict=True)):
         disc, columns = found.model.discs[number], found.model.coordinates.columns(number)
         own = disc.pressures(part)
         profiles = wall_profiles(disc, part, own, found.full.pose[:, columns[DISC_ROTATION]], refinement=4)

@@ -9,7 +9,6 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
-from ltca.equilibrium.reducer import disc_responses
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, X, Y
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -38,7 +37,7 @@ NAMES = ["paper", "rv", "two discs, wheel held", *(f"practical {seed}" for seed 
 def moment_of_pin_shaft(found):
     """What holds the pin shaft against the forces on its pins and in the bearings of its cranks, about the axis, N·mm."""
     total = np.zeros(found.full.crank_angle.size)
-    for number, (disc, part) in enumerate(zip(found.model.discs, disc_responses(found.full.response), strict=True)):
+    for number, (disc, part) in enumerate(zip(found.model.discs, found.full.response.parts, strict=True)):
         place, own = disc.geometry.placement, found.full.pose[:, found.model.coordinates.columns(number)]
         # Forces go through the centres of the holes as they stand, wherever pins have given way to.
         centre = place.race_centre(found.full.crank_angle) + own[:, X] + 1j * own[:, Y]

@@ -18,7 +18,6 @@ from ltca.drive.parts import Friction
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import rubbing
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import disc_responses, friction_of, with_friction
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
@@ -68,8 +67,8 @@ def of_kind(name):
 
 def work_of_friction(model, drive, centre, rate):
     """What friction takes by radian of the crank while the pose changes by `rate` a radian, N·mm."""
-    friction, total = friction_of(model), np.zeros(centre.crank_angle.size)
-    parts = disc_responses(centre.response)
+    friction, total = model.friction, np.zeros(centre.crank_angle.size)
+    parts = centre.response.parts
     for number, (disc, part) in enumerate(zip(model.discs, parts, strict=True)):
         columns = model.coordinates.columns(number)
         own, still = rate[:, columns], np.zeros((total.size, columns.size))
@@ -154,7 +153,7 @@ def test_first_order_in_the_coefficient_is_the_perturbation(paper):
     """(q(μ) − q(0))/μ → −K⁻¹ Σ F σ s, with the tangent and loads of the drive without friction."""
     smooth = HalfSpace().prepare(paper).model
     plain = solve_at_output(smooth, paper, ANGLES, paper.load.torque)
-    slip = Slip.of_disc(smooth.geometry, ANGLES, plain.pose, plain.response)
+    slip = Slip.of_disc(smooth.geometries[0], ANGLES, plain.pose, plain.response)
     force = np.concatenate((plain.response.pin_load, plain.response.hole_load), axis=1) * np.sign(slip.by_crank)
     rubbed = np.einsum("bp,bpj->bj", force, slip.by_pose)
     expected = -np.linalg.solve(plain.response.tangent, rubbed[..., None])[..., 0]
@@ -163,7 +162,7 @@ def test_first_order_in_the_coefficient_is_the_perturbation(paper):
         drive = replace(paper, friction=Friction(pin=size, hole=size))
         model = HalfSpace().prepare(drive).model
         found = solve_at_output(model, drive, ANGLES, drive.load.torque)
-        back = with_friction(model, friction_of(model).reversed())
+        back = replace(model, friction=model.friction.reversed())
         other = solve_at_output(back, drive, ANGLES, drive.load.torque)
         return (found.pose - other.pose) / (2.0 * size)
 
@@ -179,7 +178,7 @@ def test_loss_at_the_pins_is_that_about_the_pitch_point(paper):
     model, torque = HalfSpace().prepare(drive).model, paper.load.torque
     plain = solve_at_output(HalfSpace().prepare(paper).model, paper, angle, torque)
     found = solve_at_output(model, drive, angle, torque)
-    back = with_friction(model, friction_of(model).reversed())
+    back = replace(model, friction=model.friction.reversed())
     other = solve_at_output(back, drive, angle, torque)
     crank = [crank_moments(model if at is found else back, angle, at.pose, at.response)[:, 0] for at in (found, other)]
     place, flank, u = model.discs[0].geometry.placement, plain.response.flank, paper.reduction_ratio

@@ -18,7 +18,7 @@ from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import disc_responses, reducer_of
+from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import ConvergenceError, DriveError
@@ -104,11 +104,11 @@ def test_a_free_pin_by_its_own_two_unknowns(joint, name):
     drive = single_discs(kind(joint, name))[0]
     model = HalfSpace().prepare(drive).model
     found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
-    pose, part = found.pose[0], found.response
-    profile, wheel, place = FlankProfile.of_drive(drive), drive.pin_wheel, model.geometry.placement
+    (disc,), pose, part = model.discs, found.pose[0], found.response
+    profile, wheel, place = FlankProfile.of_drive(drive), drive.pin_wheel, disc.geometry.placement
     seat, contact = wheel_pin_seat(drive), LineContactLaw(drive.disc.thickness, 206e3 / (2.0 * (1.0 - 0.09)))
     contact = replace(
-        model.pin_law, contact=contact, seat=None, play=np.zeros(1)
+        disc.pin_law, contact=contact, seat=None, play=np.zeros(1)
     )  # what a half-space counts of a sleeve's wall is off
     play = np.array([wheel.seat_play])
     centre = complex(place.race_centre(ANGLES[:1])[0]) + pose[X] + 1j * pose[Y]
@@ -179,7 +179,7 @@ def test_pins_that_discs_share_by_a_dense_reference(joint, name):
     drive = unmodified(kind(joint, name))
     model = HalfSpace().prepare(drive).model
     found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque)
-    parts, singles = disc_responses(found.response), single_discs(drive)
+    parts, singles = found.response.parts, single_discs(drive)
     on_wheel = drive.pin_wheel.beam is not None
     beam = wheel_pin_beam(drive) if on_wheel else shaft_pin_beam(drive)
     flexibility = beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)
@@ -256,7 +256,7 @@ def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
         CoupledCompliance.of_drive(single, without_coupling(single), "half-space", hole_near_field=False)
         for single in single_discs(drive)
     ]
-    model = reducer_of(discs, support_stiffness(drive), SharedPins.of_drive(drive))
+    model = Reducer(discs=tuple(discs), supports=support_stiffness(drive), pins=SharedPins.of_drive(drive))
     found = solve_at_output(model, drive, ANGLES[:2], drive.load.torque)
     expected = analyse(drive, ANGLES[:2]).full
     np.testing.assert_allclose(found.pose[:, WHEEL_ANGLE], expected.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-11)
@@ -333,7 +333,7 @@ def test_results_of_seats_and_beams(joint):
     flexibility = beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)
     force = np.stack([
         part.pin_load * (part.flank.gradient[..., X] + 1j * part.flank.gradient[..., Y])
-        for part in disc_responses(found.full.response)
+        for part in found.full.response.parts
     ])  # fmt: skip
     expected = np.abs(np.einsum("de,epi->dpi", flexibility, force))
     np.testing.assert_allclose(bent["pin_deflection"], expected, rtol=0.0, atol=1e-11)

@@ -13,7 +13,7 @@ from ltca.analysis.friction.losses import losses
 from ltca.drive.parts import Friction
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer, friction_of, with_friction
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance, friction_at, potential_of
@@ -27,7 +27,7 @@ def answer(seed, reverse=False):
     if reverse:
         other = {"input": "output", "output": "input"}[drive.load.driven_by]
         drive = replace(drive, load=replace(drive.load, driven_by=other))
-        model = with_friction(model, friction_of(model).reversed())
+        model = replace(model, friction=model.friction.reversed())
     return drive, model, solve_at_output(model, drive, np.array([angle]), drive.load.torque)
 
 
@@ -125,7 +125,7 @@ def test_a_drive_that_jams_says_so():
     model, torque, loads = HalfSpace().prepare(drive).model, drive.load.torque, []
     strengths = np.array([0.0, 0.25, 0.5, 0.75])
     for strength in strengths:
-        part = with_friction(model, friction_of(model).scaled(strength))
+        part = replace(model, friction=model.friction.scaled(strength))
         loads.append(solve_at_output(part, drive, np.array([angle]), torque).response.pin_load.sum())
     left = 1.0 / np.array(loads)
     # What is left of a unit load's moment falls to nothing, in a line but for the directions that loads turn to.
@@ -200,25 +200,25 @@ def test_the_check_sees_wrong_friction_forces(rubbing, change):
 def rebalanced(rubbing, **changes):
     """The same drive balanced with other friction, the check told of the drive's own."""
     drive, model, found = rubbing
-    other = with_friction(model, replace(friction_of(model), **changes))
+    other = replace(model, friction=replace(model.friction, **changes))
     torque = drive.load.torque
     return find_imbalance(drive, other, solve_at_output(other, drive, found.crank_angle, torque), torque=torque)
 
 
 def test_the_check_sees_the_coefficient_of_another_joint(rubbing):
-    friction = friction_of(rubbing[1])
+    friction = rubbing[1].friction
     assert any("wheel pin" in problem for problem in rebalanced(rubbing, pin=friction.hole))
     assert any("shaft pin" in problem for problem in rebalanced(rubbing, hole=friction.pin))
 
 
 def test_the_check_sees_the_other_motion(rubbing):
-    assert any("instead of" in problem for problem in rebalanced(rubbing, motion=-friction_of(rubbing[1]).motion))
+    assert any("instead of" in problem for problem in rebalanced(rubbing, motion=-rubbing[1].friction.motion))
 
 
 def test_the_check_sees_a_pose_that_friction_does_not_hold(rubbing):
     """Told forces that are right do not help where they do not balance."""
     drive, model, found = rubbing
-    smooth = solve_at_output(with_friction(model, None), drive, found.crank_angle, drive.load.torque)
+    smooth = solve_at_output(replace(model, friction=None), drive, found.crank_angle, drive.load.torque)
     own = Reducer.respond(model, smooth.crank_angle, smooth.pose)
     assert any("slope" in problem for problem in find_imbalance(drive, model, replace(smooth, response=own)))
 
@@ -229,8 +229,8 @@ def test_the_check_sees_bearings_that_rub_not(rubbing, name):
     drive, model, found = rubbing
     rough = replace(drive.friction, roller=0.015, support_bearing=0.02)
     drive = replace(drive, friction=rough)
-    friction = type(friction_of(model)).of_drive(drive)
-    model = with_friction(model, friction)
+    friction = type(model.friction).of_drive(drive)
+    model = replace(model, friction=friction)
     torque = drive.load.torque
     assert find_imbalance(drive, model, solve_at_output(model, drive, found.crank_angle, torque), torque=torque) == []
     assert rebalanced((drive, model, found), **{name: 0.0})

@@ -14,7 +14,7 @@ from ltca.compliance.rollers import RollerState
 from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import equal_parts
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
-from ltca.equilibrium.reducer import bearing_forces, disc_responses
+from ltca.equilibrium.reducer import bearing_forces
 from ltca.equilibrium.supports import crank_stiffness, support_stiffness
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
@@ -105,7 +105,7 @@ def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
     drive = replace(drive, crank=replace(drive.crank, support=None, number=cranks))
     model = HalfSpace().prepare(drive).model
     found = solve_at_output(model, drive, ANGLES, drive.load.torque)
-    for number, part in enumerate(disc_responses(found.response)):
+    for number, part in enumerate(found.response.parts):
         on_disc = -np.einsum("bi,bij->bj", part.pin_load, part.flank.gradient)
         resultant, moment = on_disc[:, X] + 1j * on_disc[:, Y], on_disc[:, DISC_ROTATION]
         place = model.discs[number].geometry.placement

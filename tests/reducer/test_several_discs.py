@@ -14,7 +14,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.equilibrium.reducer import disc_responses, reducer_of
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
@@ -169,9 +169,9 @@ def test_tangent_is_the_slope_of_the_force(joint, discs):
     drive = with_fields(joint, {"disc.number_of_discs": discs, "disc.phases": (), "disc.planes": ()})
     drive = with_fields(drive, {"disc.of.0.runout.amount": 0.003})
     balanced = solve_equilibrium(prepared(drive), ANGLES[:2], drive.wheel_moment())
-    parts = zip(prepared(drive).discs, disc_responses(balanced.response), strict=True)
+    parts = zip(prepared(drive).discs, balanced.response.parts, strict=True)
     held = [replace(m, pin_law=HeldRadius(m.pin_law, part.flank.effective_radius)) for m, part in parts]
-    model, pose = reducer_of(held), balanced.pose
+    model, pose = Reducer(discs=tuple(held)), balanced.pose
     size = pose.shape[1]
     assert size == 3 * discs + 1
     tangent, step = balanced.response.tangent, 1e-8
@@ -201,7 +201,7 @@ def test_order_of_the_discs_is_a_matter_of_names(joint, discs):
     np.testing.assert_allclose(after.full.pose[:, WHEEL_ANGLE], before.full.pose[:, WHEEL_ANGLE], rtol=0.0, atol=ANGLE)
     np.testing.assert_allclose(after.torque_share, before.torque_share[:, order], rtol=0.0, atol=1e-8)
     for number, disc in enumerate(order):
-        loads = [disc_responses(each.full.response)[k].pin_load for each, k in ((after, number), (before, disc))]
+        loads = [each.full.response.parts[k].pin_load for each, k in ((after, number), (before, disc))]
         np.testing.assert_allclose(*loads, rtol=0.0, atol=LOAD)
 
 

@@ -6,7 +6,7 @@ so the output comes back another way. Makers read lost motion in the middle of t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,6 @@ from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.sticking import StickingFriction
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import friction_of, with_friction
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -82,16 +81,16 @@ def locked_path(
     """
     angles, path = np.atleast_1d(np.asarray(crank_angle, dtype=float)), np.atleast_1d(np.asarray(torque, dtype=float))
     model = (HalfSpace() if engine is None else engine).prepare(drive).model
-    friction = friction_of(model)
+    friction = model.friction
     if not isinstance(friction, TurningFriction):
         raise DriveError(["friction: must be given for a loop, which only friction makes"])
-    smooth = with_friction(model, None)
+    smooth = replace(model, friction=None)
     found = solve_at_output(smooth, drive, angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [found.pose[:, WHEEL_ANGLE]]
     for before, value in pairwise(path):
         try:
-            found = solve_at_output(with_friction(model, state), drive, angles, float(value), found.pose)
+            found = solve_at_output(replace(model, friction=state), drive, angles, float(value), found.pose)
         except ConvergenceError as error:
             error.add(f"torque path from {before:g} to {value:g} N·mm")
             raise

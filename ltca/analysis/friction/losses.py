@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, bearing_pushes
+from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction, rubbing, seat_travel
 from ltca.equilibrium.output_torque import crank_moments
-from ltca.equilibrium.reducer import disc_responses, friction_of
+from ltca.equilibrium.reducer import Reducer
 
 FloatArray = NDArray[np.float64]
 
@@ -106,12 +106,12 @@ class Losses:
         return np.asarray(per_radian * self.crank_speed * 1e-3)
 
 
-def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: float | FloatArray) -> Losses:
+def losses(model: Reducer, drive: Drive, found: Equilibrium, torque: float | FloatArray) -> Losses:
     """Return what friction costs.
 
     Parameters
     ----------
-    model : ComplianceModel
+    model : Reducer
         What balanced, with the friction of a drive that turns.
     drive : Drive
         The drive, or one of a batch of drives that agree in what friction and installation are.
@@ -125,10 +125,10 @@ def losses(model: ComplianceModel, drive: Drive, found: Equilibrium, torque: flo
     ValueError
         When nothing rubs in the model.
     """
-    friction, coefficients = friction_of(model), drive.friction
+    friction, coefficients = model.friction, drive.friction
     if not isinstance(friction, TurningFriction) or coefficients is None:
         raise ValueError("losses are those of a drive with friction that turns")
-    angle, parts = found.crank_angle, disc_responses(found.response)
+    angle, parts = found.crank_angle, found.response.parts
     force = np.abs(np.stack([part.friction for part in parts if part.friction is not None]))
     slips = [
         Slip.of_disc(disc.geometry, angle, found.pose[:, model.coordinates.columns(number)], part).by_crank

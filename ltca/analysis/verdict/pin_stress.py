@@ -22,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.equilibrium.reducer import disc_responses
 from ltca.geometry.coordinates import DISC_PLACE, WHEEL_ANGLE
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 
@@ -88,7 +87,7 @@ def pin_stress(analysis: LoadedAnalysis, pins: Literal["wheel", "shaft"]) -> Pin
     edges = [edge for plane in planes for edge in (plane - 0.5 * width, plane + 0.5 * width)]
     at = np.unique(np.concatenate([np.linspace(0.0, beam.span, PLACES), np.clip(edges, 0.0, beam.span)]))
     forces = []
-    for part in disc_responses(analysis.full.response):
+    for part in analysis.full.response.parts:
         motion, load = (part.flank, part.pin_load) if pins == "wheel" else (part.holes, part.hole_load)
         vector = load[..., None] * motion.gradient[..., DISC_PLACE]
         if part.friction is not None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import Response
+from ltca.compliance.response import DiscResponse
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.pairs import ContactGeometry
 
@@ -40,7 +40,7 @@ class Slip:
     by_crank: FloatArray
 
     @classmethod
-    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response) -> Slip:
+    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse) -> Slip:
         """Return the slip of the contacts of one disc.
 
         Parameters
@@ -51,7 +51,7 @@ class Slip:
             φ_C, rad.
         pose : array, shape (positions, coordinates)
             q of the disc.
-        part : Response
+        part : DiscResponse
             Its contacts.
         """
         place = geometry.placement

@@ -21,11 +21,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import ComplianceModel, Response
+from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
-from ltca.equilibrium.reducer import disc_responses
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.pairs import ContactGeometry
 
 FloatArray = NDArray[np.float64]
@@ -80,21 +80,21 @@ class StickingFriction:
     closed: NDArray[np.bool_]
 
     @classmethod
-    def at_rest(cls, friction: TurningFriction, model: ComplianceModel, found: Equilibrium) -> StickingFriction:
+    def at_rest(cls, friction: TurningFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction of a drive without any force along a tangent yet.
 
         Parameters
         ----------
         friction : TurningFriction
             Of the drive that turns, for its coefficients.
-        model : ComplianceModel
+        model : Reducer
             Whose poses those are.
         found : Equilibrium
             Balanced without friction.
         """
         return cls(pin=friction.pin, hole=friction.hole, **_state(model, found, rubbed=False))
 
-    def after(self, model: ComplianceModel, found: Equilibrium) -> StickingFriction:
+    def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction since a state that was found with this one."""
         return StickingFriction(pin=self.pin, hole=self.hole, **_state(model, found, rubbed=True))
 
@@ -114,7 +114,7 @@ class StickingFriction:
         )
 
     def of_disc(
-        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response, disc: int
+        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
     ) -> Rubbing:
         """Return what friction does to a disc; arguments as for `ltca.equilibrium.friction.turning.TurningFriction`."""
         if part.slopes is None:
@@ -138,7 +138,7 @@ class StickingFriction:
             tangent=np.matmul(slip.by_pose.swapaxes(1, 2), change),
         )
 
-    def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
+    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs: none."""
         return np.zeros(parts[0].pin_load.shape[0])
 
@@ -147,8 +147,8 @@ class StickingFriction:
         return np.zeros(pushes[0].shape)
 
 
-def _state(model: ComplianceModel, found: Equilibrium, *, rubbed: bool) -> dict[str, Any]:
-    parts = disc_responses(found.response)
+def _state(model: Reducer, found: Equilibrium, *, rubbed: bool) -> dict[str, Any]:
+    parts = found.response.parts
     load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
     held = [part.friction for part in parts if part.friction is not None]
     return {

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import Response, bearing_pushes
+from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
@@ -143,7 +143,7 @@ class TurningFriction:
         return self
 
     def of_disc(
-        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Response, disc: int
+        self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
     ) -> Rubbing:
         """Return what friction does to a disc.
 
@@ -155,7 +155,7 @@ class TurningFriction:
             φ_C, rad.
         pose : array, shape (positions, coordinates)
             q of the disc.
-        part : Response
+        part : DiscResponse
             Its contacts, with slopes.
         disc : int
             Its number.
@@ -180,12 +180,12 @@ class TurningFriction:
         force[:, DISC_ROTATION] -= self.motion * self.strength * self.rolling * push
         return Rubbing(tangential=tangential, force=force, tangent=tangent)
 
-    def of_wheel(self, parts: Sequence[Response], reduction_ratio: float) -> FloatArray:
+    def of_wheel(self, parts: Sequence[DiscResponse], reduction_ratio: float) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
 
         Parameters
         ----------
-        parts : sequence of Response
+        parts : sequence of DiscResponse
             Contacts of each disc, friction in them.
         reduction_ratio : float
             u: the wheel turns against the shaft by 1/u of the crank.
@@ -207,7 +207,7 @@ class TurningFriction:
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
 
 
-def wheel_force(part: Response) -> ComplexArray:
+def wheel_force(part: DiscResponse) -> ComplexArray:
     """Return the force of the disc on the wheel, its friction included, N, shape (positions,)."""
     pins = part.pin_load.shape[1]
     total = np.einsum("bp,bpi->bi", part.pin_load, part.flank.gradient[..., DISC_PLACE])

@@ -13,7 +13,6 @@ from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.parts import Friction
 from ltca.equilibrium.friction.sticking import stick_or_slip
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import friction_of, with_friction
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -60,9 +59,12 @@ def test_the_loop_lies_between_the_turning_branches(paper, name):
     path = drive.load.torque * np.r_[parts, parts[::-1][1:], parts[1:]]
     found = locked_path(drive, ANGLE, path)[0] / drive.output_per_wheel_angle
     model = HalfSpace().prepare(drive).model
-    ways = [friction_of(model), friction_of(model).reversed()]
+    ways = [model.friction, model.friction.reversed()]
     ends = [
-        [solve_at_output(with_friction(model, way), drive, ANGLE, float(value)).pose[0, WHEEL_ANGLE] for value in path]
+        [
+            solve_at_output(replace(model, friction=way), drive, ANGLE, float(value)).pose[0, WHEEL_ANGLE]
+            for value in path
+        ]
         for way in ways
     ]
     low, high = np.min(ends, axis=0), np.max(ends, axis=0)

@@ -14,6 +14,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import LengthProfile, Material
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
@@ -65,10 +66,10 @@ def test_direct_agrees_with_tables_in_six_cases(case):
 def test_grid_halved():
     """Mid pressure moves by less than 0.3 %, load by less than 0.05 % (measured 0.04 %, 0.01 %)."""
     drive, angle = CASES["CS-3"], np.array([0.4, 2.0])
-    near = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), angle, drive.wheel_moment())
+    near = solve_equilibrium(Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), angle, drive.wheel_moment())
     coarse, fine = (GridCompliance.of_drive(drive, cells) for cells in (12, 24))
-    first = solve_equilibrium(coarse, angle, drive.wheel_moment(), near.pose).response
-    second = solve_equilibrium(fine, angle, drive.wheel_moment(), near.pose).response
+    first = solve_equilibrium(Reducer(discs=(coarse,)), angle, drive.wheel_moment(), near.pose).response
+    second = solve_equilibrium(Reducer(discs=(fine,)), angle, drive.wheel_moment(), near.pose).response
     assert apart(second, first) < 5e-4
     assert pressures_apart(fine.pressures(second), coarse.pressures(first)) < 3e-3
 
@@ -99,7 +100,7 @@ def test_paper_on_grids_agrees_with_direct():
 def test_paper_answers_at_the_actual_crank_angle():
     """Held wheel and lead map to the requested angle; without the correction it would be 1.2° to 1.7° off."""
     drive, angle = CASES["CS-3"], np.array([0.3, 2.2])
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     found = solve_equilibrium(model, angle, drive.wheel_moment())
     wheel, unknowns = lead_of_pose(model, angle, found.pose)
     actual, pose = pose_of_lead(model, wheel, unknowns)
@@ -113,7 +114,7 @@ def test_paper_answers_at_the_actual_crank_angle():
 def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys):
     """From the ideal pose nothing touches and the tangent is singular: ConvergenceError, exit status 2."""
     drive = CASES["CS-6"]
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     with pytest.raises(ConvergenceError, match="iteration of the paper fails") as caught:
         solve_paper_equilibrium(model, np.array([0.3]), drive.wheel_moment(), np.zeros((1, 4)))
     assert "singular tangent" in str(caught.value)

@@ -235,10 +235,11 @@ def test_summary_keys_and_scalars_from_the_dataset(analyses, flat):
 def test_light_torque_is_that_of_the_drive(vary):
     from ltca.compliance.half_space import HalfSpaceCompliance
     from ltca.equilibrium.balance import solve_equilibrium
+    from ltca.equilibrium.reducer import Reducer
 
     drive = vary(load={"light_torque": 20_000.0})
     analysis = analyse(drive, ANGLES)
-    alone = solve_equilibrium(HalfSpaceCompliance.of_drive(drive), ANGLES, -20_000.0)
+    alone = solve_equilibrium(Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), ANGLES, -20_000.0)
     np.testing.assert_allclose(analysis.light.pose[:, WHEEL_ANGLE], alone.pose[:, WHEEL_ANGLE], atol=1e-11)
 
 

@@ -12,6 +12,7 @@ from ltca.analysis.torque_curve import LOST_MOTION, SMALLEST, STIFF_FROM, torque
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play, rigid_play
@@ -40,18 +41,13 @@ class SpringsWithPlay:
     play: float
 
     @property
-    def discs(self):
-        return (self,)
-
-    @property
     def geometry(self):
         return self.real.geometry
 
-    @property
-    def coordinates(self):
-        return self.real.coordinates
+    def take(self, rows):
+        return self
 
-    def respond(self, crank_angle, pose, start=None):
+    def respond(self, crank_angle, pose, start=None, shifts=None):
         response = self.real.respond(crank_angle, pose, start)
         wheel = pose[:, WHEEL_ANGLE]
         beyond = np.sign(wheel) * np.maximum(np.abs(wheel) - 0.5 * self.play, 0.0)
@@ -68,7 +64,7 @@ def test_springs_with_play(paper_cases):
     drive = paper_cases["CS-1"]
     rated, ccw, clockwise, play = 377_300.0, 6e8, 4e8, 3e-3
     springs = SpringsWithPlay(HalfSpaceCompliance.of_drive(drive), ccw, clockwise, play)
-    found = torque_curve(drive, ANGLES, points=2, engine=Prepared(springs))
+    found = torque_curve(drive, ANGLES, points=2, engine=Prepared(Reducer(discs=(springs,))))
     expected = np.where(found.torque > 0.0, 0.5 * play + found.torque / ccw, -0.5 * play + found.torque / clockwise)
     # the balance closes to 1e-9 of the load: 1e-12 rad here
     np.testing.assert_allclose(found.wheel_angle, np.tile(expected, (2, 1)), rtol=0.0, atol=1e-11)
@@ -89,7 +85,7 @@ def test_springs_with_play(paper_cases):
 def test_figures_are_those_of_single_torques(paper_cases):
     """Lost motion and stiffness against balances found one torque at a time, away from any curve."""
     drive = paper_cases["CS-3"]
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     found = torque_curve(drive, ANGLES, points=3)
 
     def wheel(part):
@@ -110,7 +106,7 @@ def test_stiffness_is_that_of_the_whole_drive(paper_cases):
     one = paper_cases["CS-3"]
     two = with_fields(one, {"disc.number_of_discs": 2})
     found = torque_curve(two, ANGLES, points=2)
-    model = HalfSpaceCompliance.of_drive(one)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(one),))
     half, full = (solve_equilibrium(model, ANGLES, 0.5 * part * 377_300.0).pose[:, WHEEL_ANGLE] for part in (0.5, 1.0))
     # balanced to 1e-9 of the load over the stiffness, 1e-12 rad of 1e-4 rad
     np.testing.assert_allclose(found.stiffness[:, 1], 0.5 * 377_300.0 / (full - half), rtol=1e-7)

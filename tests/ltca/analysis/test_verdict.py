@@ -21,7 +21,6 @@ from ltca.drive.members.judgement import TITLES
 from ltca.drive.members.limits import LIMITED, parse_limits
 from ltca.drive.members.pins import WheelPinSeat
 from ltca.drive.parts import Material
-from ltca.equilibrium.reducer import disc_responses
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_PLACE
 from ltca.geometry.placement import position_angles
@@ -288,7 +287,7 @@ def test_pins_bend_under_the_forces_of_all_discs(pins, end):
     found = pin_stress(analysis, pins)
     planes, width = np.array(drive.disc.disc_planes) + 0.5 * beam.span, drive.disc.thickness
     forces = []
-    for part in disc_responses(analysis.full.response):
+    for part in analysis.full.response.parts:
         motion, load = (part.flank, part.pin_load) if pins == "wheel" else (part.holes, part.hole_load)
         push = load[..., None] * motion.gradient[..., DISC_PLACE]
         forces.append(push[..., 0] + 1j * push[..., 1])

@@ -18,6 +18,7 @@ from ltca.compliance import coefficient_files
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.reading.drive_file import shipped_drive
 
 CASE, TURNS, SPEED = "CS-6", 14, 1500.0
@@ -78,7 +79,7 @@ def test_torque_curve_is_that_of_the_drive(told, paper_cases):
     kept = told[1]["torque_curve"]
     angles = np.array(kept["crank_angle_rad"])
     np.testing.assert_allclose(angles, 2.0 * np.pi / 13.0 * np.arange(angles.size) / angles.size, rtol=1e-12)
-    model, at = HalfSpaceCompliance.of_drive(paper_cases[CASE]), np.repeat(angles[-1:], 4)
+    model, at = Reducer(discs=(HalfSpaceCompliance.of_drive(paper_cases[CASE]),)), np.repeat(angles[-1:], 4)
     half, full, low, high = solve_equilibrium(model, at, 377_300.0 * np.array([0.5, 1.0, -0.03, 0.03])).pose[:, 3]
     assert kept["stiffness_N_mm_per_rad"][-1][1] == pytest.approx(0.5 * 377_300.0 / (full - half), rel=1e-7)
     assert kept["lost_motion_rad"][-1] == pytest.approx(high - low, rel=1e-7)

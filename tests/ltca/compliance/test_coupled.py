@@ -13,6 +13,7 @@ from ltca.compliance.coefficients import load_coefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.pairs import ContactGeometry
@@ -34,8 +35,8 @@ def test_without_coupling_it_is_the_half_space(paper_cases):
         drive = paper_cases[case]
         coupled = CoupledCompliance.of_drive(drive, without_coupling(drive), "half-space", hole_near_field=False)
         plain = HalfSpaceCompliance.of_drive(drive)
-        found = solve_equilibrium(coupled, ANGLES, drive.wheel_moment())
-        expected = solve_equilibrium(plain, ANGLES, drive.wheel_moment())
+        found = solve_equilibrium(Reducer(discs=(coupled,)), ANGLES, drive.wheel_moment())
+        expected = solve_equilibrium(Reducer(discs=(plain,)), ANGLES, drive.wheel_moment())
         # Both stop at 1e-9 of the load; near-field approaches settle to 1e-13 mm, 1e-7 N.
         np.testing.assert_allclose(found.response.pin_load, expected.response.pin_load, atol=1e-5)
         np.testing.assert_allclose(found.response.hole_load, expected.response.hole_load, atol=1e-5)
@@ -49,7 +50,7 @@ def test_tangent_and_approaches_of_the_real_bodies(paper_cases, derived, near_fi
     drive = paper_cases["CS-3"]
     model = CoupledCompliance.of_drive(drive, load_coefficients(derived, drive), near_field)
     angle = np.array([0.5])
-    pose = solve_equilibrium(model, angle, drive.wheel_moment()).pose
+    pose = solve_equilibrium(Reducer(discs=(model,)), angle, drive.wheel_moment()).pose
     response = model.respond(angle, pose)
     step = np.array([1e-6, 1e-6, 1e-8, 1e-8])
     numeric = np.empty((4, 4))
@@ -109,7 +110,7 @@ def test_a_drive_a_hundred_times_as_large_carries_alike(paper_cases, closed_form
         large = enlarged(drive, factor)
         coefficients = closed_form(large, half_width=0.05 * factor, depth=300.0 * factor)
         model = CoupledCompliance.of_drive(large, coefficients, "plane-strain")
-        response = solve_equilibrium(model, ANGLES, large.wheel_moment()).response
+        response = solve_equilibrium(Reducer(discs=(model,)), ANGLES, large.wheel_moment()).response
         loads.append(np.hstack([response.pin_load, response.hole_load, response.rollers.outer_load]) / factor**2)
     # Both stop at 1e-9 of the load.
     np.testing.assert_allclose(loads[1], loads[0], rtol=0.0, atol=3e-9 * loads[0].max())
@@ -153,7 +154,7 @@ def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, mon
     """Only contacts near to closing are unknowns; the answer is that of all of them, whichever were left out."""
     drive = paper_cases["CS-6"]
     model = CoupledCompliance.of_drive(drive, closed_form(drive), near_field)
-    pose = solve_equilibrium(model, ANGLES, drive.wheel_moment()).pose
+    pose = solve_equilibrium(Reducer(discs=(model,)), ANGLES, drive.wheel_moment()).pose
     few = model.respond(ANGLES, pose)
     monkeypatch.setattr(coupled, "MARGIN", np.inf)
     everything = model.respond(ANGLES, pose)

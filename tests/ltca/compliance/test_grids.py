@@ -12,6 +12,7 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
 from ltca.drive.parts import LengthProfile
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 
 ANGLES = np.array([0.4])
 
@@ -40,7 +41,7 @@ def profiled(paper_cases):
 def balanced(paper_cases):
     """The balanced pose on tables."""
     drive = paper_cases["CS-4"]
-    return solve_equilibrium(HalfSpaceCompliance.of_drive(drive), ANGLES, drive.wheel_moment()).pose
+    return solve_equilibrium(Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), ANGLES, drive.wheel_moment()).pose
 
 
 def poses_about(near, count=3, size=1e-3):
@@ -103,8 +104,8 @@ def test_equilibrium_does_not_depend_on_its_start(paper_cases, balanced):
     """From first contact as from the tables: the same pose to the tolerance of the balance."""
     drive = paper_cases["CS-4"]
     grids = GridCompliance.of_drive(drive)
-    warm = solve_equilibrium(grids, ANGLES, drive.wheel_moment(), balanced)
-    cold = solve_equilibrium(grids, ANGLES, drive.wheel_moment())
+    warm = solve_equilibrium(Reducer(discs=(grids,)), ANGLES, drive.wheel_moment(), balanced)
+    cold = solve_equilibrium(Reducer(discs=(grids,)), ANGLES, drive.wheel_moment())
     # residuals of 1e-9 of the load on stiffnesses of some load by 10 µm: 1e-11 mm, and the lever arms
     np.testing.assert_allclose(cold.pose, warm.pose, rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(cold.response.pin_load, warm.response.pin_load, rtol=0.0, atol=1e-5)

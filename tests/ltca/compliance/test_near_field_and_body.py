@@ -16,6 +16,7 @@ from ltca.compliance.near_field import finite_length_approach
 from ltca.contact.hertz import cylinder_approach, half_plane_approach, line_half_width, strip_approach
 from ltca.drive.parts import Material, Materials
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.testing.closed_form_bodies import CROSS_SHARE
 
 ANGLES = np.array([0.0, 0.5])
@@ -71,7 +72,7 @@ def pair_approaches(model, drive):
 
     A roller's two loads push it from both ends: each end yields to the other's load as well.
     """
-    response = solve_equilibrium(model, ANGLES, drive.wheel_moment()).response
+    response = solve_equilibrium(Reducer(discs=(model,)), ANGLES, drive.wheel_moment()).response
     rollers, scale = response.rollers, 1.0 / (np.pi * plane_modulus("roller") * drive.crank_bearing.roller_length)
     across = 2.0 * CROSS_SHARE * scale
     kinds = {

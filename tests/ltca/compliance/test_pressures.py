@@ -13,6 +13,7 @@ from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.laws.series import approach_at_load
 from ltca.reading.changes import with_fields
 
@@ -201,7 +202,7 @@ def test_holes_in_batches(drive):
     drives = [drive, with_fields(drive, {"pin_shaft.pin_radius": 9.9, "clearance.pin_hole": 0.0})]
     batch = HalfSpaceCompliance.of_drives(drives, ANGLES.size)
     moments = np.repeat([own.wheel_moment() for own in drives], ANGLES.size)
-    found = batch.pressures(solve_equilibrium(batch, np.tile(ANGLES, 2), moments).response).holes
+    found = batch.pressures(solve_equilibrium(Reducer(discs=(batch,)), np.tile(ANGLES, 2), moments).response).holes
     alone = [analyse(own, ANGLES).pressures.holes for own in drives]
     for field in ("mid", "largest", "half_width"):
         expected = np.concatenate([getattr(holes, field) for holes in alone])

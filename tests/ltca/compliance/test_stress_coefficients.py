@@ -66,11 +66,11 @@ def analysis(drive, coefficients):
 
 
 def stresses_of(analysis):
-    return wall_stresses(analysis.model, analysis.full.response, analysis.pressures, analysis.full.pose[:, 2])
+    return wall_stresses(analysis.model.discs[0], analysis.full.response, analysis.pressures, analysis.full.pose[:, 2])
 
 
 def profiles_of(analysis, **options):
-    arguments = (analysis.model, analysis.full.response, analysis.pressures, analysis.full.pose[:, 2])
+    arguments = (analysis.model.discs[0], analysis.full.response, analysis.pressures, analysis.full.pose[:, 2])
     return wall_profiles(*arguments, **options)
 
 
@@ -135,7 +135,7 @@ def test_largest_stresses_are_those_of_clear_places(drive, analysis):
 
 def test_walls_are_not_clear_beside_loaded_contacts(drive, analysis):
     profiles = profiles_of(analysis, refinement=64)
-    response, geometry = analysis.full.response, analysis.model.geometry
+    response, geometry = analysis.full.response, analysis.model.discs[0].geometry
     pressures = analysis.pressures
     for row in range(len(ANGLES)):
         expected = np.ones(profiles[0].parameter.size, dtype=bool)
@@ -164,7 +164,7 @@ def test_nothing_clear_is_no_number(analysis):
     """Contacts as wide as the wall: there is nothing left to report there."""
     wide = replace(analysis.pressures.pins, half_width=np.full_like(analysis.pressures.pins.half_width, 1e3))
     pressures = replace(analysis.pressures, pins=wide)
-    found = wall_stresses(analysis.model, analysis.full.response, pressures, analysis.full.pose[:, 2])
+    found = wall_stresses(analysis.model.discs[0], analysis.full.response, pressures, analysis.full.pose[:, 2])
     assert np.all(np.isnan(found.root))
     assert np.all(np.isnan(found.root_parameter))
     assert np.all(np.isfinite(found.bore))

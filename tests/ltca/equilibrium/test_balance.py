@@ -9,6 +9,7 @@ import pytest
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import lever_arms, solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.first_contact import unloaded_transmission_error
@@ -19,7 +20,7 @@ from ltca.testing.random_drives import COORDINATES, random_drive
 
 @pytest.fixture(scope="module")
 def models(paper_cases):
-    return {name: HalfSpaceCompliance.of_drive(drive) for name, drive in paper_cases.items()}
+    return {name: Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)) for name, drive in paper_cases.items()}
 
 
 def test_residual_is_that_of_the_response_and_small(models, paper_cases):
@@ -96,7 +97,7 @@ def test_light_torque_tends_to_the_geometry(models, paper_cases):
     """CS-1 has no play but the flank's: as the torque falls the wheel angle tends to first contact."""
     angles = np.linspace(0.0, 6.0, 20)
     model = models["CS-1"]
-    geometric = unloaded_transmission_error(model.geometry, angles)
+    geometric = unloaded_transmission_error(model.geometries[0], angles)
     away = []
     for torque in (1e4, 1e3, 1e2, 1e1):
         found = solve_equilibrium(model, angles, -torque)
@@ -117,9 +118,9 @@ def test_moment_of_every_position_is_its_own(models):
 
 
 def test_loads_that_are_no_numbers_do_not_pass_for_balanced(models):
-    broken = replace(models["CS-1"], hole_law=SpringLaw(stiffness=float("nan")))
+    broken = replace(models["CS-1"].discs[0], hole_law=SpringLaw(stiffness=float("nan")))
     with pytest.raises(ConvergenceError):
-        solve_equilibrium(broken, np.array([0.1]), -1e5)
+        solve_equilibrium(Reducer(discs=(broken,)), np.array([0.1]), -1e5)
 
 
 @pytest.mark.slow
@@ -127,21 +128,17 @@ def test_stagnation_is_an_error_with_its_history(models):
     """A bearing whose push turns round at every look: nothing balances, and the error says where."""
 
     class Stubborn:
-        geometry = models["CS-1"].geometry
-        coordinates = geometry.coordinates
+        (real,) = models["CS-1"].discs
+        geometry = real.geometry
         looks = 0
 
-        @property
-        def discs(self):
-            return (self,)
-
-        def respond(self, crank_angle, pose, start=None):
-            response = models["CS-1"].respond(crank_angle, pose, start)
+        def respond(self, crank_angle, pose, start=None, shifts=None):
+            response = self.real.respond(crank_angle, pose, start, shifts)
             self.looks += 1
             return replace(response, force=response.force + np.array([0.0, 1e5 * (-1.0) ** self.looks, 0.0, 0.0]))
 
     with pytest.raises(ConvergenceError, match=r"crank angle 0.1 rad .*residual in N") as caught:
-        solve_equilibrium(Stubborn(), np.array([0.1]), -1e5)
+        solve_equilibrium(Reducer(discs=(Stubborn(),)), np.array([0.1]), -1e5)
     assert len(caught.value.history) == 100
 
 
@@ -149,12 +146,17 @@ def test_stagnation_is_an_error_with_its_history(models):
 def test_a_light_torque_is_followed_down_from_a_heavier_one():
     """Started at rest the disc wanders between contacts that take turns: it was "no equilibrium" of a sound drive."""
     drive, angle = random_drive(np.random.default_rng(107).random(COORDINATES))
-    model, angles = HalfSpaceCompliance.of_drive(drive), angle + np.linspace(0.0, 6.28, 7)
+    model, angles = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),)), angle + np.linspace(0.0, 6.28, 7)
     moment = 0.003 * drive.wheel_moment()
     found = solve_equilibrium(model, angles, moment)
     assert find_imbalance(drive, model, found) == []
     # The same minimum as from the pose under full load, by another way: loads agree to what counts as balance.
-    other = solve_equilibrium(model, angles, moment, solve_equilibrium(model, angles, drive.wheel_moment()).pose)
+    other = solve_equilibrium(
+        model,
+        angles,
+        moment,
+        solve_equilibrium(model, angles, drive.wheel_moment()).pose,
+    )
     size = np.max(other.response.pin_load)
     np.testing.assert_allclose(found.response.pin_load, other.response.pin_load, rtol=0.0, atol=1e-5 * size)
 
@@ -166,7 +168,7 @@ def test_every_position_balances_at_every_load_both_ways(paper_cases, vary):
     for drive in paper_cases.values():
         clearance = {"bearing": drive.clearance.bearing, "pin_hole": drive.clearance.pin_hole}
         reverse = vary(clearance=clearance, load={"direction": "cw"})
-        forward_model, reverse_model = (HalfSpaceCompliance.of_drive(d) for d in (drive, reverse))
+        forward_model, reverse_model = (Reducer(discs=(HalfSpaceCompliance.of_drive(d),)) for d in (drive, reverse))
         for part in (0.01, 0.1, 1.0, 3.0):
             torque = 377_300.0 * part
             forward = solve_equilibrium(forward_model, -angles, drive.wheel_moment(torque))

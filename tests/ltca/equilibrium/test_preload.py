@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.line_contact import LineContactLaw
@@ -32,7 +33,9 @@ def test_oversize_rollers_are_pressed_alike(drive, overlap):
     loose = replace(drive, disc=replace(drive.disc, equidistant_offset=0.1))  # the flank has nothing to say
     radius = 5.0 + 0.5 * overlap
     large = replace(loose, crank_bearing=replace(drive.crank_bearing, roller_radius=radius))
-    balanced = solve_equilibrium(HalfSpaceCompliance.of_drive(large), np.array([0.3]), NEXT_TO_NOTHING)
+    balanced = solve_equilibrium(
+        Reducer(discs=(HalfSpaceCompliance.of_drive(large),)), np.array([0.3]), NEXT_TO_NOTHING
+    )
     law = LineContactLaw(length=11.8, contact_modulus=206e3 / (2.0 * (1.0 - 0.3**2)))
     on_race, on_bore = 1.0 / (1.0 / radius + 1.0 / 19.5), 1.0 / (1.0 / radius - 1.0 / 29.5)
 
@@ -72,7 +75,7 @@ def test_preload_without_torque_is_mirrored_at_the_crank(drive, change):
         crank_bearing=replace(drive.crank_bearing, roller_radius=5.0 + 0.5 * change.get("rollers", 0.0)),
         pin_shaft=replace(drive.pin_shaft, hole_radius=14.075 + change.get("holes", 0.0)),
     )
-    balanced = solve_equilibrium(HalfSpaceCompliance.of_drive(part), np.zeros(1), NEXT_TO_NOTHING)
+    balanced = solve_equilibrium(Reducer(discs=(HalfSpaceCompliance.of_drive(part),)), np.zeros(1), NEXT_TO_NOTHING)
     for load in (balanced.response.pin_load, balanced.response.hole_load, balanced.response.rollers.outer_load):
         # 0.02 N turn the wheel one way
         np.testing.assert_allclose(load[0, 1:], load[0, :0:-1], rtol=0.0, atol=0.1)

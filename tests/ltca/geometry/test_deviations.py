@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.flank import FlankProfile
@@ -215,11 +216,11 @@ def test_wrong_deviations_are_refused(paper_cases, fields, message):
 def _together_and_alone(drives, angles):
     model = HalfSpaceCompliance.of_drives(drives, angles.size)
     moment = drives[0].wheel_moment()
-    together = solve_equilibrium(model, np.tile(angles, len(drives)), moment)
+    together = solve_equilibrium(Reducer(discs=(model,)), np.tile(angles, len(drives)), moment)
     pressures = model.pressures(together.response)
     for number, drive in enumerate(drives):
         own = HalfSpaceCompliance.of_drive(drive)
-        alone = solve_equilibrium(own, angles, moment)
+        alone = solve_equilibrium(Reducer(discs=(own,)), angles, moment)
         rows = slice(angles.size * number, angles.size * (number + 1))
         yield alone, together, rows, own.pressures(alone.response).pins.mid, pressures.pins.mid[rows]
 

@@ -8,6 +8,7 @@ from ltca.analysis.engines import HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.reading.drive_file import load_drive
 from ltca.testing.balance_check import find_imbalance
@@ -22,7 +23,7 @@ def outcome(point):
     if drawn is None:
         return "impossible"
     drive, angle = drawn
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     try:
         balanced = solve_equilibrium(model, np.array([angle]), drive.wheel_moment())
     except ConvergenceError as error:
@@ -85,7 +86,7 @@ def test_drives_hypothesis_thinks_of(point):
 
 def paper_solution():
     drive = load_drive("paper").cases["CS-4"]
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     return drive, model, solve_equilibrium(model, np.array([0.7]), drive.wheel_moment())
 
 
@@ -124,7 +125,7 @@ def test_the_check_sees_a_wrong_torque():
 def test_slipping_teeth_are_no_answer():
     """A torque so large that the wheel would climb over the teeth raises, with history."""
     drive = load_drive("paper").cases["CS-1"]
-    model = HalfSpaceCompliance.of_drive(drive)
+    model = Reducer(discs=(HalfSpaceCompliance.of_drive(drive),))
     with pytest.raises(ConvergenceError, match="slip") as caught:
         solve_equilibrium(model, np.array([0.3]), 3e4 * drive.wheel_moment())
     assert len(caught.value.history) > 1
