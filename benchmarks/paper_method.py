@@ -22,11 +22,11 @@ import numpy as np
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Clearance
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.equilibrium.clearance_free import analyse_without_clearance
-from ltca.equilibrium.paper_method import iterate_held_wheel, lead_of_pose, pose_of_lead
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
+from validation.methods.clearance_free import analyse_without_clearance
+from validation.methods.paper_method import iterate_held_wheel, lead_of_pose, pose_of_lead
 
 
 def main() -> None:

@@ -22,7 +22,7 @@ FLOORS = (
     "ltca.testing", "ltca",
     "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
     "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
-    "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
+    "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
 # What a package may not see at all: ltca stands alone, nothing sees validation.

@@ -3,6 +3,7 @@
 Folders in the order data passes; each one's docstring lists its modules.
 
 ========  ============================================================
+methods   The paper's iteration and its system without clearance
 rows      Rows of the report: one compared figure each, with its limit and why the limit has that size
 compare   One position in any model, and all metrics of a difference
 levels    The levels of the validation, from closed forms to what the flexible disc changes

@@ -6,8 +6,9 @@ positions as often as wanted. Names given as text become engines in `engine_name
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Protocol, Self, TypeAlias, get_args
 
@@ -27,14 +28,11 @@ from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import (
     require_fixed_pins,
     require_frictionless,
-    require_one_bore,
-    require_rigid_members,
 )
 from ltca.drive.single_discs import single_discs
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
+from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.turning import TurningFriction
-from ltca.equilibrium.output_torque import balance_at_output, solve_at_output
-from ltca.equilibrium.paper_method import solve_paper_equilibrium
+from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
@@ -49,8 +47,8 @@ Compliance = Literal["half-space", "fe", "hybrid"]
 Given: TypeAlias = InfluenceCoefficients | Sequence[InfluenceCoefficients] | Path | Sequence[Path] | None
 """Influence coefficients as an engine takes them."""
 
-PAPER_START = 0.95
-"""Part of the torque whose solution the paper's iteration starts from: near, but never the answer itself."""
+METHODS = "cyclo.methods"
+"""Entry points of methods that other packages bring: ``paper`` prepares the paper's iteration for a drive."""
 
 
 class PreparedEngine(Protocol):
@@ -123,22 +121,6 @@ class _FromTables:
         return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _HeldWheel:
-    """The paper's iteration, started from the solution on tables at a little less torque."""
-
-    drive: Drive
-    tables: Reducer
-    model: Reducer
-
-    def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
-            near = solve_equilibrium(self.tables, angle, PAPER_START * moment, begin)
-            return solve_paper_equilibrium(self.model, angle, moment, near.pose)
-
-        return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
-
-
 def _on_tables(drive: Drive) -> Reducer:
     """Return the model of a warm drive on tabulated laws."""
     return Reducer(
@@ -147,6 +129,15 @@ def _on_tables(drive: Drive) -> Reducer:
         pins=SharedPins.of_drive(drive),
         friction=TurningFriction.of_drive(drive),
     )
+
+
+def _method(name: str) -> Callable[[Drive, Reducer, Reducer], PreparedEngine]:
+    """Return what prepares a method that another package brings: of a warm drive, its tables and the model to balance."""
+    found = [entry for entry in entry_points(group=METHODS) if entry.name == name]
+    if not found:
+        raise DriveError([f"method = {name}: comes with the package validation, which is not installed"])
+    prepare: Callable[[Drive, Reducer, Reducer], PreparedEngine] = found[0].load()
+    return prepare
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,7 +149,7 @@ class HalfSpace:
     method : {"tables", "direct", "paper"}
         ``tables``: equilibrium on tabulated laws; ``direct``: contact grids solved inside every iteration, started
         from the solution on tables; ``paper``: the paper's iteration with held wheel
-        (`ltca.equilibrium.paper_method`), started from our solution at 95 % of the torque.
+        (`validation.methods.paper_method`), started from our solution at 95 % of the torque.
     contacts : {"tables", "grids"}, optional
         What the paper's iteration runs on, tables by default; the other methods have their own.
 
@@ -210,13 +201,7 @@ class HalfSpace:
             grids = tuple(GridCompliance.of_drive(single) for single in singles)
             model = replace(tables, discs=grids, pins=None, friction=None)
         if self.method == "paper":
-            require_rigid_members(drive, "method paper")
-            require_one_bore(drive, "method paper")
-            if len(singles) > 1:
-                raise DriveError(
-                    [f"disc.number_of_discs = {len(singles)}: must be 1 for method paper, which knows one disc"]
-                )
-            return _HeldWheel(drive=drive, tables=tables, model=model)
+            return _method("paper")(drive, tables, model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
         return _OnTables(drive=drive, model=tables)

@@ -16,9 +16,5 @@ output_torque    Equilibrium at a given torque of the output, whichever member i
 partial_balance  Balance as many positions as have an answer: one that has none costs the others nothing
 compliance_shares  Which parts of the reducer yield how much of what its output yields: shares of the compliance at a
                  balanced position
-paper_method     The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
-                 43–46, 90–93)
-clearance_free   Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system
-                 (Eq. 7–40)
 ===============  ============================================================
 """

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import ltca.analysis.engines
+import validation.methods.paper_method
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
@@ -13,11 +13,11 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import LengthProfile, Material
 from ltca.equilibrium.balance import solve_equilibrium
-from ltca.equilibrium.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
+from validation.methods.paper_method import lead_of_pose, pose_of_lead, solve_paper_equilibrium
 
 CASES = load_drive("paper").cases
 
@@ -118,7 +118,9 @@ def test_paper_fails_loudly_from_a_floating_start(monkeypatch, tmp_path, capsys)
     with pytest.raises(ConvergenceError, match="iteration of the paper fails") as caught:
         solve_paper_equilibrium(model, np.array([0.3]), drive.wheel_moment(), np.zeros((1, 4)))
     assert "singular tangent" in str(caught.value)
-    monkeypatch.setattr(ltca.analysis.engines, "solve_equilibrium", lambda model, angle, moment, start: _Floating)
+    monkeypatch.setattr(
+        validation.methods.paper_method, "solve_equilibrium", lambda model, angle, moment, start: _Floating
+    )
     command = ["run", "paper", "--case", "CS-6", "--positions", "1", "--method", "paper", "--out", str(tmp_path)]
     assert main(command) == 1
     assert "the iteration of the paper fails at crank angle 0 rad" in capsys.readouterr().err

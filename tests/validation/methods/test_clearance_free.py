@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
-from ltca.equilibrium import clearance_free
-from ltca.equilibrium.clearance_free import analyse_without_clearance
 from ltca.errors import ConvergenceError, DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from validation.methods import clearance_free
+from validation.methods.clearance_free import analyse_without_clearance
 
 PAPER = parse_drive(shipped_drive()).cases
 WITHOUT_OFFSETS = parse_drive(

@@ -17,15 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.compliance.response import Response, Start
-from ltca.equilibrium.balance import Equilibrium, lever_arms
+from ltca.drive.parts import Drive
+from ltca.drive.plane_strain import require_one_bore, require_rigid_members
+from ltca.equilibrium.balance import Equilibrium, lever_arms, solve_equilibrium
 from ltca.equilibrium.newton import TOLERANCE
+from ltca.equilibrium.output_torque import balance_at_output
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import ConvergenceError
+from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 FloatArray = NDArray[np.float64]
 
 ITERATIONS = 60
+START = 0.95
+"""Part of the torque whose solution the iteration starts from: near, but never the answer itself."""
 DIFFERENCE = 1e-6
 """ε of Eq. 91 and 93, mm (rotations: by their lever arms): small against an approach, large against round-off."""
 CORRECTIONS = 12
@@ -256,3 +261,53 @@ def solve_paper_equilibrium(
             )
         wheel = wheel + away / ratio
     raise ConvergenceError("the wheel position for the requested crank angle is not found; difference in rad", off)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldWheel:
+    """A drive that is balanced by the paper's iteration, started from the solution on tables at a little less torque.
+
+    Attributes
+    ----------
+    drive : Drive
+        Of one disc.
+    tables, model : Reducer
+        Where the iteration starts, and what it balances.
+    """
+
+    drive: Drive
+    tables: Reducer
+    model: Reducer
+
+    def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
+        """Return balanced positions at an output torque."""
+
+        def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
+            near = solve_equilibrium(self.tables, angle, START * moment, begin)
+            return solve_paper_equilibrium(self.model, angle, moment, near.pose)
+
+        return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
+
+
+def prepare(drive: Drive, tables: Reducer, model: Reducer) -> HeldWheel:
+    """Return the paper's iteration for a drive (entry point ``cyclo.methods``).
+
+    Parameters
+    ----------
+    drive : Drive
+        At its temperatures.
+    tables, model : Reducer
+        On tabulated laws, and what is to be balanced.
+
+    Raises
+    ------
+    DriveError
+        For what the iteration does not know: several discs or cranks, members that yield.
+    """
+    require_rigid_members(drive, "method paper")
+    require_one_bore(drive, "method paper")
+    if len(model.discs) > 1:
+        raise DriveError(
+            [f"disc.number_of_discs = {len(model.discs)}: must be 1 for method paper, which knows one disc"]
+        )
+    return HeldWheel(drive=drive, tables=tables, model=model)

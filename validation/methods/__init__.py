@@ -1,0 +1,11 @@
+"""Other ways to balance a drive, which the paper has and comparisons use.
+
+Modules in the order data passes:
+
+==============  ============================================================
+paper_method    The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq.
+                43–46, 90–93)
+clearance_free  Loaded tooth contact analysis of a drive without bearing and pin-hole clearance: one linear system
+                (Eq. 7–40)
+==============  ============================================================
+"""
