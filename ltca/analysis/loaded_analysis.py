@@ -369,6 +369,35 @@ def analyse(
     return analysis
 
 
+def analysis_of(
+    drive: Drive,
+    torque: float,
+    engine: Engine,
+    model: Reducer,
+    full: Equilibrium,
+    light: Equilibrium,
+    back: Equilibrium | None = None,
+) -> LoadedAnalysis:
+    """Return the analysis of a warm drive whose contacts are known at all positions: at the torque, lightly loaded, turned back."""
+    pressures, push = model.pressures(full.response), bearing_forces(model, full.crank_angle, full.response)
+    everywhere = np.ones(full.crank_angle.shape, dtype=bool)
+    return LoadedAnalysis(
+        drive=drive,
+        torque=torque,
+        engine=engine,
+        full=full,
+        light=light,
+        model=model,
+        pressures=pressures,
+        bearing_radial=push.real,
+        bearing_tangential=push.imag,
+        wall_stresses=_wall_stresses(model, full, pressures),
+        balanced=everywhere,
+        balanced_light=everywhere,
+        back=back,
+    )
+
+
 def _turned_back(
     model: Reducer, drive: Drive, full: PartlyBalanced, angle: FloatArray, torque: float
 ) -> Equilibrium | None:
