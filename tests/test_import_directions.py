@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
-    "ltca.errors", "ltca.frozen_arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
+    "ltca.errors", "ltca.arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
     "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.page",
     "ltca.export",
     "ltca.testing", "ltca",

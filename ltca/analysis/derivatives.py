@@ -149,11 +149,15 @@ class _Position:
             slopes = [self.along(node, direction, node.step) for node in nodes]
             left = np.tensordot(weights, np.stack(slopes), 1) / step
             history.append(float(np.max(np.abs(left))))
-            if history[-1] <= max(SETTLED * history[0], nothing) or (len(history) > 3 and history[-1] >= 0.5 * history[-2]):
+            if history[-1] <= max(SETTLED * history[0], nothing) or (
+                len(history) > 3 and history[-1] >= 0.5 * history[-2]
+            ):
                 break
             direction = direction - np.linalg.solve(self.jacobian, left[..., None])[..., 0]
         if history[-1] > max(1e-5 * history[0], nothing):
-            raise ConvergenceError("derivatives do not settle; slopes of the residual that are left, N by the field's unit", history)
+            raise ConvergenceError(
+                "derivatives do not settle; slopes of the residual that are left, N by the field's unit", history
+            )
         return direction
 
 
@@ -209,7 +213,11 @@ class _Field:
         value = read_field(analysis.as_written, path)
         kind = _kind_of(path)
         if isinstance(value, bool) or not isinstance(value, float | int) or kind == "":
-            raise DriveError([f"{path}: is no real number, of which there are derivatives (an element of an array has its number behind it)"])
+            raise DriveError(
+                [
+                    f"{path}: is no real number, of which there are derivatives (an element of an array has its number behind it)"
+                ]
+            )
         self.value = float(value)
         self.own_torque = analysis.torque == analysis.drive.load.torque
         if path == "load.torque" and not self.own_torque:
@@ -222,7 +230,9 @@ class _Field:
         if self.engine.options["compliance"] != "half-space":
             shapes = [single.shape_fingerprint() for single in single_discs(drive)]
             if shapes != self.shapes:
-                raise DriveError([f"{self.path}: reshapes a body, and the influence coefficients are those of the body as it is"])
+                raise DriveError(
+                    [f"{self.path}: reshapes a body, and the influence coefficients are those of the body as it is"]
+                )
         return _Node(drive=drive, model=self.engine.prepare(drive).model, step=step)
 
     def nodes(self) -> tuple[list[_Node], FloatArray, float]:
@@ -280,7 +290,9 @@ class _Field:
                 for position, direction in zip(positions, directions, strict=True)
             )
             turned = None if back is None else back[0].at(_reversed(node), back[1], node.step)
-            beside = analysis_of(node.drive, positions[0].torque(node.drive), self.engine, node.model, full, light, turned)
+            beside = analysis_of(
+                node.drive, positions[0].torque(node.drive), self.engine, node.model, full, light, turned
+            )
             dataset = build_dataset(node.drive.name, {node.drive.case: beside})
             real = dataset[[name for name, values in dataset.data_vars.items() if values.dtype.kind == "f"]]
             scaled = real.drop_vars([name for name in real.coords if name not in real.dims]) * (weight / step)
@@ -304,7 +316,5 @@ def _turned_back(
     """How the positions with the motion reversed follow a field; None without friction."""
     if analysis.back is None:
         return None
-    position = _Position(
-        analysis.back, base.drive, _reversed(base).model, lambda drive: drive.load.torque
-    )
+    position = _Position(analysis.back, base.drive, _reversed(base).model, lambda drive: drive.load.torque)
     return position, position.follow([_reversed(node) for node in nodes], weights, step)

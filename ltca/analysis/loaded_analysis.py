@@ -17,9 +17,10 @@ from ltca.analysis.half_width_guard import (
     unborne_warning,
     wide_holes_warning,
 )
+from ltca.arrays import freeze, take_positions
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ContactPressures, take_positions
+from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
@@ -35,7 +36,6 @@ from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at
 from ltca.equilibrium.partial_balance import PartlyBalanced, balance_what_can_be, nothing_balanced
 from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, disc_torques
 from ltca.errors import ConvergenceError, DriveError, shortened
-from ltca.frozen_arrays import freeze
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
 
@@ -378,7 +378,7 @@ def analysis_of(
     light: Equilibrium,
     back: Equilibrium | None = None,
 ) -> LoadedAnalysis:
-    """Return the analysis of a warm drive whose contacts are known at all positions: at the torque, lightly loaded, turned back."""
+    """Return the analysis of a warm drive whose contacts are known at all positions, under all torques."""
     pressures, push = model.pressures(full.response), bearing_forces(model, full.crank_angle, full.response)
     everywhere = np.ones(full.crank_angle.shape, dtype=bool)
     return LoadedAnalysis(

@@ -26,6 +26,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import join_positions, take_positions
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_of_law
@@ -36,10 +37,8 @@ from ltca.compliance.response import (
     Start,
     bearing_bend,
     coupled_slopes,
-    join_positions,
     resultant,
     split_shifts,
-    take_positions,
 )
 from ltca.compliance.rollers import RollerState
 from ltca.compliance.undeformed import UndeformedBodies

@@ -6,9 +6,8 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.reducer`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Protocol, Self
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -224,16 +223,6 @@ class Start:
         known = self.known
         return replace(self, known=None if known is None else replace(known, approach=known.approach + reach_beyond))
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Start:
-        """Return the start of some of the positions."""
-        return Start(
-            parameter=self.parameter[rows],
-            share=self.share[rows],
-            warm_start=self.warm_start[rows],
-            known=None if self.known is None else self.known.take(rows),
-            shifts=None if self.shifts is None else self.shifts[rows],
-        )
-
 
 def assemble_response(
     flank: FlankMotion,
@@ -362,39 +351,3 @@ def _roller_tangent(rollers: RollerState, bores: BoreMotion) -> FloatArray:
 def _pair_tangent(motion: PairMotion, load: FloatArray, stiffness: FloatArray) -> FloatArray:
     scaled = stiffness[..., None] * motion.gradient
     return np.asarray(np.matmul(motion.gradient.swapaxes(1, 2), scaled) + motion.bend(load))
-
-
-def take_positions(part: Any, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Any:
-    """Return what belongs to some of the positions: arrays, or tuples and dataclasses of them."""
-    numbers = np.nonzero(rows)[0] if rows.dtype == bool else rows
-    return _of_arrays(lambda array: array.take(numbers, axis=0), part)
-
-
-def put_positions(part: Any, rows: NDArray[np.intp], other: Any) -> Any:
-    """Return a copy with some positions taken from another answer, given for just these; see `take_positions`."""
-
-    def put(array: NDArray[Any], fresh: NDArray[Any]) -> NDArray[Any]:
-        copy = array.copy()
-        copy[rows] = fresh
-        return copy
-
-    return _of_arrays(put, part, other)
-
-
-def join_positions(parts: Sequence[Any]) -> Any:
-    """Return what belongs to several groups of positions as that of all, group after group; see `take_positions`."""
-    if len(parts) == 1:
-        return parts[0]
-    return _of_arrays(lambda *arrays: np.concatenate(arrays), *parts)
-
-
-def _of_arrays(function: Callable[..., NDArray[Any]], *parts: Any) -> Any:
-    first = parts[0]
-    if first is None:
-        return None
-    if isinstance(first, np.ndarray):
-        return function(*parts)
-    if isinstance(first, tuple):
-        return tuple(_of_arrays(function, *items) for items in zip(*parts, strict=True))
-    changed = {item.name: _of_arrays(function, *(getattr(part, item.name) for part in parts)) for item in fields(first)}
-    return type(first)(**changed)

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import freeze
 from ltca.contact.generator import SummedProfile
 from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
 from ltca.contact.unilateral import solve_unilateral_contact
-from ltca.frozen_arrays import freeze
 
 BoolArray = NDArray[np.bool_]
 

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import freeze
 from ltca.contact.generator import SummedProfile, generator_profile
 from ltca.contact.grid_ladder import (
     RUNG,
@@ -39,7 +40,6 @@ from ltca.contact.grid_ladder import (
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.frozen_arrays import freeze
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import take_positions
 from ltca.compliance.response import Response, Start
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
@@ -170,11 +171,11 @@ def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start 
         pose[first] = _at_first_contact(model.take(first), angle[first], moment[first])
     else:
         pose[:] = start
-    left = search.iterate(ITERATIONS, first, None if inner is None else inner.take(first))
+    left = search.iterate(ITERATIONS, first, take_positions(inner, first))
     rest = np.setdiff1d(np.arange(angle.size), first)
     if rest.size == 0:
         return left
-    begin = None if inner is None else inner.take(rest)
+    begin = take_positions(inner, rest)
     # A start that leads somewhere in a few steps is as good as what lies between neighbours.
     between = start is None or np.median(search.iterations[first]) > FEW
     if between and search.balanced:

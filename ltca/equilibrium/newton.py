@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import Response, Start, join_positions, put_positions, take_positions
+from ltca.arrays import join_positions, put_positions, take_positions
+from ltca.compliance.response import Response, Start
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -300,7 +301,7 @@ class Search:
             place = np.divide(-low_slope[back], rise, out=np.zeros(back.size), where=rise != 0.0)
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
-            again = self.evaluate(rows[back], pose[back], Start.onward(response).take(back))
+            again = self.evaluate(rows[back], pose[back], take_positions(Start.onward(response), back))
             response = put_positions(response, back, again)
             gradient[back], tangent[back] = self.scaled(rows[back], again)
             end[back] = np.einsum("bi,bi->b", gradient[back], step[back])

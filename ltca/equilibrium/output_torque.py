@@ -19,7 +19,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import Response, Start, bearing_pushes, put_positions, take_positions
+from ltca.arrays import put_positions, take_positions
+from ltca.compliance.response import Response, Start, bearing_pushes
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.friction.turning import TurningFriction

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.compliance.response import join_positions
+from ltca.arrays import join_positions, spread_positions, take_positions
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError
 
@@ -55,22 +55,7 @@ class PartlyBalanced:
         value : array with the positions on axis 0, or tuples and dataclasses of such
             Anything else is left as it is.
         """
-        if self.failure is None:
-            return value
-        spread: Value = self._spread(value)
-        return spread
-
-    def _spread(self, value: Any) -> Any:
-        if isinstance(value, np.ndarray) and value.ndim and value.shape[0] == self.rows.size:
-            empty = {"f": np.nan, "c": np.nan, "O": None}.get(value.dtype.kind, 0)
-            whole = np.full((self.positions, *value.shape[1:]), empty, dtype=value.dtype)
-            whole[self.rows] = value
-            return whole
-        if isinstance(value, tuple):
-            return tuple(self._spread(item) for item in value)
-        if is_dataclass(value) and not isinstance(value, type):
-            return replace(value, **{item.name: self._spread(getattr(value, item.name)) for item in fields(value)})
-        return value
+        return value if self.failure is None else spread_positions(value, self.rows, self.positions)
 
 
 def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceError) -> PartlyBalanced:
@@ -86,18 +71,7 @@ def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceErro
         Why.
     """
     none = np.zeros(0, dtype=np.intp)
-    return PartlyBalanced(positions=positions, rows=none, found=_first(like, 0), failure=failure)
-
-
-def _first(value: Any, count: int) -> Any:
-    """The first few positions."""
-    if isinstance(value, np.ndarray) and value.ndim:
-        return value[:count]
-    if isinstance(value, tuple):
-        return tuple(_first(item, count) for item in value)
-    if is_dataclass(value) and not isinstance(value, type):
-        return replace(value, **{item.name: _first(getattr(value, item.name), count) for item in fields(value)})
-    return value
+    return PartlyBalanced(positions=positions, rows=none, found=take_positions(like, none), failure=failure)
 
 
 def balance_what_can_be(balance: Balance, positions: int, start: FloatArray | None = None) -> PartlyBalanced:

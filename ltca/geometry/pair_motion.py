@@ -134,10 +134,6 @@ class KnownPins:
         """Return what pairs of pins and flank tell of the pins."""
         return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> KnownPins:
-        """Return what is known at some of the positions."""
-        return KnownPins(approach=self.approach[rows], point=self.point[rows], turning=self.turning[rows])
-
     def may_touch(self, point: ComplexArray) -> NDArray[np.bool_]:
         """Tell which pins may touch the flank: a distance changes by no more than the point moves it is measured from.
 

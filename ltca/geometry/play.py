@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import take_positions
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
 from ltca.geometry.pair_motion import KnownPins
@@ -294,7 +295,7 @@ class _Programme:
         moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, count)
         holes = geometry.holes(angle, pose)
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
-        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=self.known.take(rows))
+        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=take_positions(self.known, rows))
         gap = np.concatenate([rays.bore_play - length, -holes.approach, -flank.approach], axis=1)
         slope = np.concatenate([moved.real, -holes.gradient, -flank.gradient], axis=1) / self.lever
         return gap + self.room[rows], slope, gap.shape[1] - flank.approach.shape[1]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
+from ltca.arrays import take_positions
 from ltca.compliance.half_space import batch_signature
 from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
@@ -138,7 +139,7 @@ class _Batch:
         if near is None:
             return solve_at_output(self.model, self.drives, self.angle, loads, gaps=False)
         rows = np.arange(self.angle.size) % near.crank_angle.size
-        inner = Start.onward(near.response).take(rows)
+        inner = take_positions(Start.onward(near.response), rows)
         if nominal is not None:
             inner = inner.of_others(reach_beyond(self.model, nominal.take(rows)))
         return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner, gaps=False)

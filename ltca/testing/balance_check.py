@@ -20,8 +20,8 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import take_positions
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import take_positions
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer

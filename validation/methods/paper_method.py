@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import take_positions
 from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_one_bore, require_rigid_members
@@ -171,7 +172,7 @@ def _iterate(
         done = size <= TOLERANCE * load[rows]
         converged[rows[done]] = True
         going[rows[done]] = False
-        rows, residual, before = rows[~done], residual[~done], Start.after(response).take(~done)
+        rows, residual, before = rows[~done], residual[~done], take_positions(Start.after(response), ~done)
         if rows.size == 0:
             break
         tangent = np.empty((rows.size, 4, 4))
@@ -186,7 +187,7 @@ def _iterate(
         for row in rows[lost]:
             failure[row] = "left the drive (a displacement beyond the eccentricity)"
         going[rows[lost]] = False
-        start = before.take(~lost)
+        start = take_positions(before, ~lost)
         if not np.any(going):
             break
     for row in np.nonzero(~converged)[0]:

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import take_positions
 from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
@@ -105,13 +106,7 @@ class StickingFriction:
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> StickingFriction:
         """Return the friction of some positions."""
-        return StickingFriction(
-            pin=self.pin,
-            hole=self.hole,
-            pose=self.pose[rows],
-            tangential=self.tangential[rows],
-            closed=self.closed[rows],
-        )
+        return take_positions(self, rows)
 
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int

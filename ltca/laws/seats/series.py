@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from ltca.frozen_arrays import freeze
+from ltca.arrays import freeze
 from ltca.laws.seats.arc import solve_arc
 
 FloatArray = NDArray[np.float64]

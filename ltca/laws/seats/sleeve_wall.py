@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.frozen_arrays import freeze
+from ltca.arrays import freeze
 
 FloatArray = NDArray[np.float64]
 

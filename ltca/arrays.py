@@ -1,14 +1,89 @@
-"""Results that stay as they were returned: a copy of a result whose arrays, nested ones too, are read-only."""
+"""Trees of arrays: dataclasses and tuples of arrays whose axis 0 is the position, of which positions are taken, put and joined.
+
+And results that stay as they were returned: a copy of a tree whose arrays are read-only.
+"""
 
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 Result = TypeVar("Result")
+
+
+def map_arrays(function: Callable[..., Any], *trees: Any) -> Any:
+    """Return a tree with every array, of one axis at least, replaced by a function of it and of those in its place elsewhere.
+
+    Parameters
+    ----------
+    function : callable
+        Of as many arrays as there are trees.
+    trees : dataclass instance, tuple or array
+        All alike, nested as deep as you like; anything else in the first is left as it is.
+
+    Examples
+    --------
+    >>> map_arrays(np.add, (np.ones(2), "N"), (np.arange(2), "N"))
+    (array([1., 2.]), 'N')
+    """
+    first = trees[0]
+    if isinstance(first, np.ndarray):
+        return function(*trees) if first.ndim else first
+    if isinstance(first, tuple):
+        items = [map_arrays(function, *each) for each in zip(*trees, strict=True)]
+        return type(first)(*items) if hasattr(first, "_fields") else tuple(items)
+    if is_dataclass(first) and not isinstance(first, type):
+        fresh = object.__new__(type(first))
+        for item in fields(first):
+            value = map_arrays(function, *(getattr(tree, item.name) for tree in trees))
+            object.__setattr__(fresh, item.name, value)
+        return fresh
+    return first
+
+
+def take_positions(tree: Result, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Result:
+    """Return what belongs to some of the positions."""
+    numbers = np.nonzero(rows)[0] if rows.dtype == bool else rows
+    found: Result = map_arrays(lambda array: array.take(numbers, axis=0), tree)
+    return found
+
+
+def put_positions(tree: Result, rows: NDArray[np.intp], other: Result) -> Result:
+    """Return a copy with some positions taken from another tree, which has just these."""
+
+    def put(array: NDArray[Any], fresh: NDArray[Any]) -> NDArray[Any]:
+        found = array.copy()
+        found[rows] = fresh
+        return found
+
+    found: Result = map_arrays(put, tree, other)
+    return found
+
+
+def join_positions(trees: Sequence[Result]) -> Result:
+    """Return the positions of several trees as those of one, tree after tree."""
+    found: Result = trees[0] if len(trees) == 1 else map_arrays(lambda *arrays: np.concatenate(arrays), *trees)
+    return found
+
+
+def spread_positions(tree: Result, rows: NDArray[np.intp], positions: int) -> Result:
+    """Return what belongs to some of the positions as that of all: no numbers, None or zeros elsewhere."""
+
+    def spread(array: NDArray[Any]) -> NDArray[Any]:
+        if array.shape[0] != rows.size:
+            return array
+        empty: Any = {"f": np.nan, "c": np.nan, "O": None}.get(array.dtype.kind, 0)
+        whole = np.full((positions, *array.shape[1:]), empty, dtype=array.dtype)
+        whole[rows] = array
+        return whole
+
+    found: Result = map_arrays(spread, tree)
+    return found
 
 
 def freeze(result: Result) -> Result:

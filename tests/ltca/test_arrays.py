@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from ltca.arrays import freeze
 from ltca.compliance.response import ContactPressures, KindPressures
-from ltca.frozen_arrays import freeze
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
