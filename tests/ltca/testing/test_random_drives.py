@@ -12,6 +12,7 @@ from ltca.reading.drive_file import load_drive
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive, random_reducer
 
+
 def outcome(point):
     """Balanced, refused or impossible; problems of a confirmed answer fail the test."""
     drawn = random_drive(point)
