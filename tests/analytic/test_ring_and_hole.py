@@ -96,6 +96,7 @@ def pressed_rings():
     return [(body, solve_free(body, load)) for body, load in zip(bodies, loads, strict=True)]
 
 
+@pytest.mark.slow
 def test_lame_ring(pressed_rings):
     displacement, stresses = lame(10.0, 20.0, 100.0)
     errors = [relative_error(body, u, displacement) for body, u in pressed_rings]

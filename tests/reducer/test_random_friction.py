@@ -143,6 +143,7 @@ def test_a_drive_that_jams_says_so():
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
 def test_a_drive_that_jams_is_told_at_which_coefficient():
     """It was 'the teeth slip': at three quarters of μ loads did not tell yet that they would end before the whole of it."""
     shipped = parse_drive(shipped_drive("rv")).cases["nominal"]

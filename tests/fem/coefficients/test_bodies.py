@@ -142,6 +142,7 @@ def direct(disc_shape, stations):
     return body, sp.hstack(patches).toarray(), solve
 
 
+@pytest.mark.slow
 def test_superposition_against_a_direct_solution(direct, stations, disc):
     """Several patches at once on another mesh, the bore fitted node by node."""
     body, patches, solve = direct
@@ -162,6 +163,7 @@ def test_superposition_against_a_direct_solution(direct, stations, disc):
     np.testing.assert_allclose(found, measured, atol=3e-3 * np.max(np.abs(measured)))
 
 
+@pytest.mark.slow
 def test_wall_stress_against_recovered_stress(direct, disc_shape, stations, disc):
     """The same loads on another mesh, stress recovered at its nodes: at stations clear of them."""
     body, patches, solve = direct
@@ -182,6 +184,7 @@ def test_wall_stress_against_recovered_stress(direct, disc_shape, stations, disc
     assert np.sqrt(np.mean((found - expected)[clear] ** 2)) < 6e-3 * np.max(np.abs(expected[clear]))
 
 
+@pytest.mark.slow
 def test_body_forces_balance_as_well(direct, disc):
     """Unit loads balanced by body forces, as if in free fall: balanced sets of loads feel no difference."""
     body, patches, solve = direct

@@ -63,7 +63,9 @@ START = {".svg": b"<?xml", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("words", "suffix"), [([], ".svg"), (["png"], ".png"), (["pdf"], ".pdf")])
+@pytest.mark.parametrize(
+    ("words", "suffix"), [([], ".svg"), (["png"], ".png"), pytest.param(["pdf"], ".pdf", marks=pytest.mark.nightly)]
+)
 def test_figures_of_the_paper_when_asked_for(words, suffix, tmp_path):
     """They were drawn twice, as SVG and PNG, by every run: two thirds of its time."""
     assert main([*RUN, "--out", str(tmp_path), "--figures", *words]) == 0
