@@ -279,6 +279,7 @@ def all_words() -> dict[str, tuple[list[str], bool]]:
     return found
 
 
+@pytest.mark.slow
 def test_commands_are_found():
     """The search itself: commands of each kind are among those found."""
     found = printed()
@@ -294,6 +295,7 @@ def test_commands_are_found():
     assert all(name in ci for name in ELSEWHERE)
 
 
+@pytest.mark.slow
 def test_every_printed_command_is_taken_by_its_program():
     """Of ``cyclo`` in this process; a mention without its arguments (`cyclo run`) counts for its options alone."""
     wrong = []

@@ -108,6 +108,7 @@ def derived(small, tmp_path_factory):
     return load_coefficients(path, first), load_coefficients(path, second)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_without_coupling_it_is_the_half_space(small, name):
     drive = kind(small, name)
@@ -213,6 +214,7 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
         np.testing.assert_allclose(stress[0, wall.first : wall.first + wall.count], expected, rtol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(small, closed_forms, name):
     """By differences, with the supports."""

@@ -98,6 +98,7 @@ def test_tangent_is_the_slope_of_the_force(joint, name, tangent_and_slope):
     np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["slots", "sleeves"])
 def test_a_free_pin_by_its_own_two_unknowns(joint, name):
     """Pin (or sleeve) between flank and seat, both contacts and its place found by brute force: load and approach of the pair."""
@@ -400,6 +401,7 @@ def test_discs_may_stand_beside_the_zero_where_something_bends(joint):
         with_fields(joint, aside)
 
 
+@pytest.mark.slow
 def test_extremes_between_positions_without_an_answer_cost_no_run(joint, monkeypatch):
     """One position between those of the run that does not balance threw the whole run away."""
 
