@@ -13,6 +13,7 @@ from ltca.reading.arguments import (
     add_page_argument,
     count_argument,
     default_folder,
+    tell_unit_mistakes,
     torque_argument,
 )
 
@@ -71,6 +72,7 @@ def execute(arguments: argparse.Namespace) -> int:
     check_compliance(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
+    tell_unit_mistakes(cases.values())
     out = arguments.out or default_folder(file.name, "check")
     require_folder(out)
     from ltca.analysis.memory_need import require_room_for

@@ -83,7 +83,11 @@ def read_compared(path: Path) -> Compared:
     results = path / "results.nc" if path.is_dir() else path
     if results.suffix == ".csv":
         return _measured(results)
-    if results.suffix != ".nc" or not results.is_file():
+    if results.exists() and not results.is_file():
+        raise DriveError(
+            [f"--compare = {path}: {results.name} is not a regular file; give the folder of a run or a .csv"]
+        )
+    if results.suffix != ".nc" or not results.exists():
         raise DriveError([f"--compare = {path}: holds no results.nc; give the folder of a run or a .csv"])
     return _of_run(results)
 

@@ -133,7 +133,7 @@ def rank(path: Path, study: Study) -> dict[str, Any]:
         return {"method": f"Sobol total indices, {sobol.blocks} blocks", "quantities": tables}
     regression = regression_of(path, study)
     if regression is None:
-        return {"method": "none: fewer than two samples for each factor", "quantities": {}}
+        return {"method": "none: fewer than two samples for each factor and the mean", "quantities": {}}
     shares = grouped(regression.shares, factor_groups(study))
     return {
         "method": "standardised regression, SRC² added up over the elements of a field",

@@ -171,3 +171,14 @@ def test_links_in_results_of_a_study_are_not_followed(run, tmp_path):
     link(path)
     with pytest.raises(DamagedFileError, match=r"pin_load is a link to elsewhere\.nc, which is not followed"):
         require_sound_netcdf(tmp_path / "results.nc", "the results of a study", whole=False)
+
+
+@pytest.mark.parametrize("target", ["pipe", "/dev/zero"])
+def test_results_to_compare_with_that_are_no_regular_file(target, tmp_path):
+    """Was told as a folder without results.nc."""
+    if target == "pipe":
+        os.mkfifo(tmp_path / "results.nc")
+    else:
+        (tmp_path / "results.nc").symlink_to(target)
+    with pytest.raises(DriveError, match=r"results\.nc is not a regular file"):
+        read_compared(tmp_path)

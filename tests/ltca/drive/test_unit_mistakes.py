@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from ltca.analysis.loaded_analysis import analyse
+from ltca.commands.program import main
 from ltca.drive.unit_mistakes import explain_failure, likely_unit_mistakes, stiffness_warning, unit_warnings
 from ltca.errors import ConvergenceError, CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.writing import drive_text
 from ltca.testing.practical_drives import practical_drive
 
 ANGLE = np.array([0.5])
@@ -147,3 +149,18 @@ def test_kelvin_that_seizes_a_drive_is_named():
 def test_a_light_torque_above_the_torque_is_asked_about(vary):
     (told,) = (one for one in analyse(vary(load={"light_torque": 4e5}), ANGLE).warnings if "light_torque" in one)
     assert told.endswith("that it is light against: are the two swapped, or is one in N·m?")
+
+
+@pytest.mark.parametrize("command", ["check", "curves"])
+def test_commands_tell_what_was_probably_meant_before_they_work(command, vary, tmp_path, capsys, monkeypatch):
+    """``check`` told it at its end alone."""
+    path = tmp_path / "drive.toml"
+    path.write_text(drive_text(vary(disc={"number_of_discs": 2, "phases": [0.0, 180.0]})), encoding="utf-8")
+
+    def no_work(*_, **__):
+        raise DriveError(["work has begun"])
+
+    monkeypatch.setattr("ltca.output.run_folder.claimed_folder", no_work)
+    assert main([command, str(path), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert told.index("warning: disc.phases") < told.index("work has begun")

@@ -64,7 +64,7 @@ def test_ranking_of_a_sweep_by_its_factors(tmp_path):
     assert list(found["shares"]) == [names[0], names[2], names[1]]
     assert list(found["shares"].values()) == pytest.approx([0.9, 0.1, 0.0], abs=0.03)
     few = written(tmp_path / "few.nc", factors[:7], {"max_pin_load": load[:7]}, failed[:7])
-    assert rank(few, study) == {"method": "none: fewer than two samples for each factor", "quantities": {}}
+    assert rank(few, study) == {"method": "none: fewer than two samples for each factor and the mean", "quantities": {}}
 
 
 def test_ranking_of_saltelli_blocks_leaves_broken_ones_out(tmp_path):
