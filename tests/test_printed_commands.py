@@ -31,6 +31,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[1]
 OURS = ("ltca", "fem", "validation")
 CODE = re.compile(r"``([^`]+)``|`([^`]+)`")

@@ -116,6 +116,7 @@ def test_lame_ring(pressed_rings):
     assert np.max(np.abs(stress.zz - NU * (radial + hoop))) < 5e-3 * np.max(hoop)
 
 
+@pytest.mark.slow
 def test_recovered_stress_converges(pressed_rings):
     _, stresses = lame(10.0, 20.0, 100.0)
     errors = []

@@ -28,6 +28,8 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
+pytestmark = pytest.mark.slow
+
 ANGLES = np.array([0.31, 1.7, 4.4])
 LOAD = 1e-4
 """Loads of equal drives solved from different sides, N: the balance closes to 1e-9 of 10 kN, and stiffness adds a digit."""

@@ -32,6 +32,8 @@ from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 
+pytestmark = pytest.mark.slow
+
 ANGLES = np.array([0.31, 1.7, 4.4])
 LOAD = 1e-4
 """Loads of equal drives solved from different sides, N: the balance closes to 1e-9 of some 10 kN, and stiffness adds a digit."""
