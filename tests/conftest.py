@@ -29,16 +29,6 @@ from ltca.laws import profiled_line_contact
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, shipped_drive
 
 
-@pytest.hookimpl(tryfirst=True, optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Give every worker a run of files, and let the one that is done take of the other's: fixtures are made once."""
-    if config.getoption("dist") != "load":
-        return None
-    from xdist.scheduler import WorkStealingScheduling
-
-    return WorkStealingScheduling(config, log)
-
-
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Skip what is nightly, unless the expression of `-m` names it; what is nightly is slow, too."""
     named = "nightly" in config.option.markexpr

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from numpydoc.docscrape import NumpyDocString
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[1]
 MODULES = sorted(path for package in ("ltca", "fem", "validation") for path in (ROOT / package).rglob("*.py"))
 # Units stand as ", mm" everywhere; "[mm]", "[N/mm, contact cells held]", "[mm, MPa]" are the dialect that is gone.

@@ -69,6 +69,7 @@ def test_formulas_are_broken_and_nothing_else(mutation, tree):
     }
 
 
+@pytest.mark.slow
 def test_broken_sources_compile_and_keep_their_lines(mutation, tree):
     for mutant in mutation.formulas.all_mutants(tree, ("ltca",)):
         broken = mutant.apply(tree)

@@ -31,6 +31,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[1]
 OURS = ("ltca", "fem", "validation")
 CODE = re.compile(r"``([^`]+)``|`([^`]+)`")
@@ -279,6 +281,7 @@ def all_words() -> dict[str, tuple[list[str], bool]]:
     return found
 
 
+@pytest.mark.slow
 def test_commands_are_found():
     """The search itself: commands of each kind are among those found."""
     found = printed()
@@ -294,6 +297,7 @@ def test_commands_are_found():
     assert all(name in ci for name in ELSEWHERE)
 
 
+@pytest.mark.slow
 def test_every_printed_command_is_taken_by_its_program():
     """Of ``cyclo`` in this process; a mention without its arguments (`cyclo run`) counts for its options alone."""
     wrong = []
@@ -498,9 +502,17 @@ def test_short_commands_run_as_they_are_printed(tmp_path, monkeypatch, capsys):
     assert not wrong, "\n".join(wrong)
 
 
+def kind_of(words):
+    """Which of three runs of all printed commands one belongs to, so that several workers share them."""
+    if words[0] == "cyclo":
+        return "cyclo"
+    return "faults" if any(word.endswith("faults.py") for word in words) else "python"
+
+
 @pytest.mark.slow
 @pytest.mark.nightly
-def test_every_printed_command_runs_small(tmp_path):
+@pytest.mark.parametrize("kind", ["cyclo", "python", "faults"])
+def test_every_printed_command_runs_small(kind, tmp_path):
     """In the order of their needs: coefficients are derived first. Mentions and `LEFT_OUT` are not run; ``-s`` shows times."""
     folder = tmp_path / "here"
     folder.mkdir()
@@ -512,7 +524,11 @@ def test_every_printed_command_runs_small(tmp_path):
     rows = "".join(f"{0.5 * degrees},{0.01 * degrees}\n" for degrees in range(720))
     (folder / "bench.csv").write_text(f"crank_angle [deg],transmission_error [arcsec]\n{rows}", encoding="utf-8")
     assert run_here(made_small(["cyclo", "run", "paper"]), folder) == ""
-    asked = {command: words for command, (words, _) in all_words().items() if not why_left_out(command)}
+    asked = {
+        command: words
+        for command, (words, _) in all_words().items()
+        if not why_left_out(command) and kind == kind_of(words)
+    }
     scripts = [command for command, words in asked.items() if words[0] != "cyclo"]
     troubles = troubles_of_scripts([(asked[command], True) for command in scripts])
     mentions = {command for command, trouble in zip(scripts, troubles, strict=True) if trouble}

@@ -16,7 +16,8 @@ import traceback
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
-from importlib.metadata import entry_points, version
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points, version
 from typing import Any, NoReturn
 
 from ltca.errors import CycloError, did_you_mean, printable
@@ -92,6 +93,12 @@ class _Parser(argparse.ArgumentParser):
             raise
 
 
+@cache
+def _installed() -> dict[str, EntryPoint]:
+    """Return the installed commands; asked once, since every distribution is read for it."""
+    return {entry.name: entry for entry in entry_points(group=GROUP)}
+
+
 def build_parser(wanted: str = "") -> argparse.ArgumentParser:
     """Return the parser of ``cyclo``.
 
@@ -106,7 +113,7 @@ def build_parser(wanted: str = "") -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"cyclo {version('cyclo-ltca')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=_Parser)
-    found = {entry.name: entry for entry in entry_points(group=GROUP)}
+    found = _installed()
     if wanted in found:
         found = {wanted: found[wanted]}
     known = [name for name in ORDER if name in found]

@@ -215,6 +215,7 @@ def test_rigid_poses_touch_and_do_not_interfere(paper_cases):
     assert np.all(touching >= 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["CS-1", pytest.param("CS-3", marks=pytest.mark.slow), "CS-6"])
 def test_torque_curve_tends_to_the_play_of_the_clearances(paper_cases, case):
     """The issue asks for 1 %; at 1e-4 of the torque the elastic wind-up is 1e-4 of the play."""

@@ -96,6 +96,7 @@ def pressed_rings():
     return [(body, solve_free(body, load)) for body, load in zip(bodies, loads, strict=True)]
 
 
+@pytest.mark.slow
 def test_lame_ring(pressed_rings):
     displacement, stresses = lame(10.0, 20.0, 100.0)
     errors = [relative_error(body, u, displacement) for body, u in pressed_rings]
@@ -115,6 +116,7 @@ def test_lame_ring(pressed_rings):
     assert np.max(np.abs(stress.zz - NU * (radial + hoop))) < 5e-3 * np.max(hoop)
 
 
+@pytest.mark.slow
 def test_recovered_stress_converges(pressed_rings):
     _, stresses = lame(10.0, 20.0, 100.0)
     errors = []

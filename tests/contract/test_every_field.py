@@ -203,6 +203,7 @@ OF_SEVERAL_CRANKS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ENGINES)
 @pytest.mark.parametrize("path", OF_SEVERAL_CRANKS)
 def test_fields_of_several_cranks_are_used(path, model, models, answers):
@@ -226,6 +227,7 @@ OF_LOOSE_PINS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ENGINES)
 @pytest.mark.parametrize("path", OF_LOOSE_PINS)
 def test_fields_of_loose_pins_are_used(path, model, models, answers):

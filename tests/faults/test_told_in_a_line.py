@@ -96,7 +96,14 @@ def test_memory_that_ends_at_an_import(error):
     assert "unforeseen" in _told(ImportError("no module named x"))
 
 
-@pytest.mark.parametrize("words", [["run", "paper", "--out", "ö"], ["run", "ö.toml"], ["sweep", "ö.toml"]], ids=str)
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "paper", "--out", "ö"],
+        *(pytest.param([name, "ö.toml"], marks=pytest.mark.slow) for name in ("run", "sweep")),
+    ],
+    ids=str,
+)
 def test_a_name_that_the_locale_cannot_write(words, tmp_path):
     """`LC_ALL=C cyclo … --out ö` said "invalid read value"."""
     environment = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}

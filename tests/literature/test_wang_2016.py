@@ -90,6 +90,7 @@ def test_losses_are_of_their_size(initial):
     assert 1.0 - theirs < 1.0 - initial < 2.0 * (1.0 - theirs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "design",
     [

@@ -186,6 +186,7 @@ def test_places_of_the_parts_are_coordinates(result):
     assert float(data["light_torque"]) == DRIVE.load.light_torque
 
 
+@pytest.mark.slow
 def test_repr_tells_the_refined_transmission_error():
     """CS-1 printed 2.14″ with 13 positions, 5.38″ with 360."""
     drive = ltca.load_drive("paper").cases["CS-1"]

@@ -27,6 +27,8 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
+pytestmark = pytest.mark.slow
+
 ANGLES = np.array([0.31, 1.7, 4.4])
 LOAD = 1e-4
 """Loads of equal drives solved from different sides, N: the balance closes to 1e-9 of 10 kN, and stiffness adds a digit."""
@@ -107,6 +109,7 @@ def derived(small, tmp_path_factory):
     return load_coefficients(path, first), load_coefficients(path, second)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_without_coupling_it_is_the_half_space(small, name):
     drive = kind(small, name)
@@ -212,6 +215,7 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
         np.testing.assert_allclose(stress[0, wall.first : wall.first + wall.count], expected, rtol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_tangent_is_the_slope_of_the_force(small, closed_forms, name):
     """By differences, with the supports."""

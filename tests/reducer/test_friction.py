@@ -127,6 +127,7 @@ def test_virtual_work_at_every_position(name, stored):
     np.testing.assert_allclose((4.0 * left(1e-4) - left(2e-4)) / 3.0 / torque, 0.0, atol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["paper", "paper, backwards", "robot-joint", "robot-joint, the other member held"])
 def test_energy_in_less_energy_out_is_what_is_lost(name):
     """In the mean over a turn, which is no period of rollers and cage: sampled means hold to 2e-4 (issue)."""

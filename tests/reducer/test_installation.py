@@ -70,6 +70,7 @@ def test_stiffness_and_play_at_the_output(paper):
     assert np.all(np.diff(held.output_angle, axis=1) > 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held", ["pin-shaft", "pin-wheel"])
 @pytest.mark.parametrize("discs", [1, 2, 3])
 def test_virtual_work_at_every_position(joint, discs, held, stored):

@@ -32,6 +32,8 @@ from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 
+pytestmark = pytest.mark.slow
+
 ANGLES = np.array([0.31, 1.7, 4.4])
 LOAD = 1e-4
 """Loads of equal drives solved from different sides, N: the balance closes to 1e-9 of some 10 kN, and stiffness adds a digit."""
@@ -98,6 +100,7 @@ def test_tangent_is_the_slope_of_the_force(joint, name, tangent_and_slope):
     np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["slots", "sleeves"])
 def test_a_free_pin_by_its_own_two_unknowns(joint, name):
     """Pin (or sleeve) between flank and seat, both contacts and its place found by brute force: load and approach of the pair."""
@@ -400,6 +403,7 @@ def test_discs_may_stand_beside_the_zero_where_something_bends(joint):
         with_fields(joint, aside)
 
 
+@pytest.mark.slow
 def test_extremes_between_positions_without_an_answer_cost_no_run(joint, monkeypatch):
     """One position between those of the run that does not balance threw the whole run away."""
 

@@ -135,6 +135,7 @@ def test_tangent_is_the_slope_of_the_force(rv, name, tangent_and_slope):
     np.testing.assert_allclose(slope, scaled, rtol=0.0, atol=2e-6 * np.abs(scaled).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cranks", "holes"])
 def test_numbering_of_the_cranks_is_a_matter_of_names(rv, name):
     """The first crank a pitch further on: the same drive with other numbers, rollers with theirs."""

@@ -107,6 +107,7 @@ def test_two_models_of_one_disc_put_in_parallel_by_hand(odd):
     assert np.ptp(together.torque_share) > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "field",
     [

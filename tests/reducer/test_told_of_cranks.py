@@ -22,6 +22,8 @@ from ltca.figures.house_style import OTHERS
 from ltca.figures.run_figures import draw_figure, figure_names
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
+pytestmark = pytest.mark.slow
+
 ANGLES = np.array([0.31, 1.7, 3.1, 4.4])
 
 

@@ -53,12 +53,14 @@ def disc(disc_shape, stations):
     return derive_disc(disc_shape, stations, STEEL, thickness=THICKNESS, size=SIZE)
 
 
+@pytest.mark.slow
 def test_reciprocity(disc):
     """Maxwell–Betti: the displacement solved for at i by j is that at j by i; round-off of a direct solver."""
     assert disc.reciprocity < 1e-11
     np.testing.assert_array_equal(disc.approach, disc.approach.T)
 
 
+@pytest.mark.slow
 def test_balanced_loads_do_positive_work(disc):
     eigenvalues = np.linalg.eigvalsh(project_rigid_motions(disc.approach, disc.resultants)) / UNIT
     # Three rigid motions, then nothing softer than a patch alone in its half-plane.
@@ -66,10 +68,12 @@ def test_balanced_loads_do_positive_work(disc):
     assert eigenvalues[3] > 1.0
 
 
+@pytest.mark.slow
 def test_rigid_motions_and_datums(disc):
     assert disc.rigid_residual < 1e-12
 
 
+@pytest.mark.slow
 def test_loads_act_at_their_stations(disc, stations):
     expected = stations.resultants()
     np.testing.assert_allclose(disc.resultants[:2], expected[:2], atol=1e-12)
@@ -77,6 +81,7 @@ def test_loads_act_at_their_stations(disc, stations):
     np.testing.assert_allclose(disc.resultants[2], expected[2], atol=1e-5)
 
 
+@pytest.mark.slow
 def test_disc_is_mirror_symmetric(disc, stations):
     """θ → −θ maps flank, bore and holes onto themselves, but not the mesh: what differs is its error."""
     order = np.empty(stations.count, dtype=int)
@@ -89,6 +94,7 @@ def test_disc_is_mirror_symmetric(disc, stations):
     assert np.max(np.abs(mirrored - disc.approach)) < 1.5e-3 * np.max(disc.approach)
 
 
+@pytest.mark.slow
 def test_wall_stress_is_mirror_symmetric(disc, stations, disc_shape):
     rows, columns = (
         np.argmin(np.abs(places[:, None] - places.conjugate()), axis=0)
@@ -142,6 +148,7 @@ def direct(disc_shape, stations):
     return body, sp.hstack(patches).toarray(), solve
 
 
+@pytest.mark.slow
 def test_superposition_against_a_direct_solution(direct, stations, disc):
     """Several patches at once on another mesh, the bore fitted node by node."""
     body, patches, solve = direct
@@ -162,6 +169,7 @@ def test_superposition_against_a_direct_solution(direct, stations, disc):
     np.testing.assert_allclose(found, measured, atol=3e-3 * np.max(np.abs(measured)))
 
 
+@pytest.mark.slow
 def test_wall_stress_against_recovered_stress(direct, disc_shape, stations, disc):
     """The same loads on another mesh, stress recovered at its nodes: at stations clear of them."""
     body, patches, solve = direct
@@ -182,6 +190,7 @@ def test_wall_stress_against_recovered_stress(direct, disc_shape, stations, disc
     assert np.sqrt(np.mean((found - expected)[clear] ** 2)) < 6e-3 * np.max(np.abs(expected[clear]))
 
 
+@pytest.mark.slow
 def test_body_forces_balance_as_well(direct, disc):
     """Unit loads balanced by body forces, as if in free fall: balanced sets of loads feel no difference."""
     body, patches, solve = direct

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -68,8 +69,10 @@ def test_file_is_made_and_checked(made):
     assert "FAILED" not in done.stdout
     assert done.stdout.count(" ok\n") == len(check_coefficients(read_coefficients(path)))
     assert "clearances: bearing 0 mm, pin hole 0 mm, those of the case left out" in done.stdout
-    # No terminal: no progress; no half file beside the whole one.
-    assert done.stderr == ""
+    # No terminal: a line now and then on a machine that takes longer than ten seconds; no half file beside the whole one.
+    assert [
+        line for line in done.stderr.splitlines() if not re.fullmatch(r"deriving coefficients: .* \(\d+ s\)", line)
+    ] == []
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 

@@ -49,6 +49,7 @@ def folder(tmp_path_factory):
     return out
 
 
+@pytest.mark.slow
 def test_summary_has_the_agreed_keys(folder):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert "cases" not in summary
@@ -61,6 +62,7 @@ def test_summary_has_the_agreed_keys(folder):
     assert summary["bearing_tangential_N"] == pytest.approx(6737.5, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_dataset_agrees_with_the_summary(folder):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     with xr.open_dataset(folder / "fem.nc", engine="h5netcdf") as data:
@@ -75,6 +77,7 @@ def test_dataset_agrees_with_the_summary(folder):
         assert data["pressure"].max() > 100.0
 
 
+@pytest.mark.slow
 def test_dataset_has_the_dimensions_and_names_of_a_run(folder, paper_cases):
     """What ``results.nc`` has, too, has the same name, dimensions, unit and place in ``fem.nc``."""
     from ltca.analysis.loaded_analysis import analyse
@@ -119,6 +122,7 @@ def test_one_file_opens_all_bodies(folder):
     assert bodies["disc"].length > 100.0
 
 
+@pytest.mark.slow
 def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, monkeypatch):
     import shutil
 
@@ -139,6 +143,7 @@ def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, mo
     assert not (out / "fem.vtm").exists()
 
 
+@pytest.mark.slow
 def test_fields_and_deck_are_there(folder):
     import meshio
 
@@ -154,7 +159,7 @@ def test_fields_and_deck_are_there(folder):
 
 @pytest.mark.slow
 def test_pictures(tmp_path):
-    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "4", "--out", str(tmp_path)) == 0
+    assert run("paper", "--case", "CS-1", "--angle", "0.5", "--size", "6", "--out", str(tmp_path)) == 0
     for name in ("von_mises.png", "contacts.png", "deformed.png"):
         assert (tmp_path / name).stat().st_size > 20_000
 

@@ -40,7 +40,7 @@ def image_detail(path: Path) -> list[float]:
 
 @pytest.mark.slow
 def test_writes_all_files_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("paper", "--case", "CS-3", "--angle", "0.5", "--size", "4", "--out", str(tmp_path / "out")) == 0
+    assert run("paper", "--case", "CS-3", "--angle", "0.5", "--size", "6", "--out", str(tmp_path / "out")) == 0
     names = ["disc", "inner_race", *(f"pin_{i}" for i in range(14)), *(f"roller_{n}" for n in range(11))]
     expected = {f"{name}{suffix}" for name in names for suffix in (".msh", ".vtu")} | {
         "mesh.png",
@@ -64,7 +64,7 @@ def test_falls_back_to_matplotlib_with_a_message(
     # The probe ends as VTK does without GL libraries.
     monkeypatch.setattr(offscreen, "_PROBE", "import os; os.kill(os.getpid(), 11)")
     try:
-        assert run("paper", "--size", "4", "--order", "1", "--out", str(tmp_path)) == 0
+        assert run("paper", "--size", "6", "--order", "1", "--out", str(tmp_path)) == 0
     finally:
         offscreen.rendering_problem.cache_clear()
     assert "drawn with matplotlib, because pyvista cannot render here: the trial rendering was ended by signal 11" in (

@@ -300,7 +300,7 @@ def test_nothing_that_can_carry_is_one_error():
         solve_drive(loose, 0.5, scale=3.0)
 
 
-@pytest.mark.parametrize("case", ["CS-1", "CS-3"])
+@pytest.mark.parametrize("case", ["CS-1", pytest.param("CS-3", marks=pytest.mark.nightly)])
 def test_default_drive_balances(case, default):
     """Two cases, two angles."""
     solution = default if case == "CS-1" else solve_drive(drive(case), 1.0)

@@ -33,7 +33,13 @@ def is_closed(corners):
     return there.size == len(edges) and np.array_equal(there, back)
 
 
-@pytest.mark.parametrize(("kind", "inward"), [("rv", 0.0), ("paper", 0.1), ("plastic", 0.2)])
+@pytest.mark.parametrize(
+    ("kind", "inward"),
+    [
+        ("paper", 0.1),
+        *(pytest.param(kind, inward, marks=pytest.mark.slow) for kind, inward in (("rv", 0.0), ("plastic", 0.2))),
+    ],
+)
 def test_a_disc_read_back(kinds_of_drives, tmp_path, kind, inward):
     part = make_parts(kinds_of_drives[kind], "nominal", disc=0, compensation=inward)[0]
     count = write_facets(part, tmp_path / "part.stl", chord=0.001)

@@ -40,7 +40,7 @@ def places_of(gmsh, tag, count):
         pytest.param("robot-joint", 1, 0.0, marks=pytest.mark.slow),
         pytest.param("rv", 0, 0.0, marks=pytest.mark.slow),
         pytest.param("many", 0, 0.0, marks=pytest.mark.slow),
-        ("plastic", 0, 0.2),
+        pytest.param("plastic", 0, 0.2, marks=pytest.mark.slow),
     ],
 )
 def test_a_disc_read_back(kinds_of_drives, tmp_path, kind, disc, inward):

@@ -33,6 +33,7 @@ def test_files_are_as_the_readme_records_them(name: str) -> None:
     assert hashlib.sha256((FOLDER / f"{name}.msh").read_bytes()).hexdigest() == row.group(1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_command_makes_the_same_bodies(made: dict[str, BodyMesh], name: str) -> None:
     """Other gmsh versions and processors may place inner nodes otherwise; outline and size must agree."""

@@ -156,6 +156,7 @@ def test_other_engines_are_refined_on_their_own_loads(paper_cases, monkeypatch):
     assert grids.added_positions < 20
 
 
+@pytest.mark.slow
 def test_only_full_turns_are_refined(paper_cases):
     drive = paper_cases["CS-1"]
     for angle in (np.array([0.0]), np.array([0.0, 1.0]), position_angles(12)[:6], position_angles(12) + 0.1):

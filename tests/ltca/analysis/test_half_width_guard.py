@@ -111,6 +111,7 @@ def test_direct_has_nothing_to_warn_of():
     assert 0.005 < moved < 0.025
 
 
+@pytest.mark.slow
 def test_the_paper_is_not_warned_of(paper_cases):
     for drive in paper_cases.values():
         assert analyse(drive, np.linspace(0.0, 6.0, 7)).warnings == []

@@ -37,6 +37,7 @@ def wide(disc="", crank=""):
     return parse_drive(text).cases["nominal"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("own", "common"),
     [
@@ -59,6 +60,7 @@ def test_one_disc_with_errors_of_its_own_and_wide_contacts(own, common, monkeypa
     assert np.array_equal(one.full.response.pin_load, other.full.response.pin_load)
 
 
+@pytest.mark.slow
 def test_no_message_names_a_module():
     """The refusal sent its reader to "ltca.drive.single_discs"."""
     named = re.compile(r"\b(ltca|fem|validation)\.[a-z_]+\.?[a-z_]*")

@@ -140,6 +140,7 @@ def test_run_keeps_what_it_has_and_says_so(failing, tmp_path, capsys):
     assert len(figure.axes[0].lines[0].get_xdata()) == 6
 
 
+@pytest.mark.slow
 def test_no_answer_outlives_its_use(paper_cases):
     """A function that called itself kept all of them until garbage was collected: 1.5 GB where 0.4 are in use."""
     analyse(paper_cases["CS-1"], np.array([0.1]))  # what is kept for good

@@ -82,6 +82,7 @@ def test_springs_with_play(paper_cases):
     np.testing.assert_array_equal(found.crank_angle, ANGLES)
 
 
+@pytest.mark.slow
 def test_figures_are_those_of_single_torques(paper_cases):
     """Lost motion and stiffness against balances found one torque at a time, away from any curve."""
     drive = paper_cases["CS-3"]

@@ -63,7 +63,9 @@ START = {".svg": b"<?xml", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("words", "suffix"), [([], ".svg"), (["png"], ".png"), (["pdf"], ".pdf")])
+@pytest.mark.parametrize(
+    ("words", "suffix"), [([], ".svg"), (["png"], ".png"), pytest.param(["pdf"], ".pdf", marks=pytest.mark.nightly)]
+)
 def test_figures_of_the_paper_when_asked_for(words, suffix, tmp_path):
     """They were drawn twice, as SVG and PNG, by every run: two thirds of its time."""
     assert main([*RUN, "--out", str(tmp_path), "--figures", *words]) == 0
@@ -114,7 +116,18 @@ def test_figures_and_none_contradict_each_other(tmp_path, capsys):
 
 def test_torque_with_a_unit_is_that_torque(tmp_path):
     for name, torque in (("a", "188.65 N m"), ("b", "188650")):
-        arguments = ["run", "paper", "--case", "CS-1", "--positions", "3", "--torque", torque, "--no-figures"]
+        arguments = [
+            "run",
+            "paper",
+            "--case",
+            "CS-1",
+            "--positions",
+            "3",
+            "--torque",
+            torque,
+            "--no-page",
+            "--no-figures",
+        ]
         assert main([*arguments, "--out", str(tmp_path / name)]) == 0
     first, second = ((tmp_path / name / "results.nc") for name in "ab")
     with xr.open_dataset(first, engine="h5netcdf") as a, xr.open_dataset(second, engine="h5netcdf") as b:

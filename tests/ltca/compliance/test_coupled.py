@@ -149,6 +149,7 @@ def test_interpolation_is_exact_for_low_harmonics():
     np.testing.assert_allclose(weights.sum(axis=-1), 1.0, atol=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("near_field", ["plane-strain", "half-space"])
 def test_contacts_that_are_left_out_change_nothing(paper_cases, closed_form, monkeypatch, near_field):
     """Only contacts near to closing are unknowns; the answer is that of all of them, whichever were left out."""

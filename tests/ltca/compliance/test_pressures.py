@@ -119,6 +119,7 @@ def test_elastic_shaft_pins_press_their_holes_like_hertz(pins, drive, closed_for
     assert np.all(np.abs(found.transmission_error) > np.abs(rigid.transmission_error))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", [PlaneStrain, Hybrid])
 def test_shaft_pins_that_do_not_yield_are_rigid(engine, drive, closed_form):
     """A million times the modulus of steel: poses, loads and pressures of rigid pins."""
@@ -162,6 +163,7 @@ def test_half_spaces_know_no_contact_at_the_holes(drive):
     assert "pin_shaft.elastic_contact = false: without effect" in rigid.hole_words
 
 
+@pytest.mark.slow
 def test_plane_strain_has_no_ends(drive, closed_form):
     """Pressures at mid-width were given as those anywhere, of an end cell of no length."""
     pressures = analyse(drive, ANGLES, engine=PlaneStrain(coefficients=closed_form(drive))).pressures
@@ -171,6 +173,7 @@ def test_plane_strain_has_no_ends(drive, closed_form):
         assert np.all(np.isfinite(kind.mid))
 
 
+@pytest.mark.slow
 def test_hybrid_has_the_ends_of_half_spaces(drive, closed_form):
     """The same rule as on tables: without a body part the same pressures everywhere, with one about the same ratio."""
     plain = analyse(drive, ANGLES).pressures
@@ -190,6 +193,7 @@ def test_hybrid_has_the_ends_of_half_spaces(drive, closed_form):
     assert real.rigid_shaft_pins
 
 
+@pytest.mark.slow
 def test_grids_press_holes_like_tables(drive):
     tables, grids = (analyse(drive, ANGLES[:1], engine=HalfSpace(method=method)) for method in ("tables", "direct"))
     # tables and grids share the load by 0.1 % and better, of which pressures have the root

@@ -82,6 +82,7 @@ def test_vanishing_crown_is_none(paper_cases, closed_form, coarse_tables):
     np.testing.assert_allclose(found.pressures.outer.mid, even.pressures.outer.mid, atol=0.01 * 1200.0)
 
 
+@pytest.mark.slow
 def test_shorter_rollers_press_harder_on_a_body_part(paper_cases, closed_form):
     """8 mm rollers read what 11.8 mm ones do: at equal load pressure goes like the root of the length."""
     drive = paper_cases["CS-1"]
@@ -105,6 +106,7 @@ def test_shorter_rollers_press_harder_on_a_body_part(paper_cases, closed_form):
     assert more < 0.0
 
 
+@pytest.mark.slow
 def test_rollers_of_about_the_thickness_are_no_special_case(paper_cases, closed_form):
     drive = paper_cases["CS-1"]
     engine = Hybrid(coefficients=closed_form(drive))

@@ -39,6 +39,7 @@ def test_figures_hold_the_names_as_they_are(figure, analysis, tmp_path):
         assert any(name in text for text in texts(path)), name
 
 
+@pytest.mark.slow
 def test_picture_of_a_drive_holds_its_name(analysis, tmp_path):
     draw_drive(analysis.drive, analysis, 0, tmp_path / "drive.svg")
     assert any(NAMES[0] in text for text in texts(tmp_path / "drive.svg"))

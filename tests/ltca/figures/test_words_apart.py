@@ -247,7 +247,8 @@ def test_words_of_optima_stand_apart(aims):
         ]
 
 
-@pytest.mark.parametrize("side", [300, pytest.param(1100, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("side", [300, 1100])
 def test_words_of_finite_element_pictures_stand_apart(side):
     """Titles overlapped, and the scale of the colours stood on the field."""
     title = f"{LONG}, CS-1, 0.5 rad, disc 1\nvon Mises stress, largest 1234 MPa (logarithmic scale)"

@@ -225,6 +225,7 @@ def _together_and_alone(drives, angles):
         yield alone, together, rows, own.pressures(alone.response).pins.mid, pressures.pins.mid[rows]
 
 
+@pytest.mark.slow
 def test_batch_of_real_drives_against_one_by_one():
     """Samples of the paper's tolerances: the same iteration on stacked arrays, so they agree to round-off."""
     file = load_drive("paper")

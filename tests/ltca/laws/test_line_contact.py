@@ -78,6 +78,7 @@ def test_arguments_broadcast():
 SLENDERNESS = [0.7, *(pytest.param(value, marks=pytest.mark.slow) for value in (12.0, 400.0)), 2e4]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slenderness", SLENDERNESS)
 def test_different_dimensions_collapse_on_the_table(slenderness):
     """Full grid solutions with other lengths, radii and moduli, all at one λ."""

@@ -101,7 +101,9 @@ def test_swapped_fields_are_both_named(part, smaller, larger):
 
 
 @pytest.mark.parametrize("drive", ["paper", "rv", "robot-joint"])
-@pytest.mark.parametrize("offset", [-100.0, -60.0, -20.0])
+@pytest.mark.parametrize(
+    "offset", [pytest.param(-100.0, marks=pytest.mark.slow), -60.0, pytest.param(-20.0, marks=pytest.mark.slow)]
+)
 def test_a_shifting_offset_far_below_zero_is_named_itself(drive, offset):
     """It blamed the pin circle; of -60 mm the robot joint's generating circle is a point, which was a division by zero."""
     text = re.sub(r"(?m)^shifting_offset.*$", "", shipped_drive(drive))

@@ -31,6 +31,8 @@ from ltca.studies.study import run_batch
 from ltca.studies.sweep_file import parse_sweep
 from ltca.studies.tolerance_study import tolerance_study
 
+pytestmark = pytest.mark.slow
+
 ALONE = Hybrid(hole_near_field=False)
 """Without coupling, as the coefficients below are, this is the half-space."""
 SHAPES = """

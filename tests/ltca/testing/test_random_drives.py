@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings, strategies as st
 
 from ltca.analysis.engines import HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
@@ -13,8 +12,6 @@ from ltca.errors import ConvergenceError
 from ltca.reading.drive_file import load_drive
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive, random_reducer
-
-POINTS = st.lists(st.floats(min_value=0.0, max_value=1.0, allow_nan=False), min_size=COORDINATES, max_size=COORDINATES)
 
 
 def outcome(point):
@@ -74,14 +71,22 @@ def test_random_reducers(first, count):
 
 
 @pytest.mark.slow
-@settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(POINTS)
-@example([0.0] * COORDINATES)
-@example([1.0] * COORDINATES)
-@example([0.5] * COORDINATES)
-def test_drives_hypothesis_thinks_of(point):
+def test_drives_hypothesis_thinks_of():
     """Corners of the cube: all bounds at once, which uniform numbers never meet."""
-    assert outcome(point) in ("balanced", "refused", "impossible")
+    # Here, not above: at every collection it would read the constants of all modules.
+    from hypothesis import HealthCheck, example, given, settings, strategies as st
+
+    points = st.lists(st.floats(min_value=0.0, max_value=1.0), min_size=COORDINATES, max_size=COORDINATES)
+
+    @settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+    @given(points)
+    @example([0.0] * COORDINATES)
+    @example([1.0] * COORDINATES)
+    @example([0.5] * COORDINATES)
+    def balanced_or_told(point):
+        assert outcome(point) in ("balanced", "refused", "impossible")
+
+    balanced_or_told()
 
 
 def paper_solution():

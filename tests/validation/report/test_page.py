@@ -14,6 +14,8 @@ from validation.compare.model_positions import MODELS
 from validation.report.page import write_report
 from validation.report.verdict import verdict_content, verdict_lines, verdicts
 
+pytestmark = pytest.mark.slow
+
 
 def embedded(text):
     found = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.S)

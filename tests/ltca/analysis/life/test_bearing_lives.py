@@ -317,6 +317,7 @@ def test_a_makers_rating_scales_the_life(papers):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parts", [2, 7])
 def test_lives_of_positions_solved_part_by_part(paper_cases, parts):
     """Turns of many pins do not fit into memory at once. Round-off of the sums, and of the search that begins elsewhere."""

@@ -9,7 +9,7 @@ import pytest
 from ltca.commands.program import main
 
 EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "requirements").glob("*.toml"))
-QUICK = ("possible-paper", "impossible-diameter")
+QUICK = ("possible-paper", "impossible-backlash")
 
 
 def solve(path, out):
