@@ -40,7 +40,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
     from ltca.drive.parts import Drive
-    from ltca.facade import analyse
+    from ltca.facade import analyse, derivatives
     from ltca.reading.drive_file import load_drive
 
     __version__: str
@@ -52,10 +52,11 @@ _HOMES = {
     "Hybrid": "ltca.analysis.engines",
     "PlaneStrain": "ltca.analysis.engines",
     "analyse": "ltca.facade",
+    "derivatives": "ltca.facade",
     "load_drive": "ltca.reading.drive_file",
 }
 
-__all__ = ["Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "load_drive"]
+__all__ = ["Drive", "HalfSpace", "Hybrid", "PlaneStrain", "__version__", "analyse", "derivatives", "load_drive"]
 
 
 def __getattr__(name: str) -> Any:

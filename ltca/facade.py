@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -265,3 +265,43 @@ def analyse(
         if isinstance(error.partial, LoadedAnalysis):
             error.partial = AnalysisResult(case=name, loaded=error.partial)
         raise
+
+
+def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
+    """Return how what an analysis answers follows fields of its drive: ∂(loads, poses, angles, …)/∂field at every position.
+
+    By the full Jacobian of the balance (`ltca.analysis.derivatives`): nothing is balanced again.
+
+    Parameters
+    ----------
+    result : AnalysisResult
+        Of `analyse`, with an answer at every position.
+    fields : iterable of str
+        Real fields by their paths, ``disc.shifting_offset``, ``load.torque``, or elements of arrays,
+        ``pin_wheel.pin_errors.radial.3``.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of ``result.dataset`` with the dimension ``field`` before their own, per unit of the field (coordinate
+        ``unit``); ``pose``, mm and rad by the coordinates of the members; and the scalars of ``result.summary`` that are sums,
+        means and largest values of these, by their keys. A largest value follows the contact that has it.
+
+    Raises
+    ------
+    DriveError
+        For what is no real field of this drive and, under ``fe`` and ``hybrid``, for one that reshapes a body.
+    ConvergenceError
+        When positions have no answer, or derivatives do not settle.
+
+    Examples
+    --------
+    >>> import ltca
+    >>> drive = ltca.load_drive("paper").cases["CS-1"]
+    >>> slopes = ltca.derivatives(ltca.analyse(drive, crank_angle=[0.5]), ["disc.shifting_offset", "load.torque"])
+    >>> print(f"{float(slopes['max_pin_load_N'].sel(field='load.torque')) * 1e3:.2f} N by 1 N·m")
+    4.77 N by 1 N·m
+    """
+    from ltca.analysis.derivatives import derivatives as of_analysis
+
+    return of_analysis(result.loaded, fields, result.case)
