@@ -163,10 +163,10 @@ def _cell(text: str) -> str:
 
 def dataset_page() -> str:
     """Every variable and coordinate of ``results.nc``, and what ``summary.json`` holds."""
-    from ltca.analysis.friction.variables import VARIABLES as OF_FRICTION
     from ltca.analysis.loaded_analysis import analyse
-    from ltca.analysis.results import DIMENSIONS, VARIABLES, WALL_VARIABLES, build_dataset
+    from ltca.analysis.results import build_dataset
     from ltca.geometry.placement import position_angles
+    from ltca.quantities import QUANTITIES, SCALARS
     from ltca.reading.drive_file import load_drive
 
     text = """# The dataset
@@ -181,34 +181,17 @@ A variable is there where the drive has it: of friction with `[friction]`, of se
 with `--compliance fe` and `hybrid`. What one case has and another has not is not a number there.
 
 """
-    for title, variables in (
-        ("Variables", VARIABLES),
-        ("Of friction", OF_FRICTION),
-        ("Of walls (`fe` and `hybrid`)", WALL_VARIABLES),
-    ):
-        text += f"## {title}\n\n"
-        text += table(
-            ("variable", "dimensions", "unit", "meaning"),
-            (
-                (f"`{name}`", ", ".join(("case", *DIMENSIONS[kind])), _unit(unit), meaning)
-                for name, (kind, unit, meaning) in variables.items()
-            ),
-        )
+    arrays = [quantity for quantity in QUANTITIES.values() if quantity.of]
+    text += table(
+        ("array", "dimensions", "unit", "meaning"),
+        (
+            (f"`{one.name}`", ", ".join(one.dimensions), _unit(one.unit), _meanings(one.description, one.in_fem))
+            for one in arrays
+        ),
+    )
     drive = load_drive("paper").cases["CS-1"]
     analysis = analyse(drive, position_angles(2))
     dataset = build_dataset("paper", {"CS-1": analysis})
-    text += "## Coordinates\n\n" + table(
-        ("coordinate", "dimensions", "unit", "meaning"),
-        (
-            (
-                f"`{name}`",
-                ", ".join(map(str, values.dims)),
-                _unit(values.attrs.get("units", "1")),
-                values.attrs.get("long_name", "number, from 0" if name != "case" else "name"),
-            )
-            for name, values in dataset.coords.items()
-        ),
-    )
     text += "## Attributes\n\n" + table(
         ("attribute", "of the paper's CS-1"),
         ((f"`{name}`", _attribute(name, value)) for name, value in dataset.attrs.items()),
@@ -223,17 +206,40 @@ Means and peaks run over the positions, `refined_…` are extremes over the whol
 engine or the positions cannot say. Of the paper's drive:
 
 """
-    from ltca.analysis.summary import summarise
+    text += table(
+        ("key", "also refined", "meaning"),
+        ((f"`{one.key}`", "yes" if one.refined else "", one.title) for one in SCALARS.values() if one.in_summary),
+    )
+    text += FEM_SUMMARY
+    return text + table(
+        ("key of `cyclo fem`", "the same, older", "meaning"),
+        (
+            (f"`{one.fem_key}`", f"`{one.older_fem_key}`", one.in_fem or one.description)
+            for one in arrays
+            if one.older_key
+        ),
+    )
 
-    keys = summarise(analysis)
-    text += ", ".join(f"`{key}`" for key in keys if not key.startswith("refined_"))
-    return f"{text}.\n\nRefined: {', '.join(f'`{key}`' for key in keys if key.startswith('refined_'))}.\n"
+
+FEM_SUMMARY = """
+## summary.json of cyclo fem
+
+Arrays of `fem.nc` under their names with the unit behind them, lists by disc and part. Two meanings of `pressure_max` are
+apart in the datasets: `*_pressure_mid` is the largest pressure at mid-width, which plane strain is everywhere,
+`*_pressure_max` the largest anywhere, the ends of the contact included, which `cyclo run` alone has. Keys `*_pressure_max…` of
+`cyclo fem` are older than that: they hold what `*_pressure_mid…` beside them holds.
+
+"""
+
+
+def _meanings(description: str, in_fem: str) -> str:
+    return f"{description}; in `fem.nc`: {in_fem}" if in_fem else description
 
 
 def _unit(unit: str) -> str:
-    from ltca.drive.units.table import label
+    from ltca.quantities import unit_sign
 
-    return "–" if unit == "1" else label(unit).replace("N mm", "N·mm")
+    return unit_sign(unit) or "–"
 
 
 def _attribute(name: str, value: object) -> str:
@@ -246,9 +252,8 @@ def _attribute(name: str, value: object) -> str:
 
 def quantities_page() -> str:
     """Names that studies, aims and limits take."""
-    from ltca.drive.members.judgement import TITLES
-    from ltca.drive.members.limits import LIMITED
-    from ltca.studies.quantities import DEFAULT_QUANTITIES, QUANTITIES
+    from ltca.quantities import LIMITED, SCALARS
+    from ltca.studies.quantities import DEFAULT_QUANTITIES, STAGES
 
     text = """# Names of results
 
@@ -263,8 +268,8 @@ def quantities_page() -> str:
     text += table(
         ("name", "unit", "meaning"),
         (
-            (f"`{name}`{_star(name, DEFAULT_QUANTITIES)}", quantity.symbol or "–", quantity.description)
-            for name, quantity in QUANTITIES.items()
+            (f"`{name}`{_star(name, DEFAULT_QUANTITIES)}", _unit(SCALARS[name].unit), SCALARS[name].title)
+            for name in STAGES
         ),
     )
     text += """## Of limits
@@ -274,7 +279,8 @@ before the name.
 
 """
     return text + table(
-        ("name", "unit", "meaning"), ((f"`{name}`", _unit(unit), TITLES[name]) for name, unit in LIMITED.items())
+        ("name", "unit", "meaning"),
+        ((f"`{name}`", _unit(one.unit), one.verdict_title) for name, one in LIMITED.items()),
     )
 
 

@@ -108,7 +108,7 @@ class _Task:
         """Solve on meshes graded for the contacts of another solution."""
         results, pose = summarise_contacts(model, solution), solution.pose
         place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-        loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
+        loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
         margin, deformed = FINE_MARGIN * 2.0 ** (grading - 1), deformed_contacts(model, solution)
         contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)

@@ -20,13 +20,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import DIMENSIONS, coordinates, provenance
+from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.geometry.separation import circle_departure, flank_departure
+from ltca.quantities import DIMENSIONS
 
 FloatArray = NDArray[np.float64]
 
@@ -256,7 +257,7 @@ def _store(
         if "crank" in DIMENSIONS[name]:  # pairs come crank after crank
             stored = np.moveaxis(values.reshape(*values.shape[:3], cranks, -1, *values.shape[4:]), 3, 2)
         variables[f"{name}_{key}{side}"] = (
-            ("case", *DIMENSIONS[name], *extra),
+            (*DIMENSIONS[name], *extra),
             stored,
             {"units": unit, "long_name": text},
         )

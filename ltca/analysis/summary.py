@@ -19,6 +19,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import play_over_a_turn
+from ltca.quantities import REFINED, scalar_named
 
 FloatArray = NDArray[np.float64]
 
@@ -26,32 +27,16 @@ LOADED_FRACTION = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind in the case."""
 
 OF_RANGES = (
-    "ptp_tangential_bearing_load_N",
-    "ptp_transmission_error_arcsec",
-    "ptp_transmission_error_light_arcsec",
-    "pin_shaft_loaded_range_deg",
+    "ptp_tangential_bearing_load",
+    "ptp_transmission_error",
+    "ptp_transmission_error_light",
+    "pin_shaft_loaded_range",
 )
 """What needs more than one position."""
-OF_LOADS = ("pin_shaft_loaded_range_deg", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
+OF_LOADS = ("pin_shaft_loaded_range", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
 """Counts of loaded contacts."""
-FREE_PLAY = ("backlash_output_arcmin", "min_backlash_output_arcmin", "preloaded_part_of_turn")
+FREE_PLAY = ("backlash_output", "min_backlash_output", "preloaded_part_of_turn")
 """Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
-REFINED = {
-    "ptp_tangential_bearing_load_N": ("ptp_tangential_bearing_load", 1.0),
-    "max_bearing_load_N": ("max_bearing_load", 1.0),
-    "max_pin_load_N": ("max_pin_load", 1.0),
-    "max_pin_pressure_mid_MPa": ("max_pin_pressure_mid", 1.0),
-    "max_pin_pressure_max_MPa": ("max_pin_pressure_max", 1.0),
-    "max_roller_load_N": ("max_roller_load", 1.0),
-    "max_roller_pressure_mid_MPa": ("max_roller_pressure_mid", 1.0),
-    "max_roller_pressure_max_MPa": ("max_roller_pressure_max", 1.0),
-    "max_pin_shaft_load_N": ("max_pin_shaft_load", 1.0),
-    "max_pin_shaft_pressure_mid_MPa": ("max_pin_shaft_pressure_mid", 1.0),
-    "max_pin_shaft_pressure_max_MPa": ("max_pin_shaft_pressure_max", 1.0),
-    "ptp_transmission_error_arcsec": ("ptp_transmission_error", ARCSEC),
-    "ptp_transmission_error_light_arcsec": ("ptp_transmission_error_light", ARCSEC),
-}
-"""Extremes that are refined over full turns, under ``refined_`` and these names: where they stand, and their unit."""
 
 
 def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
@@ -81,34 +66,34 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     roller_mid = max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))
     roller_largest = max(np.max(pressures.outer.largest), np.max(pressures.inner.largest))
     values = {
-        "backlash_disc_arcmin": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
-        "backlash_wheel_arcmin": play * ARCMIN,
+        "backlash_disc": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
+        "backlash_wheel": play * ARCMIN,
         **_free_play(geometry, analysis.drive),
-        "interference_mm": max(np.max(interference(disc, angle)) for disc in geometry),
-        "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
-        "mean_radial_bearing_load_N": np.mean(radial),
-        "mean_tangential_bearing_load_N": np.mean(tangential),
-        "ptp_tangential_bearing_load_N": np.max(np.ptp(tangential, axis=0)),
-        "max_bearing_load_N": np.max(np.hypot(radial, tangential)),
-        "max_pin_load_N": np.max(contacts.pin_load),
-        "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
-        "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
-        "max_roller_load_N": np.max(contacts.rollers.outer_load),
-        "max_roller_pressure_mid_MPa": roller_mid,
-        "max_roller_pressure_max_MPa": roller_largest,
-        "pin_end_cell_mm": pressures.pins.end_cell,
-        "roller_end_cell_mm": pressures.outer.end_cell,
-        "max_pin_shaft_load_N": _most(contacts.hole_load),
-        "max_pin_shaft_pressure_mid_MPa": _most(pressures.holes.mid),
-        "max_pin_shaft_pressure_max_MPa": _most(pressures.holes.largest),
-        "pin_shaft_end_cell_mm": pressures.holes.end_cell,
-        "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes) if holes.size else np.nan,
+        "interference": max(np.max(interference(disc, angle)) for disc in geometry),
+        "mean_bearing_load": np.mean(np.hypot(radial, tangential)),
+        "mean_radial_bearing_load": np.mean(radial),
+        "mean_tangential_bearing_load": np.mean(tangential),
+        "ptp_tangential_bearing_load": np.max(np.ptp(tangential, axis=0)),
+        "max_bearing_load": np.max(np.hypot(radial, tangential)),
+        "max_pin_load": np.max(contacts.pin_load),
+        "max_pin_pressure_mid": np.max(pressures.pins.mid),
+        "max_pin_pressure_max": np.max(pressures.pins.largest),
+        "max_roller_load": np.max(contacts.rollers.outer_load),
+        "max_roller_pressure_mid": roller_mid,
+        "max_roller_pressure_max": roller_largest,
+        "pin_end_cell": pressures.pins.end_cell,
+        "roller_end_cell": pressures.outer.end_cell,
+        "max_pin_shaft_load": _most(contacts.hole_load),
+        "max_pin_shaft_pressure_mid": _most(pressures.holes.mid),
+        "max_pin_shaft_pressure_max": _most(pressures.holes.largest),
+        "pin_shaft_end_cell": pressures.holes.end_cell,
+        "pin_shaft_loaded_range": 360.0 * np.mean(holes) if holes.size else np.nan,
         "mean_loaded_pins": np.mean(pins.sum(axis=1)),
         "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
         "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) if holes.size else np.nan,
-        "ptp_transmission_error_arcsec": np.ptp(analysis.transmission_error) * ARCSEC,
-        "ptp_transmission_error_light_arcsec": np.ptp(analysis.transmission_error_light) * ARCSEC,
-        "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
+        "ptp_transmission_error": np.ptp(analysis.transmission_error) * ARCSEC,
+        "ptp_transmission_error_light": np.ptp(analysis.transmission_error_light) * ARCSEC,
+        "max_equilibrium_residual": max(np.max(full.residual), np.max(analysis.light.residual)),
     }
     share = analysis.torque_share
     for disc in range(share.shape[1]):
@@ -118,8 +103,8 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         }
     torques = analysis.crank_torques
     for crank in range(torques.shape[1]):
-        values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
-        values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
+        values[f"mean_torque_crank_{crank}"] = np.mean(torques[:, crank])
+        values[f"max_torque_crank_{crank}"] = np.max(np.abs(torques[:, crank]))
     values |= _of_cranks(analysis) | _of_pins(analysis)
     if analysis.losses is not None:
         values |= friction_scalars(analysis, rubbing_pressures(analysis))
@@ -127,13 +112,19 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     if analysis.wall_stresses:
         for wall in ("root", "bore", "hole"):
             largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))
-            values[f"max_{wall}_stress_MPa"] = largest
+            values[f"max_{wall}_stress"] = largest
     values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
     if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
         values |= dict.fromkeys(OF_LOADS, np.nan)
     if angle.size == 1:  # one angle says nothing of ranges
         values |= dict.fromkeys(OF_RANGES, np.nan)
-    return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+    return {_key(name): float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def _key(name: str) -> str:
+    """The key of a scalar, also of one over the whole turn."""
+    bare = name.removeprefix("refined_")
+    return name.removesuffix(bare) + scalar_named(bare).key
 
 
 def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, float]:
@@ -152,10 +143,10 @@ def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:
     return {
         key: max(float(np.max(values[name], initial=0.0)) for values in each)
         for key, name in (
-            ("max_pin_seat_pressure_MPa", "pin_seat_pressure_max"),
-            ("max_hole_seat_pressure_MPa", "hole_seat_pressure_max"),
-            ("max_pin_deflection_mm", "pin_deflection"),
-            ("max_shaft_pin_deflection_mm", "shaft_pin_deflection"),
+            ("max_pin_seat_pressure", "pin_seat_pressure_max"),
+            ("max_hole_seat_pressure", "hole_seat_pressure_max"),
+            ("max_pin_deflection", "pin_deflection"),
+            ("max_shaft_pin_deflection", "shaft_pin_deflection"),
         )
         if name in each[0]
     }
@@ -175,11 +166,8 @@ def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
     load, moved = np.hypot(analysis.bearing_radial, analysis.bearing_tangential), np.abs(analysis.crank_deflections)
     cranks = load.shape[2] if load.shape[2] > 1 else 0
     return {
-        **{f"max_bearing_load_crank_{crank}_N": float(np.max(load[:, :, crank])) for crank in range(cranks)},
-        **{
-            f"max_crank_deflection_crank_{crank}_mm": float(np.max(moved[:, :, crank]))
-            for crank in range(moved.shape[2])
-        },
+        **{f"max_bearing_load_crank_{crank}": float(np.max(load[:, :, crank])) for crank in range(cranks)},
+        **{f"max_crank_deflection_crank_{crank}": float(np.max(moved[:, :, crank])) for crank in range(moved.shape[2])},
     }
 
 
@@ -199,7 +187,7 @@ def refined_value(summary: Mapping[str, float | None], key: str) -> float | None
         Without ``refined_``.
     """
     refined = summary.get(f"refined_{key}")
-    return summary[key] if refined is None else refined
+    return summary.get(key) if refined is None else refined
 
 
 def _largest(values: FloatArray) -> float:
@@ -213,10 +201,7 @@ def _refined(analysis: LoadedAnalysis) -> dict[str, float]:
         found = refine_extremes(analysis) if whole else None
     except ConvergenceError:  # one between the positions has no answer; those of the positions stand
         found = None
-    return {
-        f"refined_{key}": np.nan if found is None else factor * getattr(found, name)
-        for key, (name, factor) in REFINED.items()
-    }
+    return {f"refined_{name}": np.nan if found is None else found.values[name] for name in REFINED}
 
 
 def _sampling(found: Sampling) -> dict[str, float]:

@@ -39,7 +39,7 @@ def largest_value(
     analysis : LoadedAnalysis
         Whose positions these are.
     quantity : str
-        One of `ltca.drive.members.limits.LIMITED`.
+        One of `ltca.quantities.LIMITED`.
     values : array, shape (positions, pairs)
         Those of disc 0 first.
     name : str

@@ -7,6 +7,7 @@ from math import degrees
 from typing import Any
 
 from ltca.drive.members.judgement import Check
+from ltca.quantities import unit_sign
 
 WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
 
@@ -25,7 +26,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
     for check in shown:
         value, limit = check.value, check.limit
-        unit = "" if value.unit == "1" else f" {_symbol(value.unit)}"
+        unit = f" {unit_sign(value.unit)}".rstrip()
         bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
         told = "–" if value.value is None else f"{value.value:.5g}{unit}"
@@ -60,7 +61,7 @@ def verdict_line(checks: Sequence[Check]) -> str:
     if nearest.value.value is None:
         told += f" cannot be judged: {nearest.value.reason}"
     elif nearest.limit is not None:
-        unit = "" if nearest.value.unit == "1" else f" {_symbol(nearest.value.unit)}"
+        unit = f" {unit_sign(nearest.value.unit)}".rstrip()
         bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {nearest.limit.value:.4g}{unit}"
         told += f" {nearest.value.value:.4g}{unit} ({bound})"
     if nearest.safety is not None:
@@ -72,10 +73,6 @@ def urgency(check: Check) -> tuple[bool, bool, float]:
     """Return a key that puts what fails first, the drive before how finely it was looked at, then the least safety."""
     of_sampling = check.value.quantity == "distinct_mesh_phases"
     return not check.fails, of_sampling, float("inf") if check.safety is None else check.safety
-
-
-def _symbol(unit: str) -> str:
-    return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
 
 
 def place_words(check: Check) -> str:

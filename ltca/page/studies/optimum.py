@@ -9,8 +9,8 @@ import numpy as np
 
 from ltca.page.study_page import Curves, Section, StudyPage
 from ltca.page.tables import Table, number, word
+from ltca.quantities import SCALARS
 from ltca.studies.optimiser import Optimum
-from ltca.studies.quantities import QUANTITIES
 
 
 def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, Any], text: str) -> StudyPage:
@@ -33,7 +33,7 @@ def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, A
     ]
     seen = ("as_it_is", "found", "as_it_is_in_search", "found_in_search")
     quantities = [
-        [word(QUANTITIES[key].heading), *(number(each[column]) for column in seen)]
+        [word(SCALARS[key].heading), *(number(each[column]) for column in seen)]
         for key, each in outcome["quantities"].items()
     ]
     fine, coarse = outcome["positions"], outcome["positions_of_candidates"]
@@ -53,7 +53,7 @@ def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, A
             "candidates within the limits": np.where(front, np.nan, y)[good],
             "Pareto front": np.where(front, y, np.nan)[good],
         }
-        titles = [QUANTITIES[aim].heading for aim in aims]
+        titles = [SCALARS[aim].heading for aim in aims]
         curves = [
             Curves(
                 title=f"{titles[1]} over {titles[0]}", unit="", axis=titles[0], x=x[good], lines=lines, kind="points"

@@ -362,7 +362,7 @@ def closed_forms(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     Returns
     -------
     dict of str to array
-        By the names of `ltca.drive.members.limits.LIMITED` where there is one; mm, N, MPa, h, arcmin,
+        By the names of `ltca.quantities.LIMITED` where there is one; mm, N, MPa, h, arcmin,
         N·mm/rad.
     """
     flank = flank_values(sizes, setting)

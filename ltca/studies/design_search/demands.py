@@ -17,11 +17,12 @@ from pydantic import TypeAdapter
 
 from ltca.analysis.life.ratings import not_rated
 from ltca.analysis.verdict.values import DEMANDED
-from ltca.drive.members.judgement import TITLES, Value, judge
-from ltca.drive.members.limits import LIMITED, Limit, Limits
+from ltca.drive.members.judgement import Value, judge
+from ltca.drive.members.limits import Limit, Limits
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import label
+from ltca.quantities import LIMITED, SCALARS, Scalar
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_table
 
@@ -38,14 +39,6 @@ OF_MATERIALS = (
     "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "contact_strain",
     "half_width_ratio",
 )  # fmt: skip
-OWN_TITLES = {
-    "outer_diameter": ("outer diameter", "mm"),
-    "length": ("length", "mm"),
-    "torque": ("output torque", "N*mm"),
-    "stiffness": ("torsional stiffness of the cycloid stage", "N*mm/rad"),
-    "lost_motion": ("lost motion", "arcmin"),
-}
-"""What a drive file has no limit for: title and unit."""
 OF_SHAPE = ("undercut_margin", "pin_hollow_margin", "pin_gap", "wall", "cage_room", "race", "roller_room")
 
 
@@ -58,7 +51,7 @@ class Demand:
     name : str
         Key of the requirement file, or of its ``[limits]``; the quantity for others.
     quantity : str
-        Of `closed_forms`, or of `ltca.drive.members.limits.LIMITED`.
+        Of `closed_forms`: a key of `ltca.quantities.LIMITED` or `SCALARS`.
     sense : {"max", "min"}
         Whether the value is to be at most or at least the limit.
     value : float
@@ -80,14 +73,18 @@ class Demand:
     scale: float = 1.0
 
     @property
+    def _scalar(self) -> Scalar:
+        return LIMITED.get(self.quantity) or SCALARS[self.quantity]
+
+    @property
     def title(self) -> str:
         """What is looked at, in words."""
-        return OWN_TITLES[self.quantity][0] if self.quantity in OWN_TITLES else TITLES.get(self.quantity, self.quantity)
+        return self._scalar.verdict_title
 
     @property
     def unit(self) -> str:
         """Unit of the value."""
-        return OWN_TITLES[self.quantity][1] if self.quantity in OWN_TITLES else LIMITED.get(self.quantity, "mm")
+        return self._scalar.unit
 
     def margin(self, reached: FloatArray | float) -> FloatArray:
         """Return how far values keep it, negative where they break it.
@@ -133,12 +130,12 @@ def shown(value: float, unit: str) -> str:
 
     Examples
     --------
-    >>> shown(412_000.0, "N*mm")
+    >>> shown(412_000.0, "N mm")
     '412 N·m'
     """
-    if unit == "N*mm":
+    if unit == "N mm":
         return f"{value / 1000.0:.4g} N·m"
-    if unit == "N*mm/rad":
+    if unit == "N mm/rad":
         return f"{value / 1000.0 / ARCMIN:.4g} N·m/arcmin"
     return f"{value:.4g} {label(unit)}".rstrip() if unit != "1" else f"{value:.4g}"
 
