@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,7 +113,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         for wall in ("root", "bore", "hole"):
             largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))
             values[f"max_{wall}_stress"] = largest
-    values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
+    values |= _refined(analysis, values) | _sampling(sampling(analysis.drive, angle))
     if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
         values |= dict.fromkeys(OF_LOADS, np.nan)
     if angle.size == 1:  # one angle says nothing of ranges
@@ -195,13 +195,13 @@ def _largest(values: FloatArray) -> float:
     return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
 
 
-def _refined(analysis: LoadedAnalysis) -> dict[str, float]:
+def _refined(analysis: LoadedAnalysis, values: Iterable[str]) -> dict[str, float]:
     whole = analysis.is_complete and is_full_turn(analysis.full.crank_angle)
     try:
         found = refine_extremes(analysis) if whole else None
     except ConvergenceError:  # one between the positions has no answer; those of the positions stand
         found = None
-    return {f"refined_{name}": np.nan if found is None else found.values[name] for name in REFINED}
+    return {f"refined_{name}": np.nan if found is None else found.values[name] for name in values if name in REFINED}
 
 
 def _sampling(found: Sampling) -> dict[str, float]:
