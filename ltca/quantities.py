@@ -237,10 +237,7 @@ _DECLARED = (
     _checked("pin_hollow_margin", "mm", "hollow of the flank against the pin", ANY_NUMBER),
     _checked("roller_gap", "mm", "gap between rollers", ANY_NUMBER),
     _scalar("mm", Scalar("interference", "assembly: overlap at rest", digits=".4f", limit=AT_LEAST_0)),
-    _scalar(
-        "arcmin",
-        Scalar("backlash_disc", "backlash of the flank alone, at the disc", digits="z.2f", limit=AT_LEAST_0),
-    ),
+    _scalar("arcmin", Scalar("backlash_disc", "backlash of the flank alone, at the disc", digits="z.2f", limit=AT_LEAST_0)),
     Quantity(
         "backlash_wheel", "", "arcmin",
         scalars=(
@@ -263,17 +260,13 @@ _DECLARED = (
     _scalar("1", Scalar("preloaded_part_of_turn", "part of the turn where parts overlap in every pose", digits=".2f")),
     _checked("play_at_temperature", "mm", "least play at temperature", ANY_NUMBER),
     # contacts
-    Quantity(
-        "pin_load", "pin", "N", "load of wheel pin and flank", (_peak("largest load of a wheel pin"),),
-    ),
+    Quantity("pin_load", "pin", "N", "load of wheel pin and flank", (_peak("largest load of a wheel pin"),)),
     Quantity(
         "roller_load", "roller", "N", "load of roller and bore (outer side)", (_peak("largest load of a roller"),),
         older_key="roller_load_outer",
     ),
     Quantity("roller_load_inner", "roller", "N", "load of roller and inner race"),
-    Quantity(
-        "pin_shaft_load", "hole", "N", "load of shaft pin and hole", (_peak("largest load of a shaft pin"),),
-    ),
+    Quantity("pin_shaft_load", "hole", "N", "load of shaft pin and hole", (_peak("largest load of a shaft pin"),)),
     Quantity("pin_approach", "pin", "mm", "approach of wheel pin and flank, negative when open"),
     Quantity("roller_approach_outer", "roller", "mm", "approach of roller and bore, negative when open"),
     Quantity("roller_approach_inner", "roller", "mm", "approach of roller and inner race"),
@@ -283,10 +276,7 @@ _DECLARED = (
         (_peak("largest flank pressure at mid-width", "flank pressure"),),
         in_fem="largest pressure of wheel pin and flank", older_key="pin_pressure_max",
     ),
-    Quantity(
-        "roller_pressure_mid", "", "MPa",
-        scalars=(_peak("largest roller pressure at mid-width", "roller pressure"),),
-    ),
+    Quantity("roller_pressure_mid", "", "MPa", scalars=(_peak("largest roller pressure at mid-width", "roller pressure"),)),
     Quantity(
         "roller_pressure_mid_outer", "roller", "MPa", "largest pressure of roller and bore at mid-width",
         (Scalar("max_{}", "roller pressure in the bore", limit=AT_LEAST_0, in_summary=False),),
@@ -337,9 +327,7 @@ _DECLARED = (
         "pin_shaft_half_width", "hole", "mm", "contact half-width of shaft pin and hole at mid-width",
         in_fem="half-width of shaft pin and hole",
     ),
-    Quantity(
-        "pin_contact_parameter", "pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"
-    ),
+    Quantity("pin_contact_parameter", "pin", "rad", "place of the contact on the flank, parameter of Eq. 1, in [0, 2π)"),
     _scalar("deg", Scalar("pin_shaft_loaded_range", "range of the crank angle in which a shaft pin is loaded")),
     _scalar(
         "1",
@@ -464,18 +452,13 @@ _DECLARED = (
         "equilibrium_residual", "drive", "N", "largest unbalanced force, moments by their lever arms",
         (Scalar("max_{}", "largest residual", digits=".1e"),), in_fem="largest unbalanced force",
     ),
-    _scalar(
-        "1", Scalar("residual_part", "residual as a part of the largest bearing load", digits=".1e", in_summary=False)
-    ),
+    _scalar("1", Scalar("residual_part", "residual as a part of the largest bearing load", digits=".1e", in_summary=False)),
     Quantity("iterations", "drive", "1", "Newton iterations at the torque of the run"),
     Quantity("status", "drive", "1", "0: balanced at the torque of the run, 1: no equilibrium found"),
     Quantity("status_light", "drive", "1", "the same at the light torque"),
     _scalar("1", Scalar("positions", "positions of the crank", digits=".0f")),
     _scalar("1", Scalar("positions_per_mesh_period", "positions in the passage of a tooth")),
-    _scalar(
-        "1",
-        Scalar("distinct_mesh_phases", "different places in a mesh period", digits=".0f", limit=AT_LEAST_0),
-    ),
+    _scalar("1", Scalar("distinct_mesh_phases", "different places in a mesh period", digits=".0f", limit=AT_LEAST_0)),
     _checked("half_width_ratio", "1", "half-width by radius"),
     _checked("contact_strain", "1", "strain of the flank contact, p/E"),
     # friction
