@@ -71,6 +71,10 @@ class Scalar:
         Whether ``summary.json`` has it: others are of studies, of limits or of requirements alone.
     more_is_better : bool
         Whether the worst sample of a study is that of the least value.
+    how : str
+        How it sums the array up, a key of `ltca.analysis.summary.SUMS`; the first word of its name when left out.
+    of : str
+        The array; filled in in `SCALARS`.
     """
 
     name: str
@@ -82,6 +86,8 @@ class Scalar:
     refined: bool = False
     in_summary: bool = True
     more_is_better: bool = False
+    how: str = ""
+    of: str = ""
 
     @property
     def key(self) -> str:
@@ -210,7 +216,9 @@ def _pv(name: str, of: str, description: str, place: str) -> Quantity:
 
 def _wall(name: str, of: str, along: str, short: str) -> Quantity:
     """Stress along a wall of the disc."""
-    limited = Scalar("max_{}", f"largest stress along {short}", limit=AT_LEAST_0, judged=f"stress along {short}")
+    limited = Scalar(
+        "max_{}", f"largest stress along {short}", how="largest known", limit=AT_LEAST_0, judged=f"stress along {short}"
+    )
     return Quantity(name, of, "MPa", f"largest tensile stress along {along}, clear of contacts", (limited,))
 
 
@@ -488,7 +496,7 @@ _DECLARED = (
     _loss("no_load", "seals and oil at the input"),
     Quantity(
         "power_loss", "drive", "W", "power of all losses",
-        (Scalar("{}", "power lost, mean", digits=".3g", limit=AT_LEAST_0, judged="power lost"),),
+        (Scalar("{}", "power lost, mean", digits=".3g", how="mean", limit=AT_LEAST_0, judged="power lost"),),
     ),
     Quantity(
         "input_torque", "drive", "N mm", "external moment of the input, seals and oil included, ccw positive",
@@ -511,7 +519,11 @@ _DECLARED = (
     ),
     Quantity(
         "moves_back", "drive", "1", "1: the load at the output turns the input without help, 0: it does not",
-        (Scalar("{}", "moves back (1) or locks itself (0)", digits=".0f", limit=FROM_0_TO_1, judged="moves back"),),
+        (
+            Scalar(
+                "{}", "moves back (1) or locks itself (0)", digits=".0f", how="min", limit=FROM_0_TO_1, judged="moves back"
+            ),
+        ),
     ),
     # stress in the disc
     _wall("root_stress", "lobe", "the flank about each lobe root", "lobe roots"),
@@ -586,7 +598,9 @@ SCALARS = {
     scalar.name: scalar
     for quantity in _DECLARED
     for each in quantity.scalars
-    for scalar in (replace(each, name=each.name.format(quantity.name), unit=each.unit or quantity.unit),)
+    for scalar in (
+        replace(each, name=each.name.format(quantity.name), unit=each.unit or quantity.unit, of=quantity.name),
+    )
 }
 """Every scalar by name."""
 LIMITED = {scalar.limited_name: scalar for scalar in SCALARS.values() if scalar.limit is not None}

@@ -33,8 +33,8 @@ from ltca.reading.writing import drive_text
 FloatArray = NDArray[np.float64]
 
 
-def _values(analysis: LoadedAnalysis) -> dict[str, Any]:
-    """Arrays of one case by name, their dimensions those of the registry without the case."""
+def case_arrays(analysis: LoadedAnalysis) -> dict[str, Any]:
+    """Return the arrays of one case by name, their dimensions those of the registry without the case."""
     full, light = analysis.full, analysis.light
     per_disc = [_disc_values(disc) for disc in analysis.discs]
     values = {name: np.stack([disc[name] for disc in per_disc]) for name in per_disc[0]}
@@ -108,22 +108,11 @@ def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
     }
     for walls in analysis.wall_stresses:
         values |= _wall_values(walls, pressures)
-    return values | seat_values(analysis)
+    return values | _seat_values(analysis)
 
 
-def seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
-    """Return what loose pins, sleeves and bent pins of one disc have: loads, arcs and pressures of seats, deflections.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        Of one disc.
-
-    Returns
-    -------
-    dict of str to array, shape (positions, pairs)
-        By name in the dataset, as there; empty for fixed pins that do not bend.
-    """
+def _seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
+    """What loose pins, sleeves and bent pins of one disc have; nothing of fixed pins that do not bend."""
     drive, contacts = analysis.drive, analysis.full.response
     place = analysis.model.discs[0].geometry.placement
     values: dict[str, FloatArray] = {}
@@ -226,7 +215,7 @@ def build_dataset(drive_name: str, analyses: Mapping[str, LoadedAnalysis], drive
     xarray.Dataset
         Dimensions case, disc, crank, position, pin, roller, hole; units and descriptions in the attributes.
     """
-    per_case = [_values(analysis) for analysis in analyses.values()]
+    per_case = [case_arrays(analysis) for analysis in analyses.values()]
     named = {name: value for values in per_case for name, value in values.items()}
     first = next(iter(analyses.values()))
     variables = {}

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
-from ltca.analysis.friction.variables import friction_scalars
+from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import seat_values
+from ltca.analysis.results import case_arrays
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.equilibrium.reducer import geometries
@@ -19,13 +20,15 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import play_over_a_turn
-from ltca.quantities import REFINED, scalar_named
+from ltca.quantities import REFINED, SCALARS, scalar_named
 
 FloatArray = NDArray[np.float64]
 
 LOADED_FRACTION = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind in the case."""
 
+OF_PINS = ("max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection")
+"""What loose pins, sleeves and pins that bend have."""
 OF_RANGES = (
     "ptp_tangential_bearing_load",
     "ptp_transmission_error",
@@ -53,7 +56,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         The keys of ``summary.json``, their units in their names; None where the engine or the positions cannot say a
         value, as positions that are no full turn say nothing of it.
     """
-    geometry = geometries(analysis.model)
+    geometry, arrays = geometries(analysis.model), case_arrays(analysis)
     full, contacts = analysis.full, analysis.full.response
     angle = full.crank_angle
     radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
@@ -75,24 +78,18 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         "mean_tangential_bearing_load": np.mean(tangential),
         "ptp_tangential_bearing_load": np.max(np.ptp(tangential, axis=0)),
         "max_bearing_load": np.max(np.hypot(radial, tangential)),
-        "max_pin_load": np.max(contacts.pin_load),
-        "max_pin_pressure_mid": np.max(pressures.pins.mid),
-        "max_pin_pressure_max": np.max(pressures.pins.largest),
-        "max_roller_load": np.max(contacts.rollers.outer_load),
+        **_sums(arrays, "max_pin_load", "max_pin_pressure_mid", "max_pin_pressure_max", "max_roller_load"),
         "max_roller_pressure_mid": roller_mid,
         "max_roller_pressure_max": roller_largest,
         "pin_end_cell": pressures.pins.end_cell,
         "roller_end_cell": pressures.outer.end_cell,
-        "max_pin_shaft_load": _most(contacts.hole_load),
-        "max_pin_shaft_pressure_mid": _most(pressures.holes.mid),
-        "max_pin_shaft_pressure_max": _most(pressures.holes.largest),
+        **_sums(arrays, "max_pin_shaft_load", "max_pin_shaft_pressure_mid", "max_pin_shaft_pressure_max"),
         "pin_shaft_end_cell": pressures.holes.end_cell,
         "pin_shaft_loaded_range": 360.0 * np.mean(holes) if holes.size else np.nan,
         "mean_loaded_pins": np.mean(pins.sum(axis=1)),
         "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
         "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) if holes.size else np.nan,
-        "ptp_transmission_error": np.ptp(analysis.transmission_error) * ARCSEC,
-        "ptp_transmission_error_light": np.ptp(analysis.transmission_error_light) * ARCSEC,
+        **_sums(arrays, "ptp_transmission_error", "ptp_transmission_error_light"),
         "max_equilibrium_residual": max(np.max(full.residual), np.max(analysis.light.residual)),
     }
     share = analysis.torque_share
@@ -105,15 +102,13 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
     for crank in range(torques.shape[1]):
         values[f"mean_torque_crank_{crank}"] = np.mean(torques[:, crank])
         values[f"max_torque_crank_{crank}"] = np.max(np.abs(torques[:, crank]))
-    values |= _of_cranks(analysis) | _of_pins(analysis)
-    if analysis.losses is not None:
-        values |= friction_scalars(analysis, rubbing_pressures(analysis))
+    values |= _of_cranks(analysis) | _sums(arrays, *OF_PINS) | _of_friction(analysis, arrays)
     values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
-    if analysis.wall_stresses:
-        for wall in ("root", "bore", "hole"):
-            largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))
-            values[f"max_{wall}_stress"] = largest
-    values |= _refined(analysis, values) | _sampling(sampling(analysis.drive, angle))
+    values |= (
+        _sums(arrays, "max_root_stress", "max_bore_stress", "max_hole_stress")
+        | _refined(analysis, values)
+        | _sampling(sampling(analysis.drive, angle))
+    )
     if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
         values |= dict.fromkeys(OF_LOADS, np.nan)
     if angle.size == 1:  # one angle says nothing of ranges
@@ -137,28 +132,45 @@ def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, floa
     return dict(zip(FREE_PLAY, (scale * found.largest, scale * found.least, found.preloaded), strict=True))
 
 
-def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:
-    """Largest pressure in the seats of loose pins and sleeves, and how far pins bend, of all discs."""
-    each = [seat_values(disc) for disc in analysis.discs]
+SUMS: dict[str, Callable[[FloatArray], Any]] = {
+    "max": np.max,
+    "min": np.min,
+    "mean": np.mean,
+    "ptp": np.ptp,
+    "largest known": np.nanmax,
+}
+"""How a scalar sums its array up."""
+
+
+def _sums(arrays: Mapping[str, FloatArray], *names: str) -> dict[str, float]:
+    """Scalars of the arrays that there are, by name; not a number of an array without parts, as without a pin shaft."""
+    found = {}
+    for scalar in (SCALARS[name] for name in names if SCALARS[name].of in arrays):
+        values, how = arrays[scalar.of], scalar.how or scalar.name.partition("_")[0]
+        known = np.any(np.isfinite(values)) if how == "largest known" else values.size
+        factor = ARCSEC if scalar.unit == "arcsec" else 1.0
+        found[scalar.name] = factor * float(SUMS[how](values)) if known else np.nan
+    return found
+
+
+def _of_friction(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Efficiencies, torques and losses over the positions; nothing without friction."""
+    found, back = analysis.losses, analysis.losses_back
+    if found is None or back is None:
+        return {}
+    rubbed = [
+        name for name in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv") if np.size(arrays.get(name, ()))
+    ]
     return {
-        key: max(float(np.max(values[name], initial=0.0)) for values in each)
-        for key, name in (
-            ("max_pin_seat_pressure", "pin_seat_pressure_max"),
-            ("max_hole_seat_pressure", "hole_seat_pressure_max"),
-            ("max_pin_deflection", "pin_deflection"),
-            ("max_shaft_pin_deflection", "shaft_pin_deflection"),
-        )
-        if name in each[0]
+        "mean_efficiency": found.mean_efficiency,
+        **_sums(arrays, "min_efficiency"),
+        "mean_efficiency_back": back.mean_efficiency,
+        **_sums(arrays, "moves_back"),
+        "mean_crank_torque": float(np.mean(analysis.crank_torques.sum(axis=1))),
+        **_sums(arrays, "mean_input_torque", "mean_input_torque_back", "power_loss"),
+        **{f"power_loss_{kind}": float(np.mean(found.watts(found.by_kind[kind]))) for kind in KINDS},
+        **_sums(arrays, *(f"mean_loss_{kind}" for kind in KINDS), *(f"max_{name}" for name in rubbed)),
     }
-
-
-def rubbing_pressures(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
-    """Return the pressures of what rubs by their names in the dataset, shape (discs, positions, pairs), MPa."""
-    seats = [seat_values(disc) for disc in analysis.discs]
-    pressures = {name: np.stack([values[name] for values in seats]) for name in seats[0]}
-    for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
-        pressures[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
-    return pressures
 
 
 def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
@@ -169,11 +181,6 @@ def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
         **{f"max_bearing_load_crank_{crank}": float(np.max(load[:, :, crank])) for crank in range(cranks)},
         **{f"max_crank_deflection_crank_{crank}": float(np.max(moved[:, :, crank])) for crank in range(moved.shape[2])},
     }
-
-
-def _most(values: FloatArray) -> float:
-    """Largest value; not a number without a pin shaft."""
-    return float(np.max(values)) if values.size else np.nan
 
 
 def refined_value(summary: Mapping[str, float | None], key: str) -> float | None:
@@ -188,11 +195,6 @@ def refined_value(summary: Mapping[str, float | None], key: str) -> float | None
     """
     refined = summary.get(f"refined_{key}")
     return summary.get(key) if refined is None else refined
-
-
-def _largest(values: FloatArray) -> float:
-    """Largest of what is known; not a number where nothing is."""
-    return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
 
 
 def _refined(analysis: LoadedAnalysis, values: Iterable[str]) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""What friction adds to dataset and summary of a run."""
+"""What friction adds to the dataset of a run."""
 
 from __future__ import annotations
 
@@ -60,27 +60,3 @@ def _of_joint(
             f"{seat}_pv": pressures[f"{seat}_pressure_max"] * seat_speed * 1e-3,
         }
     return values
-
-
-def friction_scalars(analysis: LoadedAnalysis, pressures: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Return what friction adds to the summary of one case, by name; arguments as for `friction_values`."""
-    found, back = analysis.losses, analysis.losses_back
-    if found is None or back is None:
-        return {}
-    values = friction_values(analysis, pressures)
-    scalars = {
-        "mean_efficiency": found.mean_efficiency,
-        "min_efficiency": float(np.min(found.efficiency)),
-        "mean_efficiency_back": back.mean_efficiency,
-        "moves_back": float(np.min(values["moves_back"])),
-        "mean_crank_torque": float(np.mean(analysis.crank_torques.sum(axis=1))),
-        "mean_input_torque": float(np.mean(found.input_torque)),
-        "mean_input_torque_back": float(np.mean(back.input_torque)),
-        "power_loss": float(np.mean(found.watts(found.total))),
-    }
-    scalars |= {f"power_loss_{kind}": float(np.mean(found.watts(found.by_kind[kind]))) for kind in KINDS}
-    scalars |= {f"mean_loss_{kind}": float(np.mean(found.by_kind[kind])) for kind in KINDS}
-    for name in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv"):
-        if name in values and values[name].size:
-            scalars[f"max_{name}"] = float(np.max(values[name]))
-    return scalars

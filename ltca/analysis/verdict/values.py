@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.extremes import RESOLVED
-from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import seat_values
-from ltca.analysis.summary import refined_value, rubbing_pressures
+from ltca.analysis.results import case_arrays
+from ltca.analysis.summary import refined_value
 from ltca.analysis.verdict.assembly import assembly_values
 from ltca.analysis.verdict.duty import worst_of_duty
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
@@ -173,15 +172,15 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
                 yield Value(quantity=quantity, value=None, reason=f"{name}s are no beams (pin_{pins}.beam)")
             else:
                 yield largest_value(analysis, quantity, getattr(stress, kind), name, discs=1)
-    each = [seat_values(disc) for disc in analysis.discs]
+    arrays = case_arrays(analysis)
     for quantity, variable, name in (
         ("pin_seat_pressure", "pin_seat_pressure_max", "wheel pin"),
         ("hole_seat_pressure", "hole_seat_pressure_max", "shaft pin"),
         ("pin_deflection", "pin_deflection", "wheel pin"),
         ("shaft_pin_deflection", "shaft_pin_deflection", "shaft pin"),
     ):
-        if variable in each[0]:
-            yield largest_value(analysis, quantity, np.concatenate([one[variable] for one in each], axis=1), name)
+        if variable in arrays:
+            yield largest_value(analysis, quantity, np.concatenate(arrays[variable], axis=1), name)
 
 
 def _bending_fatigue(analysis: LoadedAnalysis, stress: PinStress | None, pins: str) -> Value:
@@ -293,7 +292,7 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
     for quantity in ("mean_efficiency", "mean_efficiency_back", "moves_back", "power_loss"):
         value = summary[LIMITED[quantity].key]
         yield Value(quantity=quantity, value=value, reason="there is no speed (load.speed)" if value is None else "")
-    values = friction_values(analysis, rubbing_pressures(analysis))
+    values = case_arrays(analysis)
     for quantity, part in (
         ("pin_pv", "wheel pin"),
         ("pin_seat_pv", "wheel pin"),
@@ -302,7 +301,7 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
     ):
         if quantity not in values or not values[quantity].size:
             continue
-        each = np.concatenate(list(values[quantity]), axis=1)
+        each = np.concatenate(values[quantity], axis=1)
         if np.any(np.isfinite(each)):
             yield largest_value(analysis, quantity, each, part)
         else:
