@@ -157,15 +157,7 @@ class Quantity:
         return f"{self.older_key or self.name}_{self.unit.replace(' ', '_')}"
 
     def labelled(self, values: Any, *, in_fem: bool = False) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-        """Return values of the array with dimensions and attributes, as a dataset takes them.
-
-        Parameters
-        ----------
-        values : array
-            In the dimensions of the quantity.
-        in_fem : bool
-            Whether they are of full finite elements.
-        """
+        """Return values with dimensions and attributes, as a dataset takes them; `in_fem` as of full finite elements."""
         text = self.in_fem if in_fem and self.in_fem else self.description
         return self.dimensions, values, {"units": self.unit, "long_name": text}
 

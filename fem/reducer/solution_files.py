@@ -229,25 +229,7 @@ def write_solution(
 
 
 def write_multi_block(bodies: list[Path], path: Path) -> Path:
-    """Write an index that opens the files of all bodies as one multi-block dataset, each under its name.
-
-    Parameters
-    ----------
-    bodies : list of Path
-        ``.vtu`` files in the folder of the index, or below it.
-    path : Path
-        Ends in ``.vtm``.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
-    """
+    """Write an index (``.vtm``) that opens the files of all bodies, in its folder or below, as one multi-block dataset."""
     lines = ['<?xml version="1.0"?>', '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">']
     lines.append("  <vtkMultiBlockDataSet>")
     for number, body in enumerate(bodies):

@@ -15,17 +15,7 @@ from ltca.page.verdict_tables import verdict_of, verdict_tables
 
 
 def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str, told: str, text: str) -> StudyPage:
-    """Return the page of a full solution.
-
-    Parameters
-    ----------
-    solution : ReducerSolution
-        The solution.
-    checks : sequence of Check
-        Its verdict.
-    case, told, text : str
-        Of the drive, what was solved, and the drive file.
-    """
+    """Return the page of a full solution: its verdict, `told` of what was solved, `text` the drive file."""
     sentence, state = verdict_of({case: checks})
     sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
     several = len(solution.discs) > 1

@@ -18,17 +18,7 @@ FloatArray = NDArray[np.float64]
 def judge_solution(
     solution: ReducerSolution, stresses: Sequence[DiscStress], limits: Mapping[str, Limit]
 ) -> list[Check]:
-    """Return the checks of one position by full finite elements: loads, peak pressures, stresses of the disc.
-
-    Parameters
-    ----------
-    solution : ReducerSolution
-        The solution.
-    stresses : sequence of DiscStress
-        Of each disc (`fem.drive.disc_stress.recover_disc_stress`).
-    limits : mapping of str to Limit
-        Of the drive file; those on what one position cannot say are left out.
-    """
+    """Return the checks of one position by full finite elements; limits on what one position cannot say are left out."""
     contacts = [disc.contacts for disc in solution.discs]
     found: dict[str, list[tuple[str, list[FloatArray]]]] = {
         name: [(part, [getattr(each, name) for each in contacts])]

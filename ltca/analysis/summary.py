@@ -184,15 +184,7 @@ def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
 
 
 def refined_value(summary: Mapping[str, float | None], key: str) -> float | None:
-    """Return a scalar over the whole turn where there is one, over the positions otherwise.
-
-    Parameters
-    ----------
-    summary : mapping of str to (float or None)
-        From `summarise`.
-    key : str
-        Without ``refined_``.
-    """
+    """Return a scalar over the whole turn where there is one, over the positions otherwise; its key without ``refined_``."""
     refined = summary.get(f"refined_{key}")
     return summary.get(key) if refined is None else refined
 

@@ -28,15 +28,7 @@ Summaries = Mapping[str, Mapping[str, float | None]]
 
 
 def rows_of(summaries: Summaries, *, yields: bool) -> list[Scalar]:
-    """Return the rows of a table of summaries, those that say something.
-
-    Parameters
-    ----------
-    summaries : mapping of str to mapping
-        By case, each with its part of the residual (`with_residual_part`).
-    yields : bool
-        Whether cranks or wheel yield on their supports.
-    """
+    """Return the rows of a table of summaries that say something; `yields` tells whether cranks or wheel yield on supports."""
     found = [scalar_named(name) for name in (*ROWS, "preloaded_part_of_turn", *SEAT_ROWS, *FRICTION_ROWS)]
     needed = ("preloaded_part_of_turn", "interference")
     found += [*_share_rows(summaries), *_compliance_rows(summaries, yields)]

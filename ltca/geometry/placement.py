@@ -286,22 +286,7 @@ def position_angles(positions: int) -> FloatArray:
 def place_coordinates(
     drives: Mapping[str, Drive], discs: Sequence[Sequence[Placement]], crank_angle: FloatArray
 ) -> dict[str, Any]:
-    """Return the coordinates of a dataset that are known before any load: numbers and places of the parts, crank angles.
-
-    Parameters
-    ----------
-    drives : mapping of str to Drive
-        By case.
-    discs : sequence of sequence of Placement
-        Of every disc of every case.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-
-    Returns
-    -------
-    dict of str to array or tuple
-        As `xarray.Dataset` takes them, labelled by `ltca.quantities`.
-    """
+    """Return the coordinates of a dataset that need no load: numbers and places of the parts of every disc, crank angles."""
     first = discs[0][0]
 
     def of_discs(name: str) -> NDArray[Any]:

@@ -197,15 +197,7 @@ def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ..
 
 
 def evaluate(name: str, batch: SampleBatch) -> FloatArray:
-    """Return a scalar of every sample, shape (samples,).
-
-    Parameters
-    ----------
-    name : str
-        One of `STAGES`.
-    batch : SampleBatch
-        Solved samples.
-    """
+    """Return a scalar of every sample, one of `STAGES`, shape (samples,)."""
     return EVALUATORS[STAGES[name]][name](batch)
 
 

@@ -144,13 +144,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
 
 
 def sample_file(number: str) -> str:
-    """Return where the drive of a sample lies in the folder of a study.
-
-    Parameters
-    ----------
-    number : str
-        Of the sample, eight digits.
-    """
+    """Return where the drive of a sample, by its number of eight digits, lies in the folder of a study."""
     return f"samples/sample_{number}.toml"
 
 

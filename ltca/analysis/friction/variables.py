@@ -15,15 +15,7 @@ FloatArray = NDArray[np.float64]
 
 
 def friction_values(analysis: LoadedAnalysis, pressures: Mapping[str, FloatArray]) -> dict[str, Any]:
-    """Return the arrays of one case by their names in the dataset; empty for a drive without friction.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-    pressures : mapping of str to array, shape (discs, positions, pairs)
-        Pressures by their names in the dataset, of seats where there are any.
-    """
+    """Return what friction adds to the arrays of a case; `pressures` by name, shape (discs, positions, pairs)."""
     found, back = analysis.losses, analysis.losses_back
     if found is None or back is None:
         return {}

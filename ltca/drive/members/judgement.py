@@ -148,15 +148,7 @@ def judge(
 
 
 def judged_by(limit: Limit, value: Value) -> Value:
-    """Return the value that a limit goes by: the least of what has a range where it is a lower limit.
-
-    Parameters
-    ----------
-    limit : Limit
-        Upper or lower.
-    value : Value
-        Largest, and least where there is a range.
-    """
+    """Return the value that a limit goes by: the least of what has a range where it is a lower limit."""
     if limit.sense == "max" or value.least is None:
         return value
     return replace(value, value=value.least, part=", ".join(filter(None, ("least", value.part))))

@@ -13,15 +13,7 @@ WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "â
 
 
 def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
-    """Return the checks as a table.
-
-    Parameters
-    ----------
-    checks : sequence of Check
-        Of one case.
-    limited : bool
-        Whether those without a limit are counted only.
-    """
+    """Return the checks of one case as a table; `limited` only counts those without a limit."""
     shown = [check for check in checks if check.limit is not None or not limited]
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
     for check in shown:
@@ -44,13 +36,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
 
 
 def verdict_line(checks: Sequence[Check]) -> str:
-    """Return the verdict on a case in one line: how it ends, and the check that fails most or is nearest to its limit.
-
-    Parameters
-    ----------
-    checks : sequence of Check
-        Of one case.
-    """
+    """Return the verdict on a case in one line: how it ends, and the check that fails most or is nearest to its limit."""
     judged = [check for check in checks if check.fails or check.verdict == "pass"]
     if not judged:
         return "not judged: neither drive file nor materials have limits"
@@ -85,15 +71,7 @@ def place_words(check: Check) -> str:
 
 
 def check_content(check: Check, case: str) -> dict[str, Any]:
-    """Return a check as files hold it.
-
-    Parameters
-    ----------
-    check : Check
-        The check.
-    case : str
-        Name of its case.
-    """
+    """Return a check as files hold it, with the name of its case."""
     value, limit = check.value, check.limit
     return {
         "check": check.title,

@@ -14,19 +14,7 @@ from ltca.studies.optimiser import Optimum
 
 
 def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, Any], text: str) -> StudyPage:
-    """Return the page of a search.
-
-    Parameters
-    ----------
-    name, told : str
-        Of the drive, and what was asked.
-    optimum : Optimum
-        What was found.
-    outcome : mapping
-        What ``optimum.json`` holds.
-    text : str
-        The drive file that was found.
-    """
+    """Return the page of a search, `told` being what was asked, `outcome` what ``optimum.json`` holds, `text` the drive found."""
     variables = [
         [word(path), word(each["units"]), *(number(each[key]) for key in ("low", "high", "as_it_is", "found"))]
         for path, each in outcome["variables"].items()

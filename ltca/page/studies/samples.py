@@ -16,15 +16,7 @@ MOST_FAILURES = 50
 
 
 def samples_page(study: Study, found: StudySummary) -> StudyPage:
-    """Return the page of a study.
-
-    Parameters
-    ----------
-    study : Study
-        What was asked.
-    found : StudySummary
-        What its samples gave.
-    """
+    """Return the page of a study: what was asked, and what its samples gave."""
     heads = ["", "nominal", "mean", "standard deviation", *(f"{part:g} %" for part in PERCENTILES), "largest", "sample"]
     rows = [
         [

@@ -144,15 +144,7 @@ def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
 
 
 def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of candidates of one number of pins.
-    setting : Setting
-        What they share.
-    """
+    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses; of one number of pins."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     pins = int(sizes.pins[0])
     angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PLACES) / PLACES) / pins
@@ -220,17 +212,7 @@ def wheel_torque(sizes: Sizes, setting: Setting) -> FloatArray:
 
 
 def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return what crank bearings, holes and the whole drive reach.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-    flank : dict of str to array
-        Of `flank_values`.
-    """
+    """Return what crank bearings, holes and the whole drive reach, from what the flank does (`flank_values`)."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     several, friction = asked.kind == "rv", asked.friction
     torque = wheel_torque(sizes, setting) / sizes.discs

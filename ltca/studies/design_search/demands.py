@@ -87,13 +87,7 @@ class Demand:
         return self._scalar.unit
 
     def margin(self, reached: FloatArray | float) -> FloatArray:
-        """Return how far values keep it, negative where they break it.
-
-        Parameters
-        ----------
-        reached : array
-            In the unit of the quantity.
-        """
+        """Return how far values in the unit of the quantity keep it, negative where they break it."""
         value = np.asarray(reached, dtype=float)
         if self.kind == "shape":
             return np.asarray((value - self.value) / self.scale)
@@ -106,13 +100,7 @@ class Demand:
         return np.asarray(ratio if self.sense == "min" else -ratio)
 
     def words(self, value: float | None = None) -> str:
-        """Return limit, or a value beside it, with sign and unit.
-
-        Parameters
-        ----------
-        value : float, optional
-            Shown in the place of the limit.
-        """
+        """Return the limit with sign and unit, or a value in its place."""
         if value is not None:
             return shown(value, self.unit)
         return f"{'≤' if self.sense == 'max' else '≥'} {shown(self.value, self.unit)}"
@@ -141,13 +129,7 @@ def shown(value: float, unit: str) -> str:
 
 
 def written_limits(requirements: Requirements) -> Limits:
-    """Return what the ``[limits]`` of a drive file hold: those of the requirement file, and what else `cyclo check` knows.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    """
+    """Return what the ``[limits]`` of a drive file hold: those of the requirement file, and what else `cyclo check` knows."""
     asked, shop, found = requirements.asked, requirements.asked.shop, {}
 
     def add(sense: str, quantity: str, value: float | None, source: str) -> None:
@@ -165,13 +147,7 @@ def written_limits(requirements: Requirements) -> Limits:
 
 
 def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
-    """Return every demand on candidates.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    """
+    """Return every demand on candidates."""
     asked, shop = requirements.asked, requirements.asked.shop
     found: dict[tuple[str, str], Demand] = {}
 
@@ -236,15 +212,7 @@ def prototype(requirements: Requirements) -> Drive:
 
 
 def margins(demands: Sequence[Demand], values: Mapping[str, FloatArray]) -> FloatArray:
-    """Return all margins, shape (candidates, demands); not a number where a value is not known.
-
-    Parameters
-    ----------
-    demands : sequence of Demand
-        What is demanded.
-    values : mapping of str to array
-        What candidates reach, shape (candidates,) each.
-    """
+    """Return all margins, shape (candidates, demands); not a number where a value, of shape (candidates,), is not known."""
     count = len(next(iter(values.values())))
     return np.stack(
         [
