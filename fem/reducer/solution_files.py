@@ -182,30 +182,9 @@ def write_solution(
     folder: Path,
     limits: Mapping[str, Limit] | None = None,
 ) -> list[Check]:
-    """Write all files of a solution; each appears only when it is complete, ``fem.vtm`` only over bodies of this one.
+    """Write all files of a solution and return its verdict, as ``summary.json`` holds it; `fields` by disc (`recover_fields`).
 
-    Parameters
-    ----------
-    solution : ReducerSolution
-        The solution.
-    fields : sequence of iterables of BodyField
-        Of each disc (`fem.drive.fields.recover_fields`).
-    case : str
-        Name of the case.
-    folder : Path
-        Where to.
-    limits : mapping of str to Limit, optional
-        Of the drive file, for the verdict.
-
-    Returns
-    -------
-    list of Check
-        The verdict, as ``summary.json`` holds it.
-
-    Raises
-    ------
-    CycloError
-        When the folder cannot be written to.
+    Each file appears only when it is complete, ``fem.vtm`` only over bodies of this solution.
     """
     index = folder / MULTI_BLOCK
     try:

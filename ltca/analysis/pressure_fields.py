@@ -69,18 +69,10 @@ class PressureField:
 def recover_pressure(
     kind: ContactKind, approach: float, effective_radius: float, departure: Departure, poisson_ratio: float
 ) -> PressureField:
-    """Solve one contact at a given approach and unfold its symmetry.
+    """Solve one contact at an approach δ and radius ρ, mm, and unfold its symmetry.
 
-    Parameters
-    ----------
-    kind : ContactKind
-        Length, profile, modulus and cells.
-    approach, effective_radius : float
-        δ and ρ, mm.
-    departure : callable
-        True separation over the distance along the tangent, mm.
-    poisson_ratio : float
-        Of the body whose shear stress is wanted.
+    `departure` is the true separation over the distance along the tangent, mm; `poisson_ratio` that of the body whose shear
+    stress is wanted.
     """
     solved = solve_fitted(kind, approach, effective_radius, departure)
     shear = find_subsurface_shear(solved, poisson_ratio)
@@ -132,19 +124,7 @@ def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS
 def roller_fields(
     analysis: LoadedAnalysis, position: int, side: str, cells: int = FIELD_CELLS
 ) -> dict[int, PressureField]:
-    """Return the pressure fields of the loaded rollers of one position on one side, by roller.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        Of a drive of one disc (`LoadedAnalysis.discs`).
-    position : int
-        Its position.
-    side : {"outer", "inner"}
-        In the bore or on the inner race.
-    cells : int
-        Cells over the half-width and half the length.
-    """
+    """Return the pressure fields of the loaded rollers of one disc at one position, by roller, in the bore or on the race."""
     kinds = ContactKinds.of_drive(analysis.drive, cells)
     rollers, place = analysis.full.response.rollers, analysis.model.discs[0].geometry.placement
     outer = side == "outer"

@@ -33,25 +33,9 @@ by the variance of its coefficient."""
 def write_study_figures(
     folder: StudyFolder, study: Study, ranking: Mapping[str, Any], nominal: Mapping[str, float], kind: str = "svg"
 ) -> Iterator[Path]:
-    """Write the figures of a finished study.
+    """Write the figures of a finished study into ``figures`` beside its results, one after the other.
 
-    Parameters
-    ----------
-    folder : StudyFolder
-        Where ``results.nc`` is; figures go to its ``figures``.
-    study : Study
-        The study.
-    ranking : mapping
-        Of `ltca.studies.study_results.rank`.
-    nominal : mapping of str to float
-        Quantities of the drive without deviations, drawn where known.
-    kind : str
-        ``svg``, ``png`` or ``pdf``.
-
-    Yields
-    ------
-    Path
-        Each figure when it is written.
+    `ranking` is that of `ltca.studies.study_results.rank`; `nominal`, quantities without deviations, is drawn where known.
     """
     values = {name: read_quantity(folder.results, name) for name in study.quantities}
     for name, figure in study_figures(study, values, ranking, nominal):

@@ -301,16 +301,9 @@ def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:
 
 
 def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:
-    """Return life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive).
+    """Return life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive), shape (candidates,).
 
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-    most, mean : array, shape (candidates,)
-        Largest force of a crank bearing, and the mean one by the power 10/3, N.
+    By the largest force of a crank bearing and the mean one by the power 10/3, N.
     """
     asked = setting.requirements.asked
     diameter, pitch = 2.0 * sizes.roller_radius, 2.0 * (sizes.bore - sizes.roller_radius)

@@ -39,23 +39,7 @@ CHUNK = 4096
 
 @contextmanager
 def opened_results(path: Path) -> Iterator[Any]:
-    """Open the dataset of a finished study.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Yields
-    ------
-    h5netcdf.File
-        For reading.
-
-    Raises
-    ------
-    DamagedFileError
-        When it, or what is asked of it while the block runs, cannot be read.
-    """
+    """Open the dataset of a finished study (h5netcdf); `DamagedFileError` where it is unreadable within the block."""
     import h5netcdf
 
     try:
