@@ -166,21 +166,27 @@ def dataset_page() -> str:
     from ltca.analysis.loaded_analysis import analyse
     from ltca.analysis.results import build_dataset
     from ltca.geometry.placement import position_angles
-    from ltca.quantities import QUANTITIES, SCALARS
+    from ltca.quantities import QUANTITIES, SCALARS, SCHEMA_VERSION
     from ltca.reading.drive_file import load_drive
 
     text = """# The dataset
 
-`results.nc` of `cyclo run` is netCDF, `result.dataset` in Python is the same for one case. Dimensions stand in the order
-`case`, `disc`, `crank`, `position`, then `pin`, `roller`, `hole` or `lobe`, always all that a
-variable has, also where they are of size 1.
+`results.nc` of `cyclo run` is netCDF, `result.dataset` in Python is the same for one case; `pressure.nc` (`--pressure`) and
+`fem.nc` (`cyclo fem`) have the same names. Dimensions stand in the order `case`, `disc`, `crank`, `position`, then `pin`,
+`roller`, `hole` or `lobe`, always all that a variable has, also where they are of size 1.
 Units are in the attribute `units`, what a variable is in `long_name`. Discs, cranks, pins, rollers and holes are numbered from 0,
 counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
 
 A variable is there where the drive has it: of friction with `[friction]`, of seats with loose pins and sleeves, of walls
 with `--compliance fe` and `hybrid`. What one case has and another has not is not a number there.
 
+The attribute `schema_version`, a whole number, says which names, units and dimensions a dataset has: it grows when one of
+them changes or goes, not when one is added. This is version {version}.
+
+## Arrays and coordinates
+
 """
+    text = text.replace("{version}", str(SCHEMA_VERSION))
     arrays = [quantity for quantity in QUANTITIES.values() if quantity.of]
     text += table(
         ("array", "dimensions", "unit", "meaning"),
@@ -203,7 +209,7 @@ that of each case's drive, `status` is `complete`, or `partial` where a position
 
 Scalars of each case, their units at the end of their names (`_N`, `_MPa`, `_mm`, `_Nmm`, `_arcmin`, `_arcsec`, `_deg`, `_W`).
 Means and peaks run over the positions, `refined_…` are extremes over the whole turn, refined between them; null is what the
-engine or the positions cannot say. Of the paper's drive:
+engine or the positions cannot say. `#` is the number of a disc or crank.
 
 """
     text += table(
@@ -224,10 +230,10 @@ engine or the positions cannot say. Of the paper's drive:
 FEM_SUMMARY = """
 ## summary.json of cyclo fem
 
-Arrays of `fem.nc` under their names with the unit behind them, lists by disc and part. Two meanings of `pressure_max` are
-apart in the datasets: `*_pressure_mid` is the largest pressure at mid-width, which plane strain is everywhere,
-`*_pressure_max` the largest anywhere, the ends of the contact included, which `cyclo run` alone has. Keys `*_pressure_max…` of
-`cyclo fem` are older than that: they hold what `*_pressure_mid…` beside them holds.
+Arrays of `fem.nc` under their names with the unit behind them, lists by disc and part. In datasets and in the summary of
+`cyclo run`, `pressure_mid` is the largest pressure at mid-width, where a contact is in plane strain, and `pressure_max` the
+largest anywhere along the width, its ends included. Full finite elements are plane and know the first alone. Their older keys
+call it `pressure_max` and stay beside the new ones, with the same values.
 
 """
 

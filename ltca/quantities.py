@@ -1,8 +1,8 @@
 """The registry of quantities: what results hold, each declared once.
 
-A quantity is an array of a dataset (``results.nc``, ``fem.nc``), or a number of a case, or both: an array and the scalars that
-sum it up over positions and parts. Datasets, ``summary.json``, ``[limits]``, verdicts, studies, tables, pages and reference
-pages take names, units, dimensions and words from here; where a value is computed only its name is written.
+A quantity is an array of a dataset (``results.nc``, ``pressure.nc``, ``fem.nc``), or a number of a case, or both: an array and
+the scalars that sum it up over positions and parts. Datasets, ``summary.json``, ``[limits]``, verdicts, studies, tables and
+reference pages take names, units, dimensions and words from here; where a value is computed only its name is written.
 """
 
 from __future__ import annotations
@@ -29,6 +29,12 @@ DIMENSIONS = {
     "roller": ("case", "disc", "crank", "position", "roller"),
     "hole": ("case", "disc", "position", "hole"),
     "lobe": ("case", "disc", "position", "lobe"),
+    "cells of a pin": ("case", "disc", "position", "pin", "pin_cell_x", "pin_cell_y"),
+    "x edges of a pin": ("case", "disc", "position", "pin", "pin_bound_x"),
+    "y edges of a pin": ("case", "disc", "position", "pin", "pin_bound_y"),
+    "cells of a roller": ("case", "disc", "crank", "position", "roller", "roller_cell_x", "roller_cell_y"),
+    "x edges of a roller": ("case", "disc", "crank", "position", "roller", "roller_bound_x"),
+    "y edges of a roller": ("case", "disc", "crank", "position", "roller", "roller_bound_y"),
     "lobe number": ("lobe",),
     "wall node": ("wall_node",),
     "sample": ("sample",),
@@ -536,6 +542,19 @@ _DECLARED = (
     _checked("disc_shear", "MPa", "shear below the surface of the disc"),
     _checked("shear_depth", "mm", "depth of that shear"),
     _checked("core_shear", "MPa", "shear in the core of the disc, below its case"),
+    # pressure over the contacts
+    *(
+        Quantity(f"{part}_{key}{side}", of.format(part), unit, description)
+        for part, side in (("pin", ""), ("roller", "_outer"), ("roller", "_inner"))
+        for key, of, unit, description in (
+            ("pressure", "cells of a {}", "MPa", "mean pressure of the cells"),
+            ("x_edge", "x edges of a {}", "mm", "cell edges along the profile, from the contact point"),
+            ("y_edge", "y edges of a {}", "mm", "cell edges along the width, from mid-width"),
+            ("field_load", "{}", "N", "pressure summed over the patch"),
+            ("max_shear", "{}", "MPa", "largest shear stress below mid-width"),
+            ("max_shear_depth", "{}", "mm", "depth below the surface of the largest shear stress"),
+        )
+    ),
     # full finite elements alone
     Quantity("disc_x", "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),
     Quantity("disc_y", "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),

@@ -14,6 +14,7 @@ from fem.drive.disc_stress import STRESSES, recover_disc_stress, stress_variable
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import ARRAYS, build_dataset as build_fem_dataset, summarise as summarise_fem
 from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.pressure_fields import build_pressure_dataset
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.values import find_values
@@ -102,6 +103,8 @@ def test_runs_write_what_is_declared_and_nothing_else(drives):
         arrays |= check_arrays(build_dataset(name, {name: analysis}), kept)
         keys |= {re.sub(r"(disc|crank)_\d+", r"\1_#", key) for key in summary}
         judged |= {value.quantity for value in find_values(analysis, summary)}
+    analyses = {"CS-1": analyse(drives["paper"], np.array([0.0]))}
+    arrays |= check_arrays(build_pressure_dataset("paper", analyses, cells=4), kept)
     solution = solve_reducer(drives["paper"], 0.5, scale=6.0)
     stresses = [recover_disc_stress(disc) for disc in solution.discs]
     arrays |= check_arrays(build_fem_dataset(solution, "CS-1").assign(stress_variables(stresses)), kept)

@@ -27,7 +27,7 @@ from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.geometry.separation import circle_departure, flank_departure
-from ltca.quantities import DIMENSIONS
+from ltca.quantities import QUANTITIES
 
 FloatArray = NDArray[np.float64]
 
@@ -153,14 +153,18 @@ def _loaded(load: FloatArray, position: int) -> list[int]:
     return [int(pair) for pair in np.nonzero(load[position] > LOADED_FRACTION * np.max(load))[0]]
 
 
-SCALARS = {
-    "pressure_mid": ("mid", "MPa", "largest pressure at mid-width"),
-    "pressure_max": ("largest", "MPa", "largest pressure anywhere, end cell in attrs"),
-    "half_width": ("half_width", "mm", "contact half-width at mid-width"),
-    "field_load": ("load", "N", "pressure summed over the patch"),
-    "max_shear": ("max_shear", "MPa", "largest shear stress below mid-width"),
-    "max_shear_depth": ("max_shear_depth", "mm", "its depth below the surface"),
+FIELD_VALUES = {
+    "pressure": "pressure",
+    "x_edge": "x_edges",
+    "y_edge": "y_edges",
+    "pressure_mid": "mid",
+    "pressure_max": "largest",
+    "half_width": "half_width",
+    "field_load": "load",
+    "max_shear": "max_shear",
+    "max_shear_depth": "max_shear_depth",
 }
+"""Attributes of `PressureField` by what stands behind the kind of contact in their names in the dataset."""
 
 
 def build_pressure_dataset(
@@ -223,27 +227,15 @@ def _store(
     flat = [field for case in fields for disc in case for position in disc for field in position.values()]
     nx, ny = flat[0].pressure.shape if flat else (1, 1)
     shape = (len(fields), len(fields[0]), len(fields[0][0]), count)
-    pressure, x, y = np.zeros((*shape, nx, ny)), np.zeros((*shape, nx + 1)), np.zeros((*shape, ny + 1))
-    scalars = {key: np.zeros(shape) for key in SCALARS}
+    sizes = {"pressure": (nx, ny), "x_edge": (nx + 1,), "y_edge": (ny + 1,)}
+    arrays = {key: np.zeros((*shape, *sizes.get(key, ()))) for key in FIELD_VALUES}
     for case, disc, position in np.ndindex(shape[:3]):
         for pair, field in fields[case][disc][position].items():
             place = (case, disc, position, pair)
-            pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
-            for key, (attribute, _, _) in SCALARS.items():
-                scalars[key][place] = getattr(field, attribute)
-
-    def put(key: str, values: FloatArray, extra: tuple[str, ...], unit: str, text: str) -> None:
-        stored = values
-        if "crank" in DIMENSIONS[name]:  # pairs come crank after crank
-            stored = np.moveaxis(values.reshape(*values.shape[:3], cranks, -1, *values.shape[4:]), 3, 2)
-        variables[f"{name}_{key}{side}"] = (
-            (*DIMENSIONS[name], *extra),
-            stored,
-            {"units": unit, "long_name": text},
-        )
-
-    put("pressure", pressure, (f"{name}_cell_x", f"{name}_cell_y"), "MPa", "mean pressure of the cells")
-    put("x_edge", x, (f"{name}_bound_x",), "mm", "cell edges along the profile, from the contact point")
-    put("y_edge", y, (f"{name}_bound_y",), "mm", "cell edges along the width, from mid-width")
-    for key, (_, unit, text) in SCALARS.items():
-        put(key, scalars[key], (), unit, text)
+            for key, attribute in FIELD_VALUES.items():
+                arrays[key][place] = getattr(field, attribute)
+    for key, values in arrays.items():
+        quantity = QUANTITIES[f"{name}_{key}{side}"]
+        if "crank" in quantity.dimensions:  # pairs come crank after crank
+            values = np.moveaxis(values.reshape(*shape[:3], cranks, -1, *values.shape[4:]), 3, 2)
+        variables[quantity.name] = quantity.labelled(values)
