@@ -93,7 +93,7 @@ def full_solution(drive: Drive) -> np.ndarray:
     numbers = [np.array([found.wheel_angle, found.transmission_error, *found.disc_torques])]
     for disc in found.discs:
         contacts, pose = disc.contacts, disc.pose
-        numbers += [contacts.pin_load, contacts.roller_load_outer, contacts.pin_shaft_load, contacts.pin_pressure_max]
+        numbers += [contacts.pin_load, contacts.roller_load, contacts.pin_shaft_load, contacts.pin_pressure_mid]
         numbers.append(np.array([pose.disc_x, pose.disc_y, pose.disc_rotation]))
     return np.concatenate(numbers)
 

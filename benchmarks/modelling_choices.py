@@ -80,9 +80,9 @@ def by_full_solution(drive: Drive, angles: FloatArray, scale: float, **chosen: A
     for solution in solve_positions(drive, angles.tolist(), scale=scale, **chosen):
         (disc,) = solution.discs
         contacts = disc.contacts
-        loads.append(np.concatenate((contacts.pin_load, contacts.roller_load_outer, contacts.pin_shaft_load)))
-        flank.append(contacts.pin_pressure_max.max())
-        hole.append(contacts.hole_pressure_max.max())
+        loads.append(np.concatenate((contacts.pin_load, contacts.roller_load, contacts.pin_shaft_load)))
+        flank.append(contacts.pin_pressure_mid.max())
+        hole.append(contacts.pin_shaft_pressure_mid.max())
         wheel.append(ARCSEC * solution.transmission_error)
     return Answer(load=np.array(loads), flank=np.array(flank), hole=np.array(hole), wheel=np.array(wheel))
 

@@ -163,52 +163,41 @@ def _cell(text: str) -> str:
 
 def dataset_page() -> str:
     """Every variable and coordinate of ``results.nc``, and what ``summary.json`` holds."""
-    from ltca.analysis.friction.variables import VARIABLES as OF_FRICTION
     from ltca.analysis.loaded_analysis import analyse
-    from ltca.analysis.results import DIMENSIONS, VARIABLES, WALL_VARIABLES, build_dataset
+    from ltca.analysis.results import build_dataset
     from ltca.geometry.placement import position_angles
+    from ltca.quantities import QUANTITIES, SCALARS, SCHEMA_VERSION
     from ltca.reading.drive_file import load_drive
 
     text = """# The dataset
 
-`results.nc` of `cyclo run` is netCDF, `result.dataset` in Python is the same for one case. Dimensions stand in the order
-`case`, `disc`, `crank`, `position`, then `pin`, `roller`, `hole` or `lobe`, always all that a
-variable has, also where they are of size 1.
+`results.nc` of `cyclo run` is netCDF, `result.dataset` in Python is the same for one case; `pressure.nc` (`--pressure`) and
+`fem.nc` (`cyclo fem`) have the same names. Dimensions stand in the order `case`, `disc`, `crank`, `position`, then `pin`,
+`roller`, `hole` or `lobe`, always all that a variable has, also where they are of size 1.
 Units are in the attribute `units`, what a variable is in `long_name`. Discs, cranks, pins, rollers and holes are numbered from 0,
 counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
 
 A variable is there where the drive has it: of friction with `[friction]`, of seats with loose pins and sleeves, of walls
 with `--compliance fe` and `hybrid`. What one case has and another has not is not a number there.
 
+The attribute `schema_version`, a whole number, says which names, units and dimensions a dataset has: it grows when one of
+them changes or goes, not when one is added. This is version {version}.
+
+## Arrays and coordinates
+
 """
-    for title, variables in (
-        ("Variables", VARIABLES),
-        ("Of friction", OF_FRICTION),
-        ("Of walls (`fe` and `hybrid`)", WALL_VARIABLES),
-    ):
-        text += f"## {title}\n\n"
-        text += table(
-            ("variable", "dimensions", "unit", "meaning"),
-            (
-                (f"`{name}`", ", ".join(("case", *DIMENSIONS[kind])), _unit(unit), meaning)
-                for name, (kind, unit, meaning) in variables.items()
-            ),
-        )
+    text = text.replace("{version}", str(SCHEMA_VERSION))
+    arrays = [quantity for quantity in QUANTITIES.values() if quantity.of]
+    text += table(
+        ("array", "dimensions", "unit", "meaning"),
+        (
+            (f"`{one.name}`", ", ".join(one.dimensions), _unit(one.unit), _meanings(one.description, one.in_fem))
+            for one in arrays
+        ),
+    )
     drive = load_drive("paper").cases["CS-1"]
     analysis = analyse(drive, position_angles(2))
     dataset = build_dataset("paper", {"CS-1": analysis})
-    text += "## Coordinates\n\n" + table(
-        ("coordinate", "dimensions", "unit", "meaning"),
-        (
-            (
-                f"`{name}`",
-                ", ".join(map(str, values.dims)),
-                _unit(values.attrs.get("units", "1")),
-                values.attrs.get("long_name", "number, from 0" if name != "case" else "name"),
-            )
-            for name, values in dataset.coords.items()
-        ),
-    )
     text += "## Attributes\n\n" + table(
         ("attribute", "of the paper's CS-1"),
         ((f"`{name}`", _attribute(name, value)) for name, value in dataset.attrs.items()),
@@ -220,20 +209,43 @@ that of each case's drive, `status` is `complete`, or `partial` where a position
 
 Scalars of each case, their units at the end of their names (`_N`, `_MPa`, `_mm`, `_Nmm`, `_arcmin`, `_arcsec`, `_deg`, `_W`).
 Means and peaks run over the positions, `refined_…` are extremes over the whole turn, refined between them; null is what the
-engine or the positions cannot say. Of the paper's drive:
+engine or the positions cannot say. `#` is the number of a disc or crank.
 
 """
-    from ltca.analysis.summary import summarise
+    text += table(
+        ("key", "also refined", "meaning"),
+        ((f"`{one.key}`", "yes" if one.refined else "", one.title) for one in SCALARS.values() if one.in_summary),
+    )
+    text += FEM_SUMMARY
+    return text + table(
+        ("key of `cyclo fem`", "the same, older", "meaning"),
+        (
+            (f"`{one.fem_key}`", f"`{one.older_fem_key}`", one.in_fem or one.description)
+            for one in arrays
+            if one.older_key
+        ),
+    )
 
-    keys = summarise(analysis)
-    text += ", ".join(f"`{key}`" for key in keys if not key.startswith("refined_"))
-    return f"{text}.\n\nRefined: {', '.join(f'`{key}`' for key in keys if key.startswith('refined_'))}.\n"
+
+FEM_SUMMARY = """
+## summary.json of cyclo fem
+
+Arrays of `fem.nc` under their names with the unit behind them, lists by disc and part. In datasets and in the summary of
+`cyclo run`, `pressure_mid` is the largest pressure at mid-width, where a contact is in plane strain, and `pressure_max` the
+largest anywhere along the width, its ends included. Full finite elements are plane and know the first alone. Their older keys
+call it `pressure_max` and stay beside the new ones, with the same values.
+
+"""
+
+
+def _meanings(description: str, in_fem: str) -> str:
+    return f"{description}; in `fem.nc`: {in_fem}" if in_fem else description
 
 
 def _unit(unit: str) -> str:
-    from ltca.drive.units.table import label
+    from ltca.quantities import unit_sign
 
-    return "–" if unit == "1" else label(unit).replace("N mm", "N·mm")
+    return unit_sign(unit) or "–"
 
 
 def _attribute(name: str, value: object) -> str:
@@ -246,9 +258,8 @@ def _attribute(name: str, value: object) -> str:
 
 def quantities_page() -> str:
     """Names that studies, aims and limits take."""
-    from ltca.drive.members.judgement import TITLES
-    from ltca.drive.members.limits import LIMITED
-    from ltca.studies.quantities import DEFAULT_QUANTITIES, QUANTITIES
+    from ltca.quantities import LIMITED, SCALARS
+    from ltca.studies.quantities import DEFAULT_QUANTITIES, STAGES
 
     text = """# Names of results
 
@@ -263,8 +274,8 @@ def quantities_page() -> str:
     text += table(
         ("name", "unit", "meaning"),
         (
-            (f"`{name}`{_star(name, DEFAULT_QUANTITIES)}", quantity.symbol or "–", quantity.description)
-            for name, quantity in QUANTITIES.items()
+            (f"`{name}`{_star(name, DEFAULT_QUANTITIES)}", _unit(SCALARS[name].unit), SCALARS[name].title)
+            for name in STAGES
         ),
     )
     text += """## Of limits
@@ -274,7 +285,8 @@ before the name.
 
 """
     return text + table(
-        ("name", "unit", "meaning"), ((f"`{name}`", _unit(unit), TITLES[name]) for name, unit in LIMITED.items())
+        ("name", "unit", "meaning"),
+        ((f"`{name}`", _unit(one.unit), one.verdict_title) for name, one in LIMITED.items()),
     )
 
 

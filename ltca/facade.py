@@ -21,20 +21,16 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.placement import position_angles
+from ltca.quantities import SCALARS, unit_sign
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_POSITIONS = 1_000_000
 _SHOWN = (
-    ("mean bearing load", "mean_bearing_load_N", "N", "{:.1f}"),
-    ("largest pin load", "max_pin_load_N", "N", "{:.1f}"),
-    ("largest pin pressure, mid-width", "max_pin_pressure_mid_MPa", "MPa", "{:.1f}"),
-    ("largest roller load", "max_roller_load_N", "N", "{:.1f}"),
-    ("largest pin-shaft load", "max_pin_shaft_load_N", "N", "{:.1f}"),
-    ("transmission error, peak to peak", "ptp_transmission_error_arcsec", "″", "{:.2f}"),
-    ("backlash at the output, all clearances", "backlash_output_arcmin", "′", "{:z.2f}"),
-)
+    "mean_bearing_load", "max_pin_load", "max_pin_pressure_mid", "max_roller_load", "max_pin_shaft_load",
+    "ptp_transmission_error", "backlash_output",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -104,15 +100,15 @@ class AnalysisResult:
             f"{self.torque / 1000.0:g} N·m {self.drive.load.direction}"
         )
         rows = [head]
-        for title, key, unit, form in _SHOWN:
-            value = refined_value(self._summary, key)
-            if value is not None and not (positions == 1 and key.startswith("ptp")):
-                rows.append(f"  {title:<34}{form.format(value)} {unit}")
+        for shown in (SCALARS[name] for name in _SHOWN):
+            value = refined_value(self._summary, shown.key)
+            if value is not None and not (positions == 1 and shown.name.startswith("ptp")):
+                rows.append(f"  {shown.title:<48}{value:{shown.digits}} {unit_sign(shown.unit)}")
         shares = [
             value for key, value in self._summary.items() if key.startswith("max_torque_share") and value is not None
         ]
         if len(shares) > 1:
-            rows.append(f"  {'largest part of the torque':<34}{max(shares):.3f} on one of {len(shares)} discs")
+            rows.append(f"  {'largest part of the torque':<48}{max(shares):.3f} on one of {len(shares)} discs")
         return "\n".join(rows)
 
 
@@ -283,9 +279,9 @@ def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The variables of ``result.dataset`` with the dimension ``field`` before their own, per unit of the field (coordinate
-        ``unit``); ``pose``, mm and rad by the coordinates of the members; and the scalars of ``result.summary`` that are sums,
-        means and largest values of these, by their keys. A largest value follows the contact that has it.
+        The variables of ``result.dataset`` with the dimension ``field`` in the place of ``case``, per unit of the field
+        (coordinate ``unit``); ``pose``, mm and rad by the coordinates of the members; and the scalars of ``result.summary``
+        that are means, ranges and largest values of these, by their keys. A largest value follows the contact that has it.
 
     Raises
     ------
@@ -300,8 +296,8 @@ def derivatives(result: AnalysisResult, fields: Iterable[str]) -> xr.Dataset:
     >>> drive = ltca.load_drive("paper").cases["CS-1"]
     >>> slopes = ltca.derivatives(ltca.analyse(drive, crank_angle=[0.5]), ["disc.shifting_offset", "load.torque"])
     >>> print(f"{float(slopes['max_pin_load_N'].sel(field='load.torque')) * 1e3:.2f} N by 1 N·m")
-    4.77 N by 1 N·m
+    5.39 N by 1 N·m
     """
     from ltca.analysis.derivatives import derivatives as of_analysis
 
-    return of_analysis(result.loaded, fields, result.case)
+    return of_analysis(result.loaded, fields)

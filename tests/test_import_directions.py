@@ -19,10 +19,9 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = ("ltca", "fem", "validation")
 # The floors of the house, lowest first: a module imports from its own floor or from lower ones, never from above.
 FLOORS = (
-    "ltca.errors", "ltca.arrays", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact", "ltca.reading",
-    "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures", "ltca.page",
-    "ltca.export",
-    "ltca.testing", "ltca",
+    "ltca.errors", "ltca.arrays", "ltca.quantities", "ltca.output", "ltca.drive", "ltca.geometry", "ltca.contact",
+    "ltca.reading", "ltca.laws", "ltca.compliance", "ltca.equilibrium", "ltca.analysis", "ltca.studies", "ltca.figures",
+    "ltca.page", "ltca.export", "ltca.testing", "ltca",
     "fem.errors", "fem.shapes", "fem.mesh", "fem.body", "fem.contact", "fem.drive", "fem.reducer", "fem.coefficients",
     "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
     "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
@@ -32,8 +31,8 @@ FLOORS = (
 UNSEEN = {"ltca": {"fem", "validation"}, "fem": {"validation"}, "validation": set()}
 # Of ltca, fem takes the drive, its shape, the nominal place of its parts and the edge: never their mechanics.
 FEM_MAY_IMPORT = (
-    "ltca.errors", "ltca.output", "ltca.drive", "ltca.reading", "ltca.geometry.flank", "ltca.geometry.placement",
-    "ltca.page.study_page", "ltca.page.tables", "ltca.page.verdict_tables",
+    "ltca.errors", "ltca.output", "ltca.quantities", "ltca.drive", "ltca.reading", "ltca.geometry.flank",
+    "ltca.geometry.placement", "ltca.page.study_page", "ltca.page.tables", "ltca.page.verdict_tables",
     "ltca.figures.house_style",
     "ltca.export",
 )  # fmt: skip

@@ -152,30 +152,11 @@ def _solve_and_write(
 
 
 def _print_contacts(solution: FullSolution) -> None:
-    contacts, cranks = solution.contacts, solution.model.placement.cranks
-    rows = (
-        ("pin", contacts.pin_load, contacts.pin_pressure_max, contacts.pin_half_width),
-        (
-            "roller outer",
-            contacts.roller_load_outer,
-            contacts.roller_pressure_max_outer,
-            contacts.roller_half_width_outer,
-        ),
-        (
-            "roller inner",
-            contacts.roller_load_inner,
-            contacts.roller_pressure_max_inner,
-            contacts.roller_half_width_inner,
-        ),
-        ("shaft pin", contacts.pin_shaft_load, contacts.hole_pressure_max, contacts.hole_half_width),
-    )
+    cranks = solution.model.placement.cranks
+    names = {"pin": "pin", "roller_outer": "roller outer", "roller_inner": "roller inner", "hole": "shaft pin"}
     print(f"{'contact':<16}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
-    for name, load, peak, width in rows:
-        for index in range(len(load)):
-            if load[index] > 0.0:
-                print(
-                    f"{name + ' ' + str(index):<16}{load[index]:>10.1f}{peak[index]:>11.1f}{1e3 * width[index]:>16.1f}"
-                )
+    for kind, index, load, peak, width in solution.contacts.loaded:
+        print(f"{f'{names[kind]} {index}':<16}{load:>10.1f}{peak:>11.1f}{1e3 * width:>16.1f}")
     for crank, (radial, tangential) in enumerate(solution.bearing_components.tolist()):
         which = "" if cranks == 1 else f" at crank {crank}"
         print(f"bearing force on the disc{which}: radial {radial:.1f} N, tangential {tangential:.1f} N")

@@ -52,11 +52,11 @@ class ContactResults:
 
     Attributes
     ----------
-    pin_load, roller_load_outer, roller_load_inner, pin_shaft_load : array
+    pin_load, roller_load, roller_load_inner, pin_shaft_load : array
         N.
-    pin_pressure_max, roller_pressure_max_outer, roller_pressure_max_inner, hole_pressure_max : array
+    pin_pressure_mid, roller_pressure_mid_outer, roller_pressure_mid_inner, pin_shaft_pressure_mid : array
         MPa.
-    pin_half_width, roller_half_width_outer, roller_half_width_inner, hole_half_width : array
+    pin_half_width, roller_half_width_outer, roller_half_width_inner, pin_shaft_half_width : array
         mm.
     pin_force, roller_force, shaft_pin_force : array of complex
         Forces on the disc at each contact, fixed axes, N.
@@ -69,23 +69,38 @@ class ContactResults:
     """
 
     pin_load: FloatArray
-    roller_load_outer: FloatArray
+    roller_load: FloatArray
     roller_load_inner: FloatArray
     pin_shaft_load: FloatArray
-    pin_pressure_max: FloatArray
-    roller_pressure_max_outer: FloatArray
-    roller_pressure_max_inner: FloatArray
-    hole_pressure_max: FloatArray
+    pin_pressure_mid: FloatArray
+    roller_pressure_mid_outer: FloatArray
+    roller_pressure_mid_inner: FloatArray
+    pin_shaft_pressure_mid: FloatArray
     pin_half_width: FloatArray
     roller_half_width_outer: FloatArray
     roller_half_width_inner: FloatArray
-    hole_half_width: FloatArray
+    pin_shaft_half_width: FloatArray
     pin_force: NDArray[np.complex128]
     roller_force: NDArray[np.complex128]
     shaft_pin_force: NDArray[np.complex128]
     bearing_force: NDArray[np.complex128]
     equilibrium_residual: float
     details: tuple[PairResult, ...]
+
+    @property
+    def loaded(self) -> list[tuple[PairKind, int, float, float, float]]:
+        """Kind, number, load, largest pressure and half-width of every contact that carries, by kinds."""
+        kinds: dict[PairKind, tuple[FloatArray, FloatArray, FloatArray]] = {
+            "pin": (self.pin_load, self.pin_pressure_mid, self.pin_half_width),
+            "roller_outer": (self.roller_load, self.roller_pressure_mid_outer, self.roller_half_width_outer),
+            "roller_inner": (self.roller_load_inner, self.roller_pressure_mid_inner, self.roller_half_width_inner),
+            "hole": (self.pin_shaft_load, self.pin_shaft_pressure_mid, self.pin_shaft_half_width),
+        }
+        return [
+            (kind, index, float(load[index]), float(pressure[index]), float(half_width[index]))
+            for kind, (load, pressure, half_width) in kinds.items()
+            for index in np.flatnonzero(load > 0.0).tolist()
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,17 +183,17 @@ def summarise_contacts(model: DriveModel, solution: PoseSolution) -> ContactResu
         details.append(detail)
     return ContactResults(
         pin_load=load["pin"],
-        roller_load_outer=load["roller_outer"],
+        roller_load=load["roller_outer"],
         roller_load_inner=load["roller_inner"],
         pin_shaft_load=load["hole"],
-        pin_pressure_max=peak["pin"],
-        roller_pressure_max_outer=peak["roller_outer"],
-        roller_pressure_max_inner=peak["roller_inner"],
-        hole_pressure_max=peak["hole"],
+        pin_pressure_mid=peak["pin"],
+        roller_pressure_mid_outer=peak["roller_outer"],
+        roller_pressure_mid_inner=peak["roller_inner"],
+        pin_shaft_pressure_mid=peak["hole"],
         pin_half_width=width["pin"],
         roller_half_width_outer=width["roller_outer"],
         roller_half_width_inner=width["roller_inner"],
-        hole_half_width=width["hole"],
+        pin_shaft_half_width=width["hole"],
         pin_force=force["pin"],
         roller_force=force["roller_outer"],
         shaft_pin_force=force["hole"],

@@ -21,6 +21,7 @@ from fem.drive.contact_results import PairResult
 from fem.drive.full_solution import FullSolution
 from fem.drive.grading import FINE_SHARE
 from fem.drive.model import ContactPair
+from ltca.quantities import QUANTITIES
 
 FloatArray = NDArray[np.float64]
 
@@ -44,7 +45,7 @@ class DiscStress:
         Along the bores, the largest of all, MPa.
     hole_stress : array, shape (z_PS,)
         Along each hole wall, MPa.
-    pin_shear, roller_shear, hole_shear : array
+    pin_shear_max, roller_shear_max_outer, pin_shaft_shear_max : array
         Largest shear stress in the plane below the contacts of wheel pins, rollers in the bore and shaft pins, MPa; zero
         below 5 % of the largest load of the kind.
     """
@@ -54,9 +55,9 @@ class DiscStress:
     root_stress: FloatArray
     bore_stress: float
     hole_stress: FloatArray
-    pin_shear: FloatArray
-    roller_shear: FloatArray
-    hole_shear: FloatArray
+    pin_shear_max: FloatArray
+    roller_shear_max_outer: FloatArray
+    pin_shaft_shear_max: FloatArray
 
     @property
     def bores(self) -> int:
@@ -85,7 +86,7 @@ def recover_disc_stress(solution: FullSolution) -> DiscStress:
         clear.append(far)
     shear = {
         "pin": np.zeros(len(solution.contacts.pin_load)),
-        "roller_outer": np.zeros(len(solution.contacts.roller_load_outer)),
+        "roller_outer": np.zeros(len(solution.contacts.roller_load)),
         "hole": np.zeros(len(solution.contacts.pin_shaft_load)),
     }
     for pair, detail, place, outward in loaded:
@@ -101,9 +102,9 @@ def recover_disc_stress(solution: FullSolution) -> DiscStress:
         root_stress=np.array([_largest(flank[0], flank[1] & (nearest == root)) for root in range(lobes)]),
         bore_stress=_largest_of_all([_largest(*bore) for bore in openings[:bores]]),
         hole_stress=np.array([_largest(*hole) for hole in openings[bores:]]),
-        pin_shear=shear["pin"],
-        roller_shear=shear["roller_outer"],
-        hole_shear=shear["hole"],
+        pin_shear_max=shear["pin"],
+        roller_shear_max_outer=shear["roller_outer"],
+        pin_shaft_shear_max=shear["hole"],
     )
 
 
@@ -125,22 +126,26 @@ def _largest_of_all(values: list[float]) -> float:
     return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
 
 
+STRESSES = (
+    "root_stress", "bore_stress", "hole_stress", "pin_shear_max", "roller_shear_max_outer", "pin_shaft_shear_max",
+)  # fmt: skip
+"""What of `DiscStress` files hold, by name in ``fem.nc``."""
+
+
 def summarise_stress(discs: Sequence[DiscStress]) -> dict[str, Any]:
     """Return what ``summary.json`` says about the stress in each disc: lists by disc, then by part.
 
     None stands for what is no number.
     """
 
-    def plain(values: FloatArray) -> list[float | None]:
-        return [value if np.isfinite(value) else None for value in values.tolist()]
+    def plain(values: Any) -> Any:
+        if isinstance(values, list):
+            return [plain(value) for value in values]
+        return values if np.isfinite(values) else None
 
     return {
-        "root_stress_MPa": [plain(stress.root_stress) for stress in discs],
-        "bore_stress_MPa": plain(np.array([stress.bore_stress for stress in discs])),
-        "hole_stress_MPa": [plain(stress.hole_stress) for stress in discs],
-        "pin_shear_max_MPa": [plain(stress.pin_shear) for stress in discs],
-        "roller_shear_max_outer_MPa": [plain(stress.roller_shear) for stress in discs],
-        "pin_shaft_shear_max_MPa": [plain(stress.hole_shear) for stress in discs],
+        QUANTITIES[name].fem_key: [plain(np.asarray(getattr(stress, name)).tolist()) for stress in discs]
+        for name in STRESSES
     }
 
 
@@ -148,38 +153,20 @@ def stress_variables(discs: Sequence[DiscStress]) -> dict[str, tuple[tuple[str, 
     """Return the stress in each disc as variables of ``fem.nc``, dimensions as in ``results.nc``."""
     bores = discs[0].bores
     walls = [(disc, number, wall) for disc, stress in enumerate(discs) for number, wall in enumerate(stress.walls)]
-
-    def per_node(values: list[Any], unit: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-        return ("wall_node",), np.concatenate(values), {"units": unit, "long_name": text}
-
-    def per_part(dimensions: tuple[str, ...], name: str, text: str) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-        values = np.array([getattr(stress, name) for stress in discs], dtype=float)
-        sizes = {"case": 1, "disc": len(discs), "crank": bores, "position": 1}
-        shape = [sizes.get(dimension, -1) for dimension in dimensions]
-        return dimensions, values.reshape(shape), {"units": "MPa", "long_name": text}
-
-    boundaries = "0 flank, 1 bore, 2 + k hole k"
-    if bores > 1:
-        boundaries = f"0 flank, 1 + c bore c, {1 + bores} + k hole k"
-    largest, below = "largest tensile stress along {}, clear of contacts", "largest shear stress in the disc below {}"
-    disc, crank = ("case", "disc", "position"), ("case", "disc", "crank", "position")
-    return {
-        "lobe": (("lobe",), np.arange(len(discs[0].root_stress)), {"units": "1", "long_name": "lobe of the flank"}),
-        "wall_disc": per_node(
-            [np.full(len(wall.parameter), number) for number, _, wall in walls], "1", "number of the disc"
-        ),
-        "wall_boundary": per_node([np.full(len(wall.parameter), number) for _, number, wall in walls], "1", boundaries),
-        "wall_parameter": per_node([wall.parameter for *_, wall in walls], "rad", "θ of Eq. 1, or polar angle"),
-        "wall_stress": per_node([wall.stress for *_, wall in walls], "MPa", "stress along the wall, tension positive"),
-        "wall_clear": per_node(
-            [clear.astype(int) for stress in discs for clear in stress.clear],
-            "1",
-            "1 beyond four half-widths of contacts",
-        ),
-        "root_stress": per_part((*disc, "lobe"), "root_stress", largest.format("the flank about each lobe root")),
-        "bore_stress": per_part(disc, "bore_stress", largest.format("the bore" if bores == 1 else "the bores")),
-        "hole_stress": per_part((*disc, "hole"), "hole_stress", largest.format("the wall of each hole")),
-        "pin_shear_max": per_part((*disc, "pin"), "pin_shear", below.format("wheel pins")),
-        "roller_shear_max_outer": per_part((*crank, "roller"), "roller_shear", below.format("rollers")),
-        "pin_shaft_shear_max": per_part((*disc, "hole"), "hole_shear", below.format("shaft pins")),
+    sizes = {"case": 1, "disc": len(discs), "crank": bores, "position": 1}
+    values: dict[str, Any] = {
+        "lobe": np.arange(len(discs[0].root_stress)),
+        "wall_disc": np.concatenate([np.full(len(wall.parameter), number) for number, _, wall in walls]),
+        "wall_boundary": np.concatenate([np.full(len(wall.parameter), number) for _, number, wall in walls]),
+        "wall_parameter": np.concatenate([wall.parameter for *_, wall in walls]),
+        "wall_stress": np.concatenate([wall.stress for *_, wall in walls]),
+        "wall_clear": np.concatenate([clear.astype(int) for stress in discs for clear in stress.clear]),
     }
+    for name in STRESSES:
+        shape = [sizes.get(dimension, -1) for dimension in QUANTITIES[name].dimensions]
+        values[name] = np.array([getattr(stress, name) for stress in discs], dtype=float).reshape(shape)
+    found = {name: QUANTITIES[name].labelled(each, in_fem=True) for name, each in values.items()}
+    if bores > 1:
+        found["wall_boundary"][2]["long_name"] = f"0 flank, 1 + c bore c, {1 + bores} + k hole k"
+        found["bore_stress"][2]["long_name"] = "largest tensile stress along the bores, clear of contacts"
+    return found

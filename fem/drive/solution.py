@@ -108,7 +108,7 @@ class _Task:
         """Solve on meshes graded for the contacts of another solution."""
         results, pose = summarise_contacts(model, solution), solution.pose
         place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-        loads = (results.pin_load, results.roller_load_outer, results.pin_shaft_load)
+        loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
         margin, deformed = FINE_MARGIN * 2.0 ** (grading - 1), deformed_contacts(model, solution)
         contacts = self.grade(place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
@@ -322,22 +322,7 @@ def solve_disc(
 
 
 def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
-    """Solve another load on the meshes and factors of a solution.
-
-    Parameters
-    ----------
-    previous : FullSolution
-        At the same crank angle.
-    torque : float
-        Output torque, N·mm.
-    progress : callable, optional
-        Called with one line for each step.
-
-    Returns
-    -------
-    FullSolution
-        As `solve_moment` finds it.
-    """
+    """Solve another output torque, N·mm, on the meshes and factors of a solution at the same crank angle."""
     return solve_moment(previous, previous.model.drive.wheel_moment(torque), progress=progress)
 
 
@@ -348,23 +333,9 @@ def solve_moment(
     pose_tolerance: float = POSE_TOLERANCE,
     progress: Callable[[str], None] | None = None,
 ) -> FullSolution:
-    """Solve for another moment on the wheel on the meshes and factors of a solution.
+    """Solve for another moment on the wheel, N·mm, on the meshes of a solution at the same crank angle where they serve.
 
-    Parameters
-    ----------
-    previous : FullSolution
-        At the same crank angle.
-    wheel_moment : float
-        External moment on the wheel, N·mm.
-    pose_tolerance : float
-        Largest increment of a pose at rest, mm.
-    progress : callable, optional
-        Called with one line for each step.
-
-    Returns
-    -------
-    FullSolution
-        On the same meshes if they serve the new contacts, else on new ones.
+    Poses rest when no increment is larger than `pose_tolerance`, mm.
     """
     watch = _Stopwatch()
     model = previous.model

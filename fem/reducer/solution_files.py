@@ -25,46 +25,22 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.members.verdict_words import check_content
 from ltca.drive.plane_strain import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.errors import CycloError
+from ltca.geometry.placement import place_coordinates
 from ltca.output.files import whole_file, write_json
 from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash, code_version
+from ltca.quantities import QUANTITIES, SCHEMA_VERSION
 from ltca.reading.writing import drive_text
 
 if TYPE_CHECKING:
     import xarray as xr
 
-# What a quantity belongs to, and the dimensions behind `case` that follow from it, as in ``results.nc``.
-DIMENSIONS = {
-    "drive": ("position",),
-    "disc": ("disc", "position"),
-    "crank": ("disc", "crank", "position"),
-    "pin": ("disc", "position", "pin"),
-    "roller": ("disc", "crank", "position", "roller"),
-    "hole": ("disc", "position", "hole"),
-}
-# name in fem.nc: (attribute of ContactResults, what it belongs to, unit, description)
-ARRAYS: dict[str, tuple[str, str, str, str]] = {
-    "pin_load": ("pin_load", "pin", "N", "load of wheel pin and flank"),
-    "roller_load": ("roller_load_outer", "roller", "N", "load of roller and bore (outer side)"),
-    "roller_load_inner": ("roller_load_inner", "roller", "N", "load of roller and inner race"),
-    "pin_shaft_load": ("pin_shaft_load", "hole", "N", "load of shaft pin and hole"),
-    "pin_pressure_mid": ("pin_pressure_max", "pin", "MPa", "largest pressure of wheel pin and flank"),
-    "roller_pressure_mid_outer": ("roller_pressure_max_outer", "roller", "MPa", "largest pressure of roller and bore"),
-    "roller_pressure_mid_inner": ("roller_pressure_max_inner", "roller", "MPa", "largest pressure of roller and race"),
-    "pin_shaft_pressure_mid": ("hole_pressure_max", "hole", "MPa", "largest pressure of shaft pin and hole"),
-    "pin_half_width": ("pin_half_width", "pin", "mm", "half-width 2√⟨x²⟩ of wheel pin and flank"),
-    "roller_half_width_outer": ("roller_half_width_outer", "roller", "mm", "half-width of roller and bore"),
-    "roller_half_width_inner": ("roller_half_width_inner", "roller", "mm", "half-width of roller and race"),
-    "pin_shaft_half_width": ("hole_half_width", "hole", "mm", "half-width of shaft pin and hole"),
-}
-# Keys of summary.json that are older than the names of the datasets, and stay.
-SUMMARY_NAMES = {
-    "roller_load": "roller_load_outer",
-    "pin_pressure_mid": "pin_pressure_max",
-    "roller_pressure_mid_outer": "roller_pressure_max_outer",
-    "roller_pressure_mid_inner": "roller_pressure_max_inner",
-    "pin_shaft_pressure_mid": "pin_shaft_pressure_max",
-}
+ARRAYS = (
+    "pin_load", "roller_load", "roller_load_inner", "pin_shaft_load",
+    "pin_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "pin_shaft_pressure_mid",
+    "pin_half_width", "roller_half_width_outer", "roller_half_width_inner", "pin_shaft_half_width",
+)  # fmt: skip
+"""What of `fem.drive.contact_results.ContactResults` files hold, by name in ``fem.nc``."""
 MULTI_BLOCK = "fem.vtm"
 
 
@@ -76,9 +52,9 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
     """
     discs = solution.discs
     content: dict[str, Any] = {}
-    for name, (attribute, _, unit, _) in ARRAYS.items():
-        values = [[float(value) for value in getattr(disc.contacts, attribute)] for disc in discs]
-        content[f"{SUMMARY_NAMES.get(name, name)}_{unit}"] = values
+    for name in ARRAYS:
+        values = [getattr(disc.contacts, name).tolist() for disc in discs]
+        content |= dict.fromkeys((QUANTITIES[name].older_fem_key, QUANTITIES[name].fem_key), values)
 
     def each(values: list[Any]) -> Any:
         return values[0] if len(values) == 1 else values
@@ -87,19 +63,19 @@ def summarise(solution: ReducerSolution) -> dict[str, Any]:
         return each([each(disc.bearing_components[:, column].tolist()) for disc in discs])
 
     content |= {
-        "crank_angle_rad": solution.crank_angle,
-        "wheel_moment_N_mm": solution.wheel_moment,
-        "disc_torque_N_mm": [float(value) for value in solution.disc_torques],
+        QUANTITIES["crank_angle"].fem_key: solution.crank_angle,
+        QUANTITIES["wheel_moment"].fem_key: solution.wheel_moment,
+        QUANTITIES["disc_torque"].fem_key: [float(value) for value in solution.disc_torques],
         "torque_share": [float(value) for value in solution.torque_share],
-        "wheel_angle_rad": solution.wheel_angle,
-        "transmission_error_rad": solution.transmission_error,
+        QUANTITIES["wheel_angle"].fem_key: solution.wheel_angle,
+        QUANTITIES["transmission_error"].fem_key: solution.transmission_error,
         "disc_displacement": each([_motion(*bore_motion(disc.model, disc.state)) for disc in discs]),
         "disc_displacement_area": each(
             [_motion(disc.pose.disc_displacement, disc.pose.disc_rotation) for disc in discs]
         ),
-        "bearing_radial_N": by_crank(0),
-        "bearing_tangential_N": by_crank(1),
-        "equilibrium_residual_N": solution.equilibrium_residual,
+        QUANTITIES["bearing_radial"].fem_key: by_crank(0),
+        QUANTITIES["bearing_tangential"].fem_key: by_crank(1),
+        QUANTITIES["equilibrium_residual"].fem_key: solution.equilibrium_residual,
         "pose_iterations": each([disc.pose_iterations for disc in discs]),
         "dof": solution.unknowns,
         "size": discs[0].scale,
@@ -124,53 +100,43 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
     sizes = {"case": 1, "disc": len(discs), "crank": solution.drive.crank.number, "position": 1}
     data: dict[str, Any] = {}
 
-    def add(name: str, values: Any, belongs: str, unit: str, text: str) -> None:
-        """Put values of the drive, or by disc and then by crank and part, in the dimensions of what they belong to."""
-        dimensions = ("case", *DIMENSIONS[belongs])
-        array = np.asarray(values, dtype=float).reshape([sizes.get(dimension, -1) for dimension in dimensions])
-        data[name] = (dimensions, array, {"units": unit, "long_name": text})
+    def add(name: str, values: Any) -> None:
+        """Put values of the drive, or by disc and then by crank and part, in the dimensions of the quantity."""
+        quantity = QUANTITIES[name]
+        shape = [sizes.get(dimension, -1) for dimension in quantity.dimensions]
+        data[name] = quantity.labelled(np.asarray(values, dtype=float).reshape(shape), in_fem=True)
 
-    for name, (attribute, belongs, unit, text) in ARRAYS.items():
-        if name == "pin_shaft_pressure_mid" and not shaft_pins_yield(solution.drive):
-            text = f"{text}; {RIGID_SHAFT_PINS}"
-        add(name, [getattr(disc.contacts, attribute) for disc in discs], belongs, unit, text)
+    for name in ARRAYS:
+        add(name, [getattr(disc.contacts, name) for disc in discs])
+    if not shaft_pins_yield(solution.drive):
+        data["pin_shaft_pressure_mid"][2]["long_name"] += f"; {RIGID_SHAFT_PINS}"
     bearings = np.array([disc.bearing_components for disc in discs])
     motions = [bore_motion(disc.model, disc.state) for disc in discs]
     bore, bore_rotation = np.array([shift for shift, _ in motions]), [rotation for _, rotation in motions]
     poses = [disc.pose for disc in discs]
-    area = "disc from its nominal place, mean over the area"
-    for name, value, belongs, unit, text in (
-        ("wheel_angle", solution.wheel_angle, "drive", "rad", "deviation of the wheel from φ_C/u, ccw positive"),
-        ("transmission_error", solution.transmission_error, "drive", "rad", "deviation of the output, ccw positive"),
-        ("wheel_moment", solution.wheel_moment, "drive", "N mm", "external moment on the wheel, ccw positive"),
-        ("disc_torque", solution.disc_torques, "disc", "N mm", "part of that moment that the disc carries"),
-        ("disc_x", bore.real, "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),
-        ("disc_y", bore.imag, "disc", "mm", "disc from its nominal place, fixed axes, fitted to its bores"),
-        ("disc_rotation", bore_rotation, "disc", "rad", "rotation of the disc, fitted to its bores, ccw positive"),
-        ("disc_area_x", [pose.disc_x for pose in poses], "disc", "mm", area),
-        ("disc_area_y", [pose.disc_y for pose in poses], "disc", "mm", area),
-        (
-            "disc_area_rotation",
-            [pose.disc_rotation for pose in poses],
-            "disc",
-            "rad",
-            "rotation of the disc, mean over the area",
-        ),
-        ("bearing_radial", bearings[..., 0], "crank", "N", "bearing force on the disc along the eccentricity"),
-        (
-            "bearing_tangential",
-            bearings[..., 1],
-            "crank",
-            "N",
-            "bearing force on the disc, 90° ahead of the eccentricity",
-        ),
-        ("equilibrium_residual", solution.equilibrium_residual, "drive", "N", "largest unbalanced force"),
+    for name, value in (
+        ("wheel_angle", solution.wheel_angle),
+        ("transmission_error", solution.transmission_error),
+        ("wheel_moment", solution.wheel_moment),
+        ("disc_torque", solution.disc_torques),
+        ("disc_x", bore.real),
+        ("disc_y", bore.imag),
+        ("disc_rotation", bore_rotation),
+        ("disc_area_x", [pose.disc_x for pose in poses]),
+        ("disc_area_y", [pose.disc_y for pose in poses]),
+        ("disc_area_rotation", [pose.disc_rotation for pose in poses]),
+        ("bearing_radial", bearings[..., 0]),
+        ("bearing_tangential", bearings[..., 1]),
+        ("equilibrium_residual", solution.equilibrium_residual),
     ):
-        add(name, value, belongs, unit, text)
-    for name, (values, unit, text) in _pressure_profiles(discs).items():
-        data[name] = ("sample", values, {"units": unit, "long_name": text})
+        add(name, value)
+    data |= {name: QUANTITIES[name].labelled(values) for name, values in _pressure_profiles(discs).items()}
+    coordinates = place_coordinates(
+        {case: solution.drive}, [[disc.model.placement for disc in discs]], np.atleast_1d(solution.crank_angle)
+    ) | {"torque": QUANTITIES["torque"].labelled([solution.torque], in_fem=True)}
     attributes = {
         "Conventions": "CF-1.11",
+        "schema_version": SCHEMA_VERSION,
         "title": f"full finite-element solution of {solution.drive.name}",
         "source": f"cyclo {code_version()}",
         "version": code_version(),
@@ -185,52 +151,10 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
         "size": first.scale,
         "unknowns": solution.unknowns,
     }
-    return xr.Dataset(data, coords=_coordinates(solution, case), attrs=attributes)
+    return xr.Dataset(data, coords=coordinates, attrs=attributes)
 
 
-def _coordinates(solution: ReducerSolution, case: str) -> dict[str, Any]:
-    """Return numbers and places of the parts, crank angle and torque: what ``results.nc`` has, for one position."""
-    drive, places = solution.drive, [disc.model.placement for disc in solution.discs]
-    place, count, cranks = places[0], len(places), places[0].cranks
-
-    def at(dimensions: tuple[str, ...], values: Any, unit: str, text: str) -> tuple[Any, ...]:
-        missing = len(dimensions) - np.ndim(values)
-        return dimensions, np.reshape(values, (1,) * missing + np.shape(values)), {"units": unit, "long_name": text}
-
-    found: dict[str, Any] = {"case": [case], "disc": np.arange(count), "crank": np.arange(cranks), "position": [0]}
-    for name, parts in (
-        ("pin", len(place.wheel_pin_radii)),
-        ("roller", len(place.roller_radii) // cranks),
-        ("hole", len(place.hole_radii)),
-    ):
-        found[name] = np.arange(parts)
-    for name, dimensions, centres, frame in (
-        ("pin", ("case", "pin"), place.wheel_pin_centres, "wheel pin, in the frame of the wheel"),
-        (
-            "hole",
-            ("case", "disc", "hole"),
-            np.array([own.hole_centres for own in places]),
-            "hole, in the frame of the disc",
-        ),
-        ("shaft_pin", ("case", "hole"), place.shaft_pin_centres, "shaft pin, in the fixed frame"),
-    ):
-        found[f"{name}_x"] = at(dimensions, centres.real, "mm", frame)
-        found[f"{name}_y"] = at(dimensions, centres.imag, "mm", frame)
-    cage = "angle of the roller in the cage, which stands at cage_speed · φ_C"
-    cages = np.array([own.roller_cage_angles.reshape(cranks, -1) for own in places])
-    phase, plane = "phase of the disc's eccentric against the crank angle", "axial place of the disc's middle"
-    return found | {
-        "crank_angle": at(("position",), solution.crank_angle, "rad", "crank angle φ_C, held"),
-        "roller_angle": at(("case", "disc", "crank", "roller"), cages, "rad", cage),
-        "disc_phase": at(("case", "disc"), drive.disc.disc_phases, "rad", phase),
-        "disc_plane": at(("case", "disc"), drive.disc.disc_planes, "mm", plane),
-        "cage_speed": at(("case",), float(place.cage_speed), "1", "cage angle by crank angle"),
-        "torque": at(("case",), solution.torque, "N mm", "output torque of the solution"),
-        "driving_sign": at(("case",), drive.driving_sign, "1", "+1: the crank drives ccw, −1: cw"),
-    }
-
-
-def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, str, str]]:
+def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, Any]:
     numbers, kinds, indices, places, values = [], [], [], [], []
     for number, disc in enumerate(discs):
         for pair, detail in zip(disc.model.pairs, disc.contacts.details, strict=True):
@@ -243,11 +167,11 @@ def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, tuple[Any, 
                 own = pair.zone.at_vertices(disc.state.contact.pressure[pair.unknowns])
                 values.append(vertex_means(arc, own))
     return {
-        "pressure_contact": (np.concatenate(kinds).astype(str), "1", "kind of the contact of each sample"),
-        "pressure_disc": (np.concatenate(numbers), "1", "number of its disc"),
-        "pressure_part": (np.concatenate(indices), "1", "number of its pin, roller (crank after crank) or hole"),
-        "pressure_place": (np.concatenate(places), "mm", "arc length from the centre of pressure"),
-        "pressure": (np.concatenate(values), "MPa", "mean contact pressure under the shape function of each vertex"),
+        "pressure_contact": np.concatenate(kinds).astype(str),
+        "pressure_disc": np.concatenate(numbers),
+        "pressure_part": np.concatenate(indices),
+        "pressure_place": np.concatenate(places),
+        "pressure": np.concatenate(values),
     }
 
 
@@ -258,30 +182,9 @@ def write_solution(
     folder: Path,
     limits: Mapping[str, Limit] | None = None,
 ) -> list[Check]:
-    """Write all files of a solution; each appears only when it is complete, ``fem.vtm`` only over bodies of this one.
+    """Write all files of a solution and return its verdict, as ``summary.json`` holds it; `fields` by disc (`recover_fields`).
 
-    Parameters
-    ----------
-    solution : ReducerSolution
-        The solution.
-    fields : sequence of iterables of BodyField
-        Of each disc (`fem.drive.fields.recover_fields`).
-    case : str
-        Name of the case.
-    folder : Path
-        Where to.
-    limits : mapping of str to Limit, optional
-        Of the drive file, for the verdict.
-
-    Returns
-    -------
-    list of Check
-        The verdict, as ``summary.json`` holds it.
-
-    Raises
-    ------
-    CycloError
-        When the folder cannot be written to.
+    Each file appears only when it is complete, ``fem.vtm`` only over bodies of this solution.
     """
     index = folder / MULTI_BLOCK
     try:
@@ -305,25 +208,7 @@ def write_solution(
 
 
 def write_multi_block(bodies: list[Path], path: Path) -> Path:
-    """Write an index that opens the files of all bodies as one multi-block dataset, each under its name.
-
-    Parameters
-    ----------
-    bodies : list of Path
-        ``.vtu`` files in the folder of the index, or below it.
-    path : Path
-        Ends in ``.vtm``.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
-    """
+    """Write an index (``.vtm``) that opens the files of all bodies, in its folder or below, as one multi-block dataset."""
     lines = ['<?xml version="1.0"?>', '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">']
     lines.append("  <vtkMultiBlockDataSet>")
     for number, body in enumerate(bodies):

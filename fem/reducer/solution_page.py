@@ -15,17 +15,7 @@ from ltca.page.verdict_tables import verdict_of, verdict_tables
 
 
 def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str, told: str, text: str) -> StudyPage:
-    """Return the page of a full solution.
-
-    Parameters
-    ----------
-    solution : ReducerSolution
-        The solution.
-    checks : sequence of Check
-        Its verdict.
-    case, told, text : str
-        Of the drive, what was solved, and the drive file.
-    """
+    """Return the page of a full solution: its verdict, `told` of what was solved, `text` the drive file."""
     sentence, state = verdict_of({case: checks})
     sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
     several = len(solution.discs) > 1
@@ -58,28 +48,16 @@ def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str,
 
 def _contacts(solution: FullSolution) -> Iterator[list[Cell]]:
     """Loaded contacts, a row each."""
-    found = solution.contacts
-    for name, load, peak, width in (
-        ("wheel pin", found.pin_load, found.pin_pressure_max, found.pin_half_width),
-        (
-            "roller in the bore,",
-            found.roller_load_outer,
-            found.roller_pressure_max_outer,
-            found.roller_half_width_outer,
-        ),
-        (
-            "roller on the race,",
-            found.roller_load_inner,
-            found.roller_pressure_max_inner,
-            found.roller_half_width_inner,
-        ),
-        ("shaft pin", found.pin_shaft_load, found.hole_pressure_max, found.hole_half_width),
-    ):
-        for index, force in enumerate(load.tolist()):
-            if force > 0.0:
-                yield [
-                    word(f"{name} {index}"),
-                    number(force, "{:.1f}"),
-                    number(float(peak[index]), "{:.1f}"),
-                    number(1e3 * float(width[index]), "{:.1f}"),
-                ]
+    names = {
+        "pin": "wheel pin",
+        "roller_outer": "roller in the bore,",
+        "roller_inner": "roller on the race,",
+        "hole": "shaft pin",
+    }
+    for kind, index, load, peak, width in solution.contacts.loaded:
+        yield [
+            word(f"{names[kind]} {index}"),
+            number(load, "{:.1f}"),
+            number(peak, "{:.1f}"),
+            number(1e3 * width, "{:.1f}"),
+        ]

@@ -18,35 +18,25 @@ FloatArray = NDArray[np.float64]
 def judge_solution(
     solution: ReducerSolution, stresses: Sequence[DiscStress], limits: Mapping[str, Limit]
 ) -> list[Check]:
-    """Return the checks of one position by full finite elements: loads, peak pressures, stresses of the disc.
-
-    Parameters
-    ----------
-    solution : ReducerSolution
-        The solution.
-    stresses : sequence of DiscStress
-        Of each disc (`fem.drive.disc_stress.recover_disc_stress`).
-    limits : mapping of str to Limit
-        Of the drive file; those on what one position cannot say are left out.
-    """
+    """Return the checks of one position by full finite elements; limits on what one position cannot say are left out."""
     contacts = [disc.contacts for disc in solution.discs]
     found: dict[str, list[tuple[str, list[FloatArray]]]] = {
-        "pin_load": [("wheel pin", [each.pin_load for each in contacts])],
-        "roller_load": [("roller", [each.roller_load_outer for each in contacts])],
-        "pin_shaft_load": [("shaft pin", [each.pin_shaft_load for each in contacts])],
-        "pin_pressure_mid": [("wheel pin", [each.pin_pressure_max for each in contacts])],
-        "roller_pressure_mid_outer": [("roller", [each.roller_pressure_max_outer for each in contacts])],
-        "roller_pressure_mid_inner": [("roller", [each.roller_pressure_max_inner for each in contacts])],
-        "pin_shaft_pressure_mid": [("shaft pin", [each.hole_pressure_max for each in contacts])],
-        "disc_shear": [
-            ("below wheel pin", [stress.pin_shear for stress in stresses]),
-            ("below roller", [stress.roller_shear for stress in stresses]),
-            ("below shaft pin", [stress.hole_shear for stress in stresses]),
-        ],
-        "root_stress": [("lobe", [stress.root_stress for stress in stresses])],
-        "bore_stress": [("bore", [np.atleast_1d(stress.bore_stress) for stress in stresses])],
-        "hole_stress": [("hole", [stress.hole_stress for stress in stresses])],
-    }
+        name: [(part, [getattr(each, name) for each in contacts])]
+        for name, part in (
+            ("pin_load", "wheel pin"), ("roller_load", "roller"), ("pin_shaft_load", "shaft pin"),
+            ("pin_pressure_mid", "wheel pin"), ("roller_pressure_mid_outer", "roller"),
+            ("roller_pressure_mid_inner", "roller"), ("pin_shaft_pressure_mid", "shaft pin"),
+        )
+    }  # fmt: skip
+    found["disc_shear"] = [
+        (f"below {part}", [getattr(stress, name) for stress in stresses])
+        for name, part in (
+            ("pin_shear_max", "wheel pin"), ("roller_shear_max_outer", "roller"), ("pin_shaft_shear_max", "shaft pin")
+        )
+    ]  # fmt: skip
+    for wall in ("root", "bore", "hole"):
+        part = "lobe" if wall == "root" else wall
+        found[f"{wall}_stress"] = [(part, [np.atleast_1d(getattr(stress, f"{wall}_stress")) for stress in stresses])]
     values = [
         value
         for quantity, kinds in found.items()

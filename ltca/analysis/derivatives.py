@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -25,7 +26,8 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analysis_of
-from ltca.analysis.results import build_dataset
+from ltca.analysis.results import case_arrays
+from ltca.analysis.summary import scalar_key, scalars_of_positions
 from ltca.compliance.response import Start
 from ltca.drive.fields import field_kind, is_element, read_field
 from ltca.drive.members.temperatures import warm_drive
@@ -37,6 +39,7 @@ from ltca.equilibrium.output_torque import input_moment
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.quantities import DIMENSIONS, QUANTITIES
 from ltca.reading.changes import with_fields
 
 FloatArray = NDArray[np.float64]
@@ -49,13 +52,15 @@ FIRST_STEP = 1e-7
 CORRECTIONS = 12
 SETTLED = 1e-9
 """Slope of the residual that is left, as a part of what the field alone makes."""
-ROUND_OFF = 1e-13
-"""Change of a residual over a step that counts as none, as a part of the load."""
+KEPT_SLOPE = 1e-6
+"""Slope that is left beyond which there is no derivative."""
+ROUND_OFF = 1e-10
+"""Change of a residual over a step that counts as none, as a part of the load: inner unknowns are found to some such part."""
+FLOATING = 1e-13
+"""Stiffness that counts as none, as a part of the largest."""
 CENTRAL = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0)
 FORWARD = (np.array([0.0, 1.0, 2.0, 3.0, 4.0]), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0)
 """Steps and weights of differences of fourth order; forward ones (or backward) where a field is at its bound."""
-UNITS_OF_REAL_FIELDS = ("",)
-"""Unit of what is no quantity: counts and names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,11 +85,13 @@ class _Node:
 class _Position:
     """Balanced positions under one torque, and how they follow a field."""
 
-    def __init__(self, found: Equilibrium, drive: Drive, model: Reducer, torque: Callable[[Drive], float]) -> None:
-        self.found, self.torque, self.held = found, torque, drive.wheel_is_held
-        self.lever = np.broadcast_to(lever_arms(model), found.pose.shape)
+    def __init__(self, found: Equilibrium, base: _Node, torque: Callable[[Drive], float]) -> None:
+        self.found, self.torque, self.held = found, torque, base.drive.wheel_is_held
+        self.lever = np.broadcast_to(lever_arms(base.model), found.pose.shape)
+        self.load = float(np.abs(found.wheel_moment / self.lever[:, WHEEL_ANGLE]).max())
         self.start = Start.after(found.response)
-        self.jacobian = self._tangent(drive, model)
+        # A disc that carries nothing floats: it is left where it is.
+        self.inverse = np.linalg.pinv(self._tangent(base), rcond=FLOATING)
 
     def residual(self, node: _Node, pose: FloatArray, moment: FloatArray) -> FloatArray:
         """Forces and moments that are not balanced, moments by their levers, N, shape (positions, unknowns)."""
@@ -119,42 +126,38 @@ class _Position:
         moment = input_moment(node.model, found.crank_angle, found.pose, found.response, share)
         return np.asarray(found.wheel_moment + moment + node.drive.driving_sign * torque)
 
-    def _tangent(self, drive: Drive, model: Reducer) -> FloatArray:
+    def _tangent(self, base: _Node) -> FloatArray:
         """Slopes of the residual by pose and moment, those of forces as the balance takes them."""
         positions, size = self.found.pose.shape
-        node, lever = _Node(drive=drive, model=model, step=0.0), self.lever
+        lever = self.lever
         matrix = np.zeros((positions, size + 1, size + 1))
         matrix[:, :size, :size] = self.found.response.tangent / lever[:, :, None]
         matrix[:, WHEEL_ANGLE, size] = -1.0 / lever[:, WHEEL_ANGLE]
         matrix[:, size, size] = 1.0 / lever[:, WHEEL_ANGLE]
         if self.held:
             stiffness = np.abs(np.einsum("bii->bi", self.found.response.tangent)).max(axis=0)
-            load = np.abs(self.found.wheel_moment).max() / lever[0, WHEEL_ANGLE]
             for column in range(size):
-                step = CHANGE * load * lever[0, column] / max(float(stiffness[column]), 1e-300)
+                step = CHANGE * self.load * lever[0, column] / max(float(stiffness[column]), 1e-300)
                 ends = []
                 for sense in (-1.0, 1.0):
                     pose = self.found.pose.copy()
                     pose[:, column] += sense * step
-                    ends.append(self._closure(node, self._at(node, pose, self.found.wheel_moment)))
+                    ends.append(self._closure(base, self._at(base, pose, self.found.wheel_moment)))
                 matrix[:, size, column] = (ends[1] - ends[0]) / (2.0 * step) / lever[:, WHEEL_ANGLE]
         return matrix
 
     def follow(self, nodes: Sequence[_Node], weights: FloatArray, step: float) -> FloatArray:
         """Return dz/dp, shape (positions, unknowns)."""
-        direction = np.zeros((self.found.pose.shape[0], self.jacobian.shape[1]))
-        nothing = ROUND_OFF * float(np.abs(self.found.wheel_moment / self.lever[:, WHEEL_ANGLE]).max()) / step
+        direction = np.zeros((self.found.pose.shape[0], self.inverse.shape[1]))
         history: list[float] = []
         for _ in range(CORRECTIONS):
             slopes = [self.along(node, direction, node.step) for node in nodes]
             left = np.tensordot(weights, np.stack(slopes), 1) / step
             history.append(float(np.max(np.abs(left))))
-            if history[-1] <= max(SETTLED * history[0], nothing) or (
-                len(history) > 3 and history[-1] >= 0.5 * history[-2]
-            ):
+            if history[-1] <= SETTLED * history[0] or (len(history) > 3 and history[-1] >= 0.5 * history[-2]):
                 break
-            direction = direction - np.linalg.solve(self.jacobian, left[..., None])[..., 0]
-        if history[-1] > max(1e-5 * history[0], nothing):
+            direction = direction - np.matmul(self.inverse, left[..., None])[..., 0]
+        if history[-1] > max(KEPT_SLOPE * history[0], ROUND_OFF * self.load / step):
             raise ConvergenceError(
                 "derivatives do not settle; slopes of the residual that are left, N by the field's unit", history
             )
@@ -169,152 +172,154 @@ def derivatives(analysis: LoadedAnalysis, fields: Iterable[str]) -> xr.Dataset:
     analysis : LoadedAnalysis
         With an answer at every position.
     fields : iterable of str
-        Real fields by their paths, ``disc.shifting_offset``, ``crank.eccentricity``, ``load.torque``, or elements of arrays,
-        ``pin_wheel.pin_errors.radial.3``.
+        Real fields by their paths, or elements of arrays.
 
     Returns
     -------
     xarray.Dataset
-        The variables of the dataset of a run, each with the dimension ``field`` before its own and per unit of the field
-        (coordinate ``unit``), and ``pose``, by members' coordinates.
+        As `ltca.derivatives` describes it, without the dimension of the case.
 
     Raises
     ------
     DriveError
-        For what is no real field of this drive, and, by its name, for one that reshapes a body whose influence coefficients
-        are given.
+        For what is no real field of this drive, and for one that reshapes a body whose influence coefficients are given.
     ConvergenceError
         When positions have no answer, or no derivative.
     """
     if not analysis.is_complete:
         raise ConvergenceError("derivatives are those of balanced positions, and some of these have no answer")
-    paths = list(fields)
+    paths = [fields] if isinstance(fields, str) else list(fields)
     if not paths:
         raise DriveError(["fields: must be at least one"])
+    if analysis.engine.options["contacts"] == "grids":
+        raise DriveError(["method direct: has no derivatives, since cells of its grids open one by one; take tables"])
     engine = analysis.engine.with_coefficients(analysis.drive)
-    found = [_Field(analysis, engine, path).derivative() for path in paths]
-    units = [_kind_of(path) for path in paths]
-    dataset = xr.concat(found, dim=xr.DataArray(paths, dims="field", name="field"))
-    return dataset.assign_coords(unit=("field", units))
+    balanced = _Balanced(analysis, engine)
+    each = [_Field(balanced, path).slopes() for path in paths]
+    variables: dict[str, Any] = {}
+    for name in each[0]:
+        stacked, dims, told = np.stack([slopes[name] for slopes in each]), tuple[str, ...](), dict[str, str]()
+        if name == "pose":
+            dims, told = ("position", "coordinate"), {"long_name": "pose by the members' coordinates, mm and rad"}
+        elif name in QUANTITIES and stacked.ndim > 1:
+            quantity = QUANTITIES[name]
+            dims = DIMENSIONS[quantity.of][1:]
+            told = {"long_name": quantity.description, "units_of_quantity": quantity.unit}
+        variables[name] = (("field", *dims), stacked, told)
+    crank_angle = ("position", analysis.full.crank_angle, {"units": "rad", "long_name": "crank angle φ_C, held"})
+    units = [_unit_of(path) for path in paths]
+    return xr.Dataset(variables, coords={"field": paths, "unit": ("field", units), "crank_angle": crank_angle})
 
 
-def _kind_of(path: str) -> str:
-    """Unit of a field or of an element of one."""
+def _unit_of(path: str) -> str:
+    """Unit of a real field or of an element of one; nothing of what is no quantity."""
     parent, _, last = path.rpartition(".")
     kind = field_kind(parent) if is_element(last) and field_kind(parent) is not None else field_kind(path)
     return "" if kind is None else kind.unit
 
 
-class _Field:
-    """One field of an analysis and the drives beside it."""
+class _Balanced:
+    """An analysis, its drive as a node, and what was balanced under each of its torques."""
 
-    def __init__(self, analysis: LoadedAnalysis, engine: Engine, path: str) -> None:
-        self.analysis, self.engine, self.path = analysis, engine, path
-        value = read_field(analysis.as_written, path)
-        kind = _kind_of(path)
-        if isinstance(value, bool) or not isinstance(value, float | int) or kind == "":
-            raise DriveError(
-                [
-                    f"{path}: is no real number, of which there are derivatives (an element of an array has its number behind it)"
-                ]
-            )
-        self.value = float(value)
+    def __init__(self, analysis: LoadedAnalysis, engine: Engine) -> None:
+        self.analysis, self.engine, self.drive = analysis, engine, analysis.drive
+        self.shapes = _shapes(analysis.drive)
+        self.base = _Node(drive=analysis.drive, model=engine.prepare(analysis.drive).model, step=0.0)
         self.own_torque = analysis.torque == analysis.drive.load.torque
-        if path == "load.torque" and not self.own_torque:
-            raise DriveError([f"{path}: the analysis has a torque of its own, {analysis.torque:g} N·mm"])
-        self.shapes = [single.shape_fingerprint() for single in single_discs(analysis.drive)]
+        self.states = [
+            _Position(analysis.full, self.base, self.torque),
+            _Position(analysis.light, self.base, lambda drive: drive.load.light_torque),
+        ]
+        if analysis.back is not None:
+            self.states.append(_Position(analysis.back, _reversed(self.base), self.torque))
 
-    def node(self, step: float) -> _Node:
-        """The drive with the field a step beside."""
-        drive = warm_drive(with_fields(self.analysis.as_written, {self.path: self.value + step}, check=False))
-        if self.engine.options["compliance"] != "half-space":
-            shapes = [single.shape_fingerprint() for single in single_discs(drive)]
-            if shapes != self.shapes:
-                raise DriveError(
-                    [f"{self.path}: reshapes a body, and the influence coefficients are those of the body as it is"]
-                )
-        return _Node(drive=drive, model=self.engine.prepare(drive).model, step=step)
+    def torque(self, drive: Drive) -> float:
+        """Torque of the run on a drive beside."""
+        return drive.load.torque if self.own_torque else self.analysis.torque
 
-    def nodes(self) -> tuple[list[_Node], FloatArray, float]:
+
+class _Field:
+    """One field of a balanced drive and the drives beside it."""
+
+    def __init__(self, balanced: _Balanced, path: str) -> None:
+        self.balanced, self.path = balanced, path
+        value = read_field(balanced.analysis.as_written, path)
+        if isinstance(value, bool) or not isinstance(value, float | int) or _unit_of(path) == "":
+            raise DriveError([f"{path}: must be a real number, or an element of an array ({path}.0)"])
+        self.value = float(value)
+        if path == "load.torque" and not balanced.own_torque:
+            raise DriveError([f"{path}: the analysis has a torque of its own, {balanced.analysis.torque:g} N·mm"])
+        if balanced.engine.options["compliance"] != "half-space" and self._reshapes():
+            raise DriveError([f"{path}: reshapes a body, whose influence coefficients are those of the body as it is"])
+
+    def slopes(self) -> dict[str, Any]:
+        """Slopes of pose, arrays and scalars, by name."""
+        states = self.balanced.states
+        nodes, weights, step = self._nodes()
+        sides = [nodes, nodes, [_reversed(node) for node in nodes] if len(states) > 2 else nodes]
+        directions = [state.follow(side, weights, step) for state, side in zip(states, sides, strict=False)]
+        found: dict[str, Any] = {"pose": directions[0][:, :-1]}
+        for number, (node, weight) in enumerate(zip(nodes, (weights / step).tolist(), strict=True)):
+            beside = [
+                state.at(side[number], direction, node.step)
+                for state, side, direction in zip(states, sides, directions, strict=False)
+            ]
+            torque = self.balanced.torque(node.drive)
+            analysis = analysis_of(node.drive, torque, self.balanced.engine, node.model, *beside)
+            arrays = case_arrays(analysis)
+            scalars = {scalar_key(name): value for name, value in scalars_of_positions(analysis, arrays).items()}
+            for name, values in (arrays | scalars).items():
+                if np.asarray(values).dtype.kind == "f":
+                    found[name] = found.get(name, 0.0) + weight * np.asarray(values)
+        return found
+
+    def _reshapes(self) -> bool:
+        """Whether the field is one of the shape of a body."""
+        return any(_shapes(drive) != self.balanced.shapes for drive in self._drives((self._first_step,)))
+
+    @property
+    def _first_step(self) -> float:
+        return FIRST_STEP * (abs(self.value) or 1.0)
+
+    def _drives(self, steps: Iterable[float]) -> list[Drive]:
+        """Drives with the field some steps beside, or as many on the other side of it where these cannot be."""
+        try:
+            return [self._drive(step) for step in steps]
+        except DriveError:
+            return [self._drive(-step) for step in steps]
+
+    def _drive(self, step: float) -> Drive:
+        written = self.balanced.analysis.as_written
+        return warm_drive(with_fields(written, {self.path: self.value + step}, check=False))
+
+    def _node(self, drive: Drive, step: float) -> _Node:
+        return _Node(drive=drive, model=self.balanced.engine.prepare(drive).model, step=step)
+
+    def _nodes(self) -> tuple[list[_Node], FloatArray, float]:
         """The drives beside, the weights of their differences, and the step."""
-        step = FIRST_STEP * (abs(self.value) or 1.0)
-        one = self._either(step)
-        base = _Node(drive=self.analysis.drive, model=self.engine.prepare(self.analysis.drive).model, step=0.0)
-        position = self.positions(base)[0]
-        still = np.zeros((position.found.pose.shape[0], position.found.pose.shape[1] + 1))
-        load = float(np.abs(position.found.wheel_moment).max() / position.lever[0, WHEEL_ANGLE])
-        change = float(np.max(np.abs(position.along(one, still, 0.0) - position.along(base, still, 0.0)))) / load
+        state, base, step = self.balanced.states[0], self.balanced.base, self._first_step
+        beside = self._node(self._drives((step,))[0], step)
+        still = np.zeros(state.inverse.shape[:2])
+        change = float(np.max(np.abs(state.along(beside, still, 0.0) - state.along(base, still, 0.0)))) / state.load
         step *= float(np.clip(CHANGE / change, 1e-3, 1e4)) if change > 0.0 else 1.0
         for (places, weights), sense in ((CENTRAL, 1.0), (FORWARD, 1.0), (FORWARD, -1.0)):
+            steps = (sense * step * places).tolist()
             try:
-                return [self.node(sense * step * place) for place in places.tolist()], sense * weights, step
+                drives = [self._drive(away) for away in steps]
             except DriveError as error:
                 failure = error
-                if "reshapes" in str(error):
-                    raise
+                continue
+            return [self._node(drive, away) for drive, away in zip(drives, steps, strict=True)], sense * weights, step
         raise failure
 
-    def _either(self, step: float) -> _Node:
-        try:
-            return self.node(step)
-        except DriveError as error:
-            if "reshapes" in str(error):
-                raise
-            return self.node(-step)
 
-    def positions(self, base: _Node) -> list[_Position]:
-        """What was balanced: at the torque, at the light torque, and the motion reversed."""
-        analysis = self.analysis
-
-        def torque(drive: Drive) -> float:
-            return drive.load.torque if self.own_torque else analysis.torque
-
-        return [
-            _Position(analysis.full, base.drive, base.model, torque),
-            _Position(analysis.light, base.drive, base.model, lambda drive: drive.load.light_torque),
-        ]
-
-    def derivative(self) -> xr.Dataset:
-        """The derivative of the dataset."""
-        analysis = self.analysis
-        nodes, weights, step = self.nodes()
-        base = _Node(drive=analysis.drive, model=self.engine.prepare(analysis.drive).model, step=0.0)
-        positions = self.positions(base)
-        directions = [position.follow(nodes, weights, step) for position in positions]
-        back = _turned_back(analysis, base, nodes, weights, step)
-        total: xr.Dataset | None = None
-        pose = np.zeros(0)
-        for node, weight in zip(nodes, weights.tolist(), strict=True):
-            full, light = (
-                position.at(node, direction, node.step)
-                for position, direction in zip(positions, directions, strict=True)
-            )
-            turned = None if back is None else back[0].at(_reversed(node), back[1], node.step)
-            beside = analysis_of(
-                node.drive, positions[0].torque(node.drive), self.engine, node.model, full, light, turned
-            )
-            dataset = build_dataset(node.drive.name, {node.drive.case: beside})
-            real = dataset[[name for name, values in dataset.data_vars.items() if values.dtype.kind == "f"]]
-            scaled = real.drop_vars([name for name in real.coords if name not in real.dims]) * (weight / step)
-            total = scaled if total is None else total + scaled
-        pose = directions[0][:, :-1]
-        assert total is not None
-        for name, values in total.data_vars.items():
-            values.attrs = dict(dataset[name].attrs)
-        return total.assign(pose=(("position", "coordinate"), pose)).assign_coords(crank_angle=dataset["crank_angle"])
+def _shapes(drive: Drive) -> list[str]:
+    return [single.shape_fingerprint() for single in single_discs(drive)]
 
 
 def _reversed(node: _Node) -> _Node:
+    """A drive whose motion is turned back."""
     friction = node.model.friction
-    assert isinstance(friction, TurningFriction)
+    if not isinstance(friction, TurningFriction):
+        raise AssertionError("motion is turned back where something rubs")
     return replace(node, model=replace(node.model, friction=friction.reversed()))
-
-
-def _turned_back(
-    analysis: LoadedAnalysis, base: _Node, nodes: Sequence[_Node], weights: FloatArray, step: float
-) -> tuple[_Position, FloatArray] | None:
-    """How the positions with the motion reversed follow a field; None without friction."""
-    if analysis.back is None:
-        return None
-    position = _Position(analysis.back, base.drive, _reversed(base).model, lambda drive: drive.load.torque)
-    return position, position.follow([_reversed(node) for node in nodes], weights, step)

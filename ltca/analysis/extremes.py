@@ -18,12 +18,14 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
+from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.neighbours import pose_between
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.placement import Placement, position_angles
+from ltca.quantities import REFINED
 
 FloatArray = NDArray[np.float64]
 
@@ -49,33 +51,13 @@ class Extremes:
 
     Attributes
     ----------
-    ptp_transmission_error, ptp_transmission_error_light : float
-        Peak to peak at the torque of the run and at the light torque, rad.
-    ptp_tangential_bearing_load, max_bearing_load : float
-        N.
-    max_pin_load, max_roller_load, max_pin_shaft_load : float
-        N.
-    max_pin_pressure_mid, max_pin_pressure_max, max_roller_pressure_mid, max_roller_pressure_max : float
-        MPa; not a number where the engine cannot say it.
-    max_pin_shaft_pressure_mid, max_pin_shaft_pressure_max : float
-        MPa; likewise.
+    values : dict of str to float
+        Scalars of `ltca.quantities.REFINED` by name, in their units; not a number where the engine cannot say it.
     added_positions, added_light_positions : int
         Positions solved beyond the given ones, at either torque.
     """
 
-    ptp_transmission_error: float
-    ptp_transmission_error_light: float
-    ptp_tangential_bearing_load: float
-    max_bearing_load: float
-    max_pin_load: float
-    max_roller_load: float
-    max_pin_shaft_load: float
-    max_pin_pressure_mid: float
-    max_pin_pressure_max: float
-    max_roller_pressure_mid: float
-    max_roller_pressure_max: float
-    max_pin_shaft_pressure_mid: float
-    max_pin_shaft_pressure_max: float
+    values: dict[str, float]
     added_positions: int
     added_light_positions: int
 
@@ -205,23 +187,15 @@ def refine_extremes(analysis: LoadedAnalysis) -> Extremes:
     else:
         full, light = _searched(analysis)
     found, found_light = full.search.largest(), light.search.largest()
+    values = dict.fromkeys(REFINED, np.nan) | {name: value for name, value in found.items() if name in REFINED}
+    for name, torque in (("ptp_transmission_error", found), ("ptp_transmission_error_light", found_light)):
+        values[name] = ARCSEC * (torque["wheel_angle"] + torque["wheel_angle_negative"])
+    values["ptp_tangential_bearing_load"] = max(
+        found[f"tangential_{bearing}"] + found[f"tangential_negative_{bearing}"]
+        for bearing in range(analysis.bearing_tangential[0].size)
+    )
     return Extremes(
-        ptp_transmission_error=found["wheel_angle"] + found["wheel_angle_negative"],
-        ptp_transmission_error_light=found_light["wheel_angle"] + found_light["wheel_angle_negative"],
-        ptp_tangential_bearing_load=max(
-            found[f"tangential_{bearing}"] + found[f"tangential_negative_{bearing}"]
-            for bearing in range(analysis.bearing_tangential[0].size)
-        ),
-        max_bearing_load=found["bearing"],
-        max_pin_load=found["pin"],
-        max_roller_load=found["roller"],
-        max_pin_shaft_load=found.get("hole", np.nan),
-        max_pin_pressure_mid=found["pin_mid"],
-        max_pin_pressure_max=found["pin_largest"],
-        max_roller_pressure_mid=found["roller_mid"],
-        max_roller_pressure_max=found["roller_largest"],
-        max_pin_shaft_pressure_mid=found.get("hole_mid", np.nan),
-        max_pin_shaft_pressure_max=found.get("hole_largest", np.nan),
+        values=values,
         added_positions=full.search.angle.size - given.size,
         added_light_positions=light.search.angle.size - given.size,
     )
@@ -423,14 +397,14 @@ def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: Conta
         **_wheel_signals(analysis, found),
         **{f"tangential_{bearing}": column[:, None] for bearing, column in enumerate(tangential.T)},
         **{f"tangential_negative_{bearing}": -column[:, None] for bearing, column in enumerate(tangential.T)},
-        "bearing": np.abs(push),
-        "pin": found.response.pin_load,
-        "roller": rollers.outer_load,
-        "hole": found.response.hole_load,
-        "pin_mid": pressures.pins.mid,
-        "pin_largest": pressures.pins.largest,
-        "roller_mid": np.hstack([outer.mid, inner.mid]),
-        "roller_largest": np.hstack([outer.largest, inner.largest]),
-        "hole_mid": pressures.holes.mid,
-        "hole_largest": pressures.holes.largest,
+        "max_bearing_load": np.abs(push),
+        "max_pin_load": found.response.pin_load,
+        "max_roller_load": rollers.outer_load,
+        "max_pin_shaft_load": found.response.hole_load,
+        "max_pin_pressure_mid": pressures.pins.mid,
+        "max_pin_pressure_max": pressures.pins.largest,
+        "max_roller_pressure_mid": np.hstack([outer.mid, inner.mid]),
+        "max_roller_pressure_max": np.hstack([outer.largest, inner.largest]),
+        "max_pin_shaft_pressure_mid": pressures.holes.mid,
+        "max_pin_shaft_pressure_max": pressures.holes.largest,
     }

@@ -20,13 +20,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import DIMENSIONS, coordinates, provenance
+from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.geometry.separation import circle_departure, flank_departure
+from ltca.quantities import QUANTITIES
 
 FloatArray = NDArray[np.float64]
 
@@ -68,18 +69,10 @@ class PressureField:
 def recover_pressure(
     kind: ContactKind, approach: float, effective_radius: float, departure: Departure, poisson_ratio: float
 ) -> PressureField:
-    """Solve one contact at a given approach and unfold its symmetry.
+    """Solve one contact at an approach δ and radius ρ, mm, and unfold its symmetry.
 
-    Parameters
-    ----------
-    kind : ContactKind
-        Length, profile, modulus and cells.
-    approach, effective_radius : float
-        δ and ρ, mm.
-    departure : callable
-        True separation over the distance along the tangent, mm.
-    poisson_ratio : float
-        Of the body whose shear stress is wanted.
+    `departure` is the true separation over the distance along the tangent, mm; `poisson_ratio` that of the body whose shear
+    stress is wanted.
     """
     solved = solve_fitted(kind, approach, effective_radius, departure)
     shear = find_subsurface_shear(solved, poisson_ratio)
@@ -131,19 +124,7 @@ def pin_fields(analysis: LoadedAnalysis, position: int, cells: int = FIELD_CELLS
 def roller_fields(
     analysis: LoadedAnalysis, position: int, side: str, cells: int = FIELD_CELLS
 ) -> dict[int, PressureField]:
-    """Return the pressure fields of the loaded rollers of one position on one side, by roller.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        Of a drive of one disc (`LoadedAnalysis.discs`).
-    position : int
-        Its position.
-    side : {"outer", "inner"}
-        In the bore or on the inner race.
-    cells : int
-        Cells over the half-width and half the length.
-    """
+    """Return the pressure fields of the loaded rollers of one disc at one position, by roller, in the bore or on the race."""
     kinds = ContactKinds.of_drive(analysis.drive, cells)
     rollers, place = analysis.full.response.rollers, analysis.model.discs[0].geometry.placement
     outer = side == "outer"
@@ -172,14 +153,18 @@ def _loaded(load: FloatArray, position: int) -> list[int]:
     return [int(pair) for pair in np.nonzero(load[position] > LOADED_FRACTION * np.max(load))[0]]
 
 
-SCALARS = {
-    "pressure_mid": ("mid", "MPa", "largest pressure at mid-width"),
-    "pressure_max": ("largest", "MPa", "largest pressure anywhere, end cell in attrs"),
-    "half_width": ("half_width", "mm", "contact half-width at mid-width"),
-    "field_load": ("load", "N", "pressure summed over the patch"),
-    "max_shear": ("max_shear", "MPa", "largest shear stress below mid-width"),
-    "max_shear_depth": ("max_shear_depth", "mm", "its depth below the surface"),
+FIELD_VALUES = {
+    "pressure": "pressure",
+    "x_edge": "x_edges",
+    "y_edge": "y_edges",
+    "pressure_mid": "mid",
+    "pressure_max": "largest",
+    "half_width": "half_width",
+    "field_load": "load",
+    "max_shear": "max_shear",
+    "max_shear_depth": "max_shear_depth",
 }
+"""Attributes of `PressureField` by what stands behind the kind of contact in their names in the dataset."""
 
 
 def build_pressure_dataset(
@@ -242,27 +227,15 @@ def _store(
     flat = [field for case in fields for disc in case for position in disc for field in position.values()]
     nx, ny = flat[0].pressure.shape if flat else (1, 1)
     shape = (len(fields), len(fields[0]), len(fields[0][0]), count)
-    pressure, x, y = np.zeros((*shape, nx, ny)), np.zeros((*shape, nx + 1)), np.zeros((*shape, ny + 1))
-    scalars = {key: np.zeros(shape) for key in SCALARS}
+    sizes = {"pressure": (nx, ny), "x_edge": (nx + 1,), "y_edge": (ny + 1,)}
+    arrays = {key: np.zeros((*shape, *sizes.get(key, ()))) for key in FIELD_VALUES}
     for case, disc, position in np.ndindex(shape[:3]):
         for pair, field in fields[case][disc][position].items():
             place = (case, disc, position, pair)
-            pressure[place], x[place], y[place] = field.pressure, field.x_edges, field.y_edges
-            for key, (attribute, _, _) in SCALARS.items():
-                scalars[key][place] = getattr(field, attribute)
-
-    def put(key: str, values: FloatArray, extra: tuple[str, ...], unit: str, text: str) -> None:
-        stored = values
-        if "crank" in DIMENSIONS[name]:  # pairs come crank after crank
-            stored = np.moveaxis(values.reshape(*values.shape[:3], cranks, -1, *values.shape[4:]), 3, 2)
-        variables[f"{name}_{key}{side}"] = (
-            ("case", *DIMENSIONS[name], *extra),
-            stored,
-            {"units": unit, "long_name": text},
-        )
-
-    put("pressure", pressure, (f"{name}_cell_x", f"{name}_cell_y"), "MPa", "mean pressure of the cells")
-    put("x_edge", x, (f"{name}_bound_x",), "mm", "cell edges along the profile, from the contact point")
-    put("y_edge", y, (f"{name}_bound_y",), "mm", "cell edges along the width, from mid-width")
-    for key, (_, unit, text) in SCALARS.items():
-        put(key, scalars[key], (), unit, text)
+            for key, attribute in FIELD_VALUES.items():
+                arrays[key][place] = getattr(field, attribute)
+    for key, values in arrays.items():
+        quantity = QUANTITIES[f"{name}_{key}{side}"]
+        if "crank" in quantity.dimensions:  # pairs come crank after crank
+            values = np.moveaxis(values.reshape(*shape[:3], cranks, -1, *values.shape[4:]), 3, 2)
+        variables[quantity.name] = quantity.labelled(values)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
-from ltca.analysis.friction.variables import friction_scalars
+from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import seat_values
+from ltca.analysis.results import case_arrays
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import ConvergenceError
@@ -18,39 +19,26 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import play_over_a_turn
+from ltca.quantities import REFINED, SCALARS, scalar_named
 
 FloatArray = NDArray[np.float64]
 
 LOADED_FRACTION = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind in the case."""
 
+OF_PINS = ("max_pin_seat_pressure", "max_hole_seat_pressure", "max_pin_deflection", "max_shaft_pin_deflection")
+"""What loose pins, sleeves and pins that bend have."""
 OF_RANGES = (
-    "ptp_tangential_bearing_load_N",
-    "ptp_transmission_error_arcsec",
-    "ptp_transmission_error_light_arcsec",
-    "pin_shaft_loaded_range_deg",
+    "ptp_tangential_bearing_load",
+    "ptp_transmission_error",
+    "ptp_transmission_error_light",
+    "pin_shaft_loaded_range",
 )
 """What needs more than one position."""
-OF_LOADS = ("pin_shaft_loaded_range_deg", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
+OF_LOADS = ("pin_shaft_loaded_range", "mean_loaded_pins", "mean_loaded_rollers", "mean_loaded_pin_shaft_pins")
 """Counts of loaded contacts."""
-FREE_PLAY = ("backlash_output_arcmin", "min_backlash_output_arcmin", "preloaded_part_of_turn")
+FREE_PLAY = ("backlash_output", "min_backlash_output", "preloaded_part_of_turn")
 """Free play of the output: largest and least over a turn, and the part of it where parts overlap in every pose."""
-REFINED = {
-    "ptp_tangential_bearing_load_N": ("ptp_tangential_bearing_load", 1.0),
-    "max_bearing_load_N": ("max_bearing_load", 1.0),
-    "max_pin_load_N": ("max_pin_load", 1.0),
-    "max_pin_pressure_mid_MPa": ("max_pin_pressure_mid", 1.0),
-    "max_pin_pressure_max_MPa": ("max_pin_pressure_max", 1.0),
-    "max_roller_load_N": ("max_roller_load", 1.0),
-    "max_roller_pressure_mid_MPa": ("max_roller_pressure_mid", 1.0),
-    "max_roller_pressure_max_MPa": ("max_roller_pressure_max", 1.0),
-    "max_pin_shaft_load_N": ("max_pin_shaft_load", 1.0),
-    "max_pin_shaft_pressure_mid_MPa": ("max_pin_shaft_pressure_mid", 1.0),
-    "max_pin_shaft_pressure_max_MPa": ("max_pin_shaft_pressure_max", 1.0),
-    "ptp_transmission_error_arcsec": ("ptp_transmission_error", ARCSEC),
-    "ptp_transmission_error_light_arcsec": ("ptp_transmission_error_light", ARCSEC),
-}
-"""Extremes that are refined over full turns, under ``refined_`` and these names: where they stand, and their unit."""
 
 
 def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
@@ -67,47 +55,61 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         The keys of ``summary.json``, their units in their names; None where the engine or the positions cannot say a
         value, as positions that are no full turn say nothing of it.
     """
-    geometry = analysis.model.geometries
+    geometry, arrays = analysis.model.geometries, case_arrays(analysis)
     full, contacts = analysis.full, analysis.full.response
     angle = full.crank_angle
-    radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
     pins, rollers, holes = (
         load > LOADED_FRACTION * np.max(load, initial=0.0)
         for load in (contacts.pin_load, contacts.rollers.outer_load, contacts.hole_load)
     )
     pressures = analysis.pressures
     play = np.mean(backlash(geometry, angle, WHEEL_ANGLE))
-    roller_mid = max(np.max(pressures.outer.mid), np.max(pressures.inner.mid))
-    roller_largest = max(np.max(pressures.outer.largest), np.max(pressures.inner.largest))
     values = {
-        "backlash_disc_arcmin": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
-        "backlash_wheel_arcmin": play * ARCMIN,
+        "backlash_disc": min(np.mean(backlash([disc], angle, DISC_ROTATION)) for disc in geometry) * ARCMIN,
+        "backlash_wheel": play * ARCMIN,
         **_free_play(geometry, analysis.drive),
-        "interference_mm": max(np.max(interference(disc, angle)) for disc in geometry),
-        "mean_bearing_load_N": np.mean(np.hypot(radial, tangential)),
-        "mean_radial_bearing_load_N": np.mean(radial),
-        "mean_tangential_bearing_load_N": np.mean(tangential),
-        "ptp_tangential_bearing_load_N": np.max(np.ptp(tangential, axis=0)),
-        "max_bearing_load_N": np.max(np.hypot(radial, tangential)),
-        "max_pin_load_N": np.max(contacts.pin_load),
-        "max_pin_pressure_mid_MPa": np.max(pressures.pins.mid),
-        "max_pin_pressure_max_MPa": np.max(pressures.pins.largest),
-        "max_roller_load_N": np.max(contacts.rollers.outer_load),
-        "max_roller_pressure_mid_MPa": roller_mid,
-        "max_roller_pressure_max_MPa": roller_largest,
-        "pin_end_cell_mm": pressures.pins.end_cell,
-        "roller_end_cell_mm": pressures.outer.end_cell,
-        "max_pin_shaft_load_N": _most(contacts.hole_load),
-        "max_pin_shaft_pressure_mid_MPa": _most(pressures.holes.mid),
-        "max_pin_shaft_pressure_max_MPa": _most(pressures.holes.largest),
-        "pin_shaft_end_cell_mm": pressures.holes.end_cell,
-        "pin_shaft_loaded_range_deg": 360.0 * np.mean(holes) if holes.size else np.nan,
+        "interference": max(np.max(interference(disc, angle)) for disc in geometry),
+        "pin_end_cell": pressures.pins.end_cell,
+        "roller_end_cell": pressures.outer.end_cell,
+        "pin_shaft_end_cell": pressures.holes.end_cell,
+        "pin_shaft_loaded_range": 360.0 * np.mean(holes) if holes.size else np.nan,
         "mean_loaded_pins": np.mean(pins.sum(axis=1)),
         "mean_loaded_rollers": np.mean(rollers.sum(axis=1)),
         "mean_loaded_pin_shaft_pins": np.mean(holes.sum(axis=1)) if holes.size else np.nan,
-        "ptp_transmission_error_arcsec": np.ptp(analysis.transmission_error) * ARCSEC,
-        "ptp_transmission_error_light_arcsec": np.ptp(analysis.transmission_error_light) * ARCSEC,
-        "max_equilibrium_residual_N": max(np.max(full.residual), np.max(analysis.light.residual)),
+        "max_equilibrium_residual": max(np.max(full.residual), np.max(analysis.light.residual)),
+        **scalars_of_positions(analysis, arrays),
+    }
+    values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
+    values |= _refined(analysis, values) | _sampling(sampling(analysis.drive, angle))
+    if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
+        values |= dict.fromkeys(OF_LOADS, np.nan)
+    if angle.size == 1:  # one angle says nothing of ranges
+        values |= dict.fromkeys(OF_RANGES, np.nan)
+    return {scalar_key(name): float(value) if np.isfinite(value) else None for name, value in values.items()}
+
+
+def scalars_of_positions(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Return the scalars that follow loads, poses and pressures of the positions smoothly, by their names in the registry.
+
+    Parameters
+    ----------
+    analysis : LoadedAnalysis
+        The case.
+    arrays : mapping of str to array
+        Its arrays, from `ltca.analysis.results.case_arrays`.
+    """
+    radial, tangential, pressures = analysis.bearing_radial, analysis.bearing_tangential, analysis.pressures
+    values = {
+        "mean_bearing_load": np.mean(np.hypot(radial, tangential)),
+        "mean_radial_bearing_load": np.mean(radial),
+        "mean_tangential_bearing_load": np.mean(tangential),
+        "ptp_tangential_bearing_load": np.max(np.ptp(tangential, axis=0)),
+        "max_bearing_load": np.max(np.hypot(radial, tangential)),
+        **_sums(arrays, "max_pin_load", "max_pin_pressure_mid", "max_pin_pressure_max", "max_roller_load"),
+        "max_roller_pressure_mid": max(np.max(pressures.outer.mid), np.max(pressures.inner.mid)),
+        "max_roller_pressure_max": max(np.max(pressures.outer.largest), np.max(pressures.inner.largest)),
+        **_sums(arrays, "max_pin_shaft_load", "max_pin_shaft_pressure_mid", "max_pin_shaft_pressure_max"),
+        **_sums(arrays, "ptp_transmission_error", "ptp_transmission_error_light"),
     }
     share = analysis.torque_share
     for disc in range(share.shape[1]):
@@ -117,22 +119,16 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
         }
     torques = analysis.crank_torques
     for crank in range(torques.shape[1]):
-        values[f"mean_torque_crank_{crank}_Nmm"] = np.mean(torques[:, crank])
-        values[f"max_torque_crank_{crank}_Nmm"] = np.max(np.abs(torques[:, crank]))
-    values |= _of_cranks(analysis) | _of_pins(analysis)
-    if analysis.losses is not None:
-        values |= friction_scalars(analysis, rubbing_pressures(analysis))
-    values |= {f"compliance_share_{part}": np.mean(share) for part, share in analysis.compliance_shares.items()}
-    if analysis.wall_stresses:
-        for wall in ("root", "bore", "hole"):
-            largest = _largest(np.concatenate([getattr(walls, wall).ravel() for walls in analysis.wall_stresses]))
-            values[f"max_{wall}_stress_MPa"] = largest
-    values |= _refined(analysis) | _sampling(sampling(analysis.drive, angle))
-    if not np.all(analysis.balanced):  # a position without an answer is no contact that is open
-        values |= dict.fromkeys(OF_LOADS, np.nan)
-    if angle.size == 1:  # one angle says nothing of ranges
-        values |= dict.fromkeys(OF_RANGES, np.nan)
-    return {name: float(value) if np.isfinite(value) else None for name, value in values.items()}
+        values[f"mean_torque_crank_{crank}"] = np.mean(torques[:, crank])
+        values[f"max_torque_crank_{crank}"] = np.max(np.abs(torques[:, crank]))
+    values |= _of_cranks(analysis) | _sums(arrays, *OF_PINS) | _of_friction(analysis, arrays)
+    return values | _sums(arrays, "max_root_stress", "max_bore_stress", "max_hole_stress")
+
+
+def scalar_key(name: str) -> str:
+    """The key of a scalar, also of one over the whole turn."""
+    bare = name.removeprefix("refined_")
+    return name.removesuffix(bare) + scalar_named(bare).key
 
 
 def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, float]:
@@ -145,28 +141,45 @@ def _free_play(discs: Sequence[ContactGeometry], drive: Drive) -> dict[str, floa
     return dict(zip(FREE_PLAY, (scale * found.largest, scale * found.least, found.preloaded), strict=True))
 
 
-def _of_pins(analysis: LoadedAnalysis) -> dict[str, float]:
-    """Largest pressure in the seats of loose pins and sleeves, and how far pins bend, of all discs."""
-    each = [seat_values(disc) for disc in analysis.discs]
+SUMS: dict[str, Callable[[FloatArray], Any]] = {
+    "max": np.max,
+    "min": np.min,
+    "mean": np.mean,
+    "ptp": np.ptp,
+    "largest known": np.nanmax,
+}
+"""How a scalar sums its array up."""
+
+
+def _sums(arrays: Mapping[str, FloatArray], *names: str) -> dict[str, float]:
+    """Scalars of the arrays that there are, by name; not a number of an array without parts, as without a pin shaft."""
+    found = {}
+    for scalar in (SCALARS[name] for name in names if SCALARS[name].of in arrays):
+        values, how = arrays[scalar.of], scalar.how or scalar.name.partition("_")[0]
+        known = np.any(np.isfinite(values)) if how == "largest known" else values.size
+        factor = ARCSEC if scalar.unit == "arcsec" else 1.0
+        found[scalar.name] = factor * float(SUMS[how](values)) if known else np.nan
+    return found
+
+
+def _of_friction(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Efficiencies, torques and losses over the positions; nothing without friction."""
+    found, back = analysis.losses, analysis.losses_back
+    if found is None or back is None:
+        return {}
+    rubbed = [
+        name for name in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv") if np.size(arrays.get(name, ()))
+    ]
     return {
-        key: max(float(np.max(values[name], initial=0.0)) for values in each)
-        for key, name in (
-            ("max_pin_seat_pressure_MPa", "pin_seat_pressure_max"),
-            ("max_hole_seat_pressure_MPa", "hole_seat_pressure_max"),
-            ("max_pin_deflection_mm", "pin_deflection"),
-            ("max_shaft_pin_deflection_mm", "shaft_pin_deflection"),
-        )
-        if name in each[0]
+        "mean_efficiency": found.mean_efficiency,
+        **_sums(arrays, "min_efficiency"),
+        "mean_efficiency_back": back.mean_efficiency,
+        **_sums(arrays, "moves_back"),
+        "mean_crank_torque": float(np.mean(analysis.crank_torques.sum(axis=1))),
+        **_sums(arrays, "mean_input_torque", "mean_input_torque_back", "power_loss"),
+        **{f"power_loss_{kind}": float(np.mean(found.watts(found.by_kind[kind]))) for kind in KINDS},
+        **_sums(arrays, *(f"mean_loss_{kind}" for kind in KINDS), *(f"max_{name}" for name in rubbed)),
     }
-
-
-def rubbing_pressures(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
-    """Return the pressures of what rubs by their names in the dataset, shape (discs, positions, pairs), MPa."""
-    seats = [seat_values(disc) for disc in analysis.discs]
-    pressures = {name: np.stack([values[name] for values in seats]) for name in seats[0]}
-    for name, kind in (("pin", analysis.pressures.pins), ("pin_shaft", analysis.pressures.holes)):
-        pressures[f"{name}_pressure_mid"] = np.stack(np.split(kind.mid, len(seats), axis=1))
-    return pressures
 
 
 def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
@@ -174,48 +187,24 @@ def _of_cranks(analysis: LoadedAnalysis) -> dict[str, float]:
     load, moved = np.hypot(analysis.bearing_radial, analysis.bearing_tangential), np.abs(analysis.crank_deflections)
     cranks = load.shape[2] if load.shape[2] > 1 else 0
     return {
-        **{f"max_bearing_load_crank_{crank}_N": float(np.max(load[:, :, crank])) for crank in range(cranks)},
-        **{
-            f"max_crank_deflection_crank_{crank}_mm": float(np.max(moved[:, :, crank]))
-            for crank in range(moved.shape[2])
-        },
+        **{f"max_bearing_load_crank_{crank}": float(np.max(load[:, :, crank])) for crank in range(cranks)},
+        **{f"max_crank_deflection_crank_{crank}": float(np.max(moved[:, :, crank])) for crank in range(moved.shape[2])},
     }
 
 
-def _most(values: FloatArray) -> float:
-    """Largest value; not a number without a pin shaft."""
-    return float(np.max(values)) if values.size else np.nan
-
-
 def refined_value(summary: Mapping[str, float | None], key: str) -> float | None:
-    """Return a scalar over the whole turn where there is one, over the positions otherwise.
-
-    Parameters
-    ----------
-    summary : mapping of str to (float or None)
-        From `summarise`.
-    key : str
-        Without ``refined_``.
-    """
+    """Return a scalar over the whole turn where there is one, over the positions otherwise; its key without ``refined_``."""
     refined = summary.get(f"refined_{key}")
-    return summary[key] if refined is None else refined
+    return summary.get(key) if refined is None else refined
 
 
-def _largest(values: FloatArray) -> float:
-    """Largest of what is known; not a number where nothing is."""
-    return float(np.nanmax(values)) if np.any(np.isfinite(values)) else float("nan")
-
-
-def _refined(analysis: LoadedAnalysis) -> dict[str, float]:
+def _refined(analysis: LoadedAnalysis, values: Iterable[str]) -> dict[str, float]:
     whole = analysis.is_complete and is_full_turn(analysis.full.crank_angle)
     try:
         found = refine_extremes(analysis) if whole else None
     except ConvergenceError:  # one between the positions has no answer; those of the positions stand
         found = None
-    return {
-        f"refined_{key}": np.nan if found is None else factor * getattr(found, name)
-        for key, (name, factor) in REFINED.items()
-    }
+    return {f"refined_{name}": np.nan if found is None else found.values[name] for name in values if name in REFINED}
 
 
 def _sampling(found: Sampling) -> dict[str, float]:

@@ -136,12 +136,12 @@ def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
     """What is asked of a drive."""
     from ltca.errors import DriveError, did_you_mean, shortened, told_twice
     from ltca.studies.optimiser import Problem, parse_limit, parse_variable
-    from ltca.studies.quantities import QUANTITIES, with_what_varies
+    from ltca.studies.quantities import STAGES, with_what_varies
 
     aims = tuple(arguments.minimise)
-    unknown = [aim for aim in aims if aim not in QUANTITIES]
+    unknown = [aim for aim in aims if aim not in STAGES]
     if unknown:
-        meant = did_you_mean(unknown[0], QUANTITIES) or "; there are " + ", ".join(QUANTITIES)
+        meant = did_you_mean(unknown[0], STAGES) or "; there are " + ", ".join(STAGES)
         told = f"is no quantity of a study{meant}"
         raise DriveError([f"--minimise {shortened(unknown[0])[1:-1]}: {told}"])
     if len(aims) > 2 or told_twice(aims):
@@ -266,8 +266,8 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
 
 def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
     from ltca.drive.fields import read_field, whose, with_whose
+    from ltca.quantities import SCALARS
     from ltca.studies.optimiser import broken_limits, describe_limit
-    from ltca.studies.quantities import QUANTITIES
 
     problem, nominal, found = optimum.problem, *fine
     print(
@@ -281,7 +281,7 @@ def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
         print(f"{head:<48}{float(read_field(problem.drive, variable.path)):>12.5g}{value:>12.5g}")
     for column, name in enumerate(problem.quantities):
         values = nominal.values[name], found.values[name], optimum.start[column], optimum.values[optimum.best, column]
-        print(f"{QUANTITIES[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))
+        print(f"{SCALARS[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))
     for limit in broken_limits(problem, found.values):
         print(
             f"beyond {describe_limit(limit)} when solved finely: {found.values[limit.quantity]:.5g}; the search saw "

@@ -357,10 +357,9 @@ def _table(summaries: dict[str, dict[str, float | None]], loads: dict[str, str],
     rows = [("case", list(summaries))]
     if loads:  # of cases that differ in them
         rows.append(("torque, direction of the crank", list(loads.values())))
-    for title, key, unit, form in rows_of(summaries, yields=yields):
-        values = [refined_value(case, key) if key in case else None for case in summaries.values()]
-        cells = ["–" if value is None else form.format(value) for value in values]
-        rows.append((f"{title}{f' [{unit}]' if unit else ''}", cells))
+    for row in rows_of(summaries, yields=yields):
+        values = [refined_value(case, row.key) for case in summaries.values()]
+        rows.append((row.heading, ["–" if value is None else f"{value:{row.digits}}" for value in values]))
     return "\n".join(_side_by_side(rows))
 
 

@@ -208,7 +208,7 @@ def tell(message: str) -> None:
 
 def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
     from ltca.analysis.engines import describe_engine
-    from ltca.studies.quantities import QUANTITIES
+    from ltca.quantities import SCALARS
     from ltca.studies.run_study import write_sample
 
     samples = f"{study.design.samples} samples × {study.positions} positions"
@@ -220,15 +220,13 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     for name, summary in found.quantities.items():
         numbers = [found.nominal.get(name, float("nan")), summary.mean, *(summary.percentiles[i] for i in (1, 3, 5))]
         cells = "".join(f"{value:>10.4g}" for value in [*numbers, summary.largest])
-        print(f"{QUANTITIES[name].heading:<48}{cells}  {summary.largest_sample}")
+        print(f"{SCALARS[name].heading:<48}{cells}  {summary.largest_sample}")
     print(f"sensitivity: {found.ranking['method']}")
     for name, entry in list(found.ranking["quantities"].items())[:3]:
         first = [
             f"{study.field_words(path)} {100.0 * share:.0f} %" for path, share in list(entry["shares"].items())[:3]
         ]
-        print(
-            f"  {QUANTITIES[name].description}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)"
-        )
+        print(f"  {SCALARS[name].title}: {', '.join(first)} (first order together: {100.0 * entry['explained']:.0f} %)")
     linear = [entry["explained"] for entry in found.ranking["quantities"].values()]
     if "regression" in found.ranking["method"] and linear and min(linear) < 0.5:
         print("  regression misses what is curved or mutual; 'cyclo tolerance --design saltelli' ranks that too")
@@ -236,9 +234,9 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
     leading = next(iter(found.quantities), None)
     if leading is not None:
         summary = found.quantities[leading]
-        worst = summary.smallest_sample if QUANTITIES[leading].more_is_better else summary.largest_sample
+        worst = summary.smallest_sample if SCALARS[leading].more_is_better else summary.largest_sample
         words = f"{write_sample(study, folder, worst)}{compliance}"
-        print(f"worst by {QUANTITIES[leading].description}: cyclo run {words}")
+        print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
     print(f"results: {folder.results}, {folder.table}, {folder.path / 'summary.json'}")
 
 

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from ltca.drive.fields import whose
 from ltca.figures.field_scale import field_scale
 from ltca.figures.house_style import COLOURS, DASHED, OTHERS, STYLE, save_figure
+from ltca.quantities import SCALARS
 from ltca.studies.optimiser import Optimum, describe_limit
-from ltca.studies.quantities import QUANTITIES
 
 
 def write_optimum_figure(optimum: Optimum, positions: int, folder: Path, kind: str = "svg") -> Path:
@@ -48,8 +48,8 @@ def _front(optimum: Optimum, title: str) -> Figure:
     for low, high, bound in zip(shown_points.min(axis=0), shown_points.max(axis=0), setters, strict=True):
         room = max(high - low, 1e-9 * abs(high))
         bound(low - 0.15 * room, high + 0.6 * room)
-    axes.set_xlabel(QUANTITIES[optimum.problem.aims[0]].heading)
-    axes.set_ylabel(QUANTITIES[optimum.problem.aims[1]].heading)
+    axes.set_xlabel(SCALARS[optimum.problem.aims[0]].heading)
+    axes.set_ylabel(SCALARS[optimum.problem.aims[1]].heading)
     axes.legend(frameon=False, fontsize=8.0)
     figure.suptitle(title, fontsize=9.5)
     return figure
@@ -77,7 +77,7 @@ def _search(optimum: Optimum, title: str) -> Figure:
         axes.set_xlabel(variable.path + (f" [{unit}]" if unit else "") + (f"\n({owner})" if owner else ""))
         axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
     for axes in grid[:, 0]:
-        axes.set_ylabel(QUANTITIES[optimum.problem.aims[0]].heading)
+        axes.set_ylabel(SCALARS[optimum.problem.aims[0]].heading)
     # Below all axes: points lie anywhere in them.
     handles, words = all_axes[-1].get_legend_handles_labels()
     figure.legend(handles, words, loc="outside lower center", ncols=2 if count == 1 else 4, frameon=False, fontsize=7.5)

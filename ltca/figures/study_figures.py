@@ -15,9 +15,9 @@ from matplotlib.patches import Patch
 
 from ltca.figures.field_scale import field_scale
 from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_figure, shortened_name
+from ltca.quantities import SCALARS
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
-from ltca.studies.quantities import QUANTITIES
 from ltca.studies.study import Study
 from ltca.studies.study_results import factor_groups, read_quantity
 
@@ -33,25 +33,9 @@ by the variance of its coefficient."""
 def write_study_figures(
     folder: StudyFolder, study: Study, ranking: Mapping[str, Any], nominal: Mapping[str, float], kind: str = "svg"
 ) -> Iterator[Path]:
-    """Write the figures of a finished study.
+    """Write the figures of a finished study into ``figures`` beside its results, one after the other.
 
-    Parameters
-    ----------
-    folder : StudyFolder
-        Where ``results.nc`` is; figures go to its ``figures``.
-    study : Study
-        The study.
-    ranking : mapping
-        Of `ltca.studies.study_results.rank`.
-    nominal : mapping of str to float
-        Quantities of the drive without deviations, drawn where known.
-    kind : str
-        ``svg``, ``png`` or ``pdf``.
-
-    Yields
-    ------
-    Path
-        Each figure when it is written.
+    `ranking` is that of `ltca.studies.study_results.rank`; `nominal`, quantities without deviations, is drawn where known.
     """
     values = {name: read_quantity(folder.results, name) for name in study.quantities}
     for name, figure in study_figures(study, values, ranking, nominal):
@@ -109,7 +93,7 @@ def _distributions(study: Study, values: Mapping[str, Any], nominal: Mapping[str
     for axis, name in zip(axes, study.quantities, strict=False):
         finite = values[name][np.isfinite(values[name])]
         axis.hist(finite, bins=min(60, max(8, int(np.sqrt(finite.size)))), color=COLOURS[6], linewidth=0.0)
-        axis.set_xlabel(fill(QUANTITIES[name].heading, LETTERS), fontsize=8.0)
+        axis.set_xlabel(fill(SCALARS[name].heading, LETTERS), fontsize=8.0)
         axis.set_yticks([])
         axis.grid(visible=False)
         axis.spines["left"].set_visible(False)
@@ -173,7 +157,7 @@ def _responses(study: Study, design: SweepDesign, values: Mapping[str, Any]) -> 
                 words = study.field_words(factor.path).replace(" (", "\n(").replace(".", ".\u200b")
                 words = _wrapped_path(words, int(14.0 * width))
                 axis.set_xlabel(words + (f"\n[{unit}]" if unit and not factor.is_text else ""), fontsize=7.5)
-        heading = fill(QUANTITIES[name].heading, int(15.0 * width * across))
+        heading = fill(SCALARS[name].heading, int(15.0 * width * across))
         axes[0].set_title(heading, loc="left", fontsize=8.0, color=INK, pad=3.0)
     figure.suptitle(fill(_head(study, ""), int(13.0 * figure.get_figwidth())))
     return figure
@@ -248,7 +232,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int
         axis.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
         axis.set_xlabel("share of the variance [%]", fontsize=7.5)
         axis.tick_params(axis="x", labelsize=7.5)
-        words = f"{QUANTITIES[name].description}\nfirst order together {max(0.0, 100.0 * entry['explained']):.0f} %"
+        words = f"{SCALARS[name].title}\nfirst order together {max(0.0, 100.0 * entry['explained']):.0f} %"
         axis.set_title(
             "\n".join(fill(line, 2 * LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
         )

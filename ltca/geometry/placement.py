@@ -7,7 +7,7 @@ starts at 0 and runs counter-clockwise.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import Any, TypeAlias
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ltca.drive.deviations import PlacementErrors
 from ltca.drive.parts import Drive
 from ltca.geometry.rotation import unit
+from ltca.quantities import QUANTITIES
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -280,3 +281,40 @@ def _flat(value: complex | FloatArray | ComplexArray) -> complex | FloatArray | 
 def position_angles(positions: int) -> FloatArray:
     """Return the crank angles of a run of N positions over one turn: 2πk/N, rad."""
     return 2.0 * np.pi * np.arange(positions) / positions
+
+
+def place_coordinates(
+    drives: Mapping[str, Drive], discs: Sequence[Sequence[Placement]], crank_angle: FloatArray
+) -> dict[str, Any]:
+    """Return the coordinates of a dataset that need no load: numbers and places of the parts of every disc, crank angles."""
+    first = discs[0][0]
+
+    def of_discs(name: str) -> NDArray[Any]:
+        return np.array([[getattr(place, name) for place in case] for case in discs])
+
+    wheel_pins, shaft_pins = (of_discs(name)[:, 0] for name in ("wheel_pin_centres", "shaft_pin_centres"))
+    holes, cages = of_discs("hole_centres"), of_discs("roller_cage_angles")
+    values = {
+        "crank_angle": crank_angle,
+        "pin_x": wheel_pins.real,
+        "pin_y": wheel_pins.imag,
+        "hole_x": holes.real,
+        "hole_y": holes.imag,
+        "shaft_pin_x": shaft_pins.real,
+        "shaft_pin_y": shaft_pins.imag,
+        "roller_angle": cages.reshape(*cages.shape[:2], first.cranks, -1),
+        "disc_phase": [drive.disc.disc_phases for drive in drives.values()],
+        "disc_plane": [drive.disc.disc_planes for drive in drives.values()],
+        "cage_speed": [float(case[0].cage_speed) for case in discs],
+        "driving_sign": [drive.driving_sign for drive in drives.values()],
+    }
+    sizes = {
+        "disc": len(discs[0]),
+        "crank": first.cranks,
+        "position": crank_angle.size,
+        "pin": first.wheel_pin_radii.size,
+        "roller": first.roller_radii.size // first.cranks,
+        "hole": first.hole_radii.size,
+    }
+    numbers = {name: np.arange(size) for name, size in sizes.items()}
+    return {"case": list(drives), **numbers, **{name: QUANTITIES[name].labelled(each) for name, each in values.items()}}

@@ -171,12 +171,11 @@ def _comparison(run: Run) -> list[Table]:
             continue
         both = {"first": with_residual_part(run.summaries[case])}
         rows = []
-        for title, key, unit, form in rows_of(both, yields=False):
-            mine = refined_value(both["first"], key) if key in both["first"] else None
-            theirs = refined_value(other, key) if key in other else None
+        for row in rows_of(both, yields=False):
+            mine, theirs = refined_value(both["first"], row.key), refined_value(other, row.key)
             change = 100.0 * (theirs / mine - 1.0) if mine and theirs is not None else None
-            cells = [number(mine, form, unit), number(theirs, form, unit), number(change, "{:+.2f}", "%")]
-            rows.append([word(title.strip()), *cells])
+            values = [number(value, f"{{:{row.digits}}}", row.unit) for value in (mine, theirs)]
+            rows.append([word(row.title), *values, number(change, "{:+.2f}", "%")])
         heads = ["", f"this run, {case}", f"second run, {beside.cases[place]}", "change"]
         tables.append(Table(name=f"compared_{len(tables)}", caption=case, columns=heads, rows=rows))
     return tables

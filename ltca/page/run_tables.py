@@ -19,6 +19,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC, label
 from ltca.page.derived import derived_rows
 from ltca.page.tables import NOTHING, Cell, Table, minus, number, texts, word
+from ltca.quantities import Scalar
 
 Summaries = Mapping[str, Mapping[str, float | None]]
 
@@ -35,12 +36,13 @@ def summary_tables(analyses: Mapping[str, LoadedAnalysis], summaries: Summaries)
     whole = {name: with_residual_part(case) for name, case in summaries.items()}
     captions = {"transmission": "Transmission error and backlash", "rest": "What else is known of the answer"}
     rows: dict[str, list[list[Cell]]] = {name: [] for name in GROUPS}
-    for title, key, unit, form in rows_of(whole, yields=bool(yields)):
-        values = [refined_value(case, key) if key in case else None for case in whole.values()]
+    for row in rows_of(whole, yields=bool(yields)):
+        values = [refined_value(case, row.key) for case in whole.values()]
         if all(value is None for value in values):
             continue
-        cells = [number(value, form, unit) for value in values]
-        rows[_group(key)].append([_title(title), *cells])
+        rows[_group(row)].append(
+            [word(row.title), *(number(value, f"{{:{row.digits}}}", row.unit) for value in values)]
+        )
     return {
         name: Table(name=name, caption=captions.get(name, ""), columns=["", *whole], rows=each)
         for name, each in rows.items()
@@ -48,19 +50,16 @@ def summary_tables(analyses: Mapping[str, LoadedAnalysis], summaries: Summaries)
     }
 
 
-def _title(title: str) -> Cell:
-    inner = title.startswith("  ")
-    return Cell(text=("\u2003" if inner else "") + title.strip(), value=title.strip())
-
-
-def _group(key: str) -> str:
-    if key in {row[1] for row in FRICTION_ROWS}:
+def _group(row: Scalar) -> str:
+    if row.name in FRICTION_ROWS:
         return "losses"
-    if "transmission_error" in key or key.startswith(("backlash", "min_backlash", "preloaded", "interference")):
+    if "transmission_error" in row.name or row.name.startswith(
+        ("backlash", "min_backlash", "preloaded", "interference")
+    ):
         return "transmission"
-    if "MPa" in key:
+    if row.unit == "MPa":
         return "pressures"
-    return "rest" if "residual" in key or key.startswith("compliance_share") else "loads"
+    return "rest" if "residual" in row.name or row.name.startswith("compliance_share") else "loads"
 
 
 def turn_orders(analysis: LoadedAnalysis) -> np.ndarray[Any, np.dtype[np.float64]] | None:

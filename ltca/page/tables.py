@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 
-SIGNS = {"arcmin": "′", "arcsec": "″", "1": "", "N mm": "N·mm", "N*mm": "N·mm", "dimensionless": ""}
-"""Units as they are printed where they are written otherwise inside."""
+from ltca.quantities import unit_sign
+
 CLOSE = ("°", "′", "″")
 """Signs that stand right behind their number."""
 NOTHING = "–"
@@ -77,17 +77,6 @@ def minus(text: str) -> str:
         if sign == "-" and parts[place + 1].isdigit() and (not before.isalnum() or before == "e"):
             parts[place] = "−"
     return "".join(parts)
-
-
-def unit_sign(unit: str) -> str:
-    """Return a unit as it is printed.
-
-    Examples
-    --------
-    >>> unit_sign("arcsec"), unit_sign("MPa")
-    ('″', 'MPa')
-    """
-    return SIGNS.get(unit, unit)
 
 
 def word(text: str, *, note: str = "", state: str = "") -> Cell:

@@ -7,7 +7,8 @@ from typing import Any
 
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.verdict_words import WORDS, place_words, urgency
-from ltca.page.tables import NOTHING, Cell, Table, minus, number, unit_sign, word
+from ltca.page.tables import NOTHING, Cell, Table, minus, number, word
+from ltca.quantities import unit_sign
 
 Checks = Mapping[str, Sequence[Check]]
 """By case."""

@@ -24,7 +24,7 @@ from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.play import free_play
-from ltca.studies.quantities import QUANTITIES, SampleBatch
+from ltca.studies.quantities import STAGES, SampleBatch, evaluate
 from ltca.studies.shapes import with_kept_coefficients
 
 FloatArray = NDArray[np.float64]
@@ -109,7 +109,7 @@ def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
     solved = _Batch([drive], settings)
     full = solved.balance([drive.load.torque], None)
     light = full
-    if any(QUANTITIES[name].stage == "light" for name in settings.quantities):
+    if any(STAGES[name] == "light" for name in settings.quantities):
         light = solved.balance([drive.load.light_torque], full)
     return Nominal(full=full, light=light, model=solved.model)
 
@@ -193,7 +193,7 @@ def _solve_group(
 
 def _quantities(drives: list[Drive], settings: BatchSettings, nominal: Nominal | None) -> FloatArray:
     batch = solve_batch(drives, settings, nominal)
-    return np.stack([QUANTITIES[name].evaluate(batch) for name in settings.quantities], axis=1)
+    return np.stack([evaluate(name, batch) for name in settings.quantities], axis=1)
 
 
 def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nominal | None = None) -> SampleBatch:
@@ -216,7 +216,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
         When a torque cannot be carried (`ltca.analysis.half_width_guard`).
     """
     drives = [warm_drive(drive) for drive in drives]
-    stages = {QUANTITIES[name].stage for name in settings.quantities}
+    stages = {STAGES[name] for name in settings.quantities}
     solved = _Batch(drives, settings)
     known = None if nominal is None else nominal.model
     full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full, known)

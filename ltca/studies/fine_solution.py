@@ -6,7 +6,7 @@ single drive in the end, of the optimum found for instance, is solved again here
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,12 +14,11 @@ from ltca.analysis.engines import Engine
 from ltca.analysis.extremes import refine_extremes
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.parts import Drive
-from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn
-from ltca.studies.quantities import QUANTITIES, SampleBatch
+from ltca.studies.quantities import STAGES, SampleBatch, evaluate
 from ltca.studies.shapes import with_kept_coefficients
 
 FINE_POSITIONS = 360
@@ -77,10 +76,10 @@ def solve_finely(
     """
     analysis = analyse(drive, position_angles(positions), engine=with_kept_coefficients(engine, drive))
     play = None
-    if any(QUANTITIES[name].stage == "backlash" for name in quantities):
+    if any(STAGES[name] == "backlash" for name in quantities):
         play = backlash(analysis.model.geometries, position_angles(BACKLASH_POSITIONS), WHEEL_ANGLE)
     free = None
-    if any(QUANTITIES[name].stage == "play" for name in quantities):
+    if any(STAGES[name] == "play" for name in quantities):
         turn = play_over_a_turn(analysis.model.geometries)
         free = np.array([turn.least, turn.largest])
     batch = SampleBatch(
@@ -92,9 +91,6 @@ def solve_finely(
         backlash=play,
         play=free,
     )
-    values = {name: float(QUANTITIES[name].evaluate(batch)[0]) for name in quantities}
-    refined = asdict(refine_extremes(analysis))
-    for name in quantities:
-        if name in refined:
-            values[name] = refined[name] * (ARCSEC if QUANTITIES[name].unit == "arcsec" else 1.0)
+    values = {name: float(evaluate(name, batch)[0]) for name in quantities}
+    values |= {name: value for name, value in refine_extremes(analysis).values.items() if name in quantities}
     return FineSolution(values=values, positions=positions)

@@ -21,9 +21,10 @@ from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import label, parse_quantity
 from ltca.errors import CycloError, DriveError, shortened
 from ltca.geometry.placement import position_angles
+from ltca.quantities import SCALARS
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
-from ltca.studies.quantities import QUANTITIES, check_quantities, quantities_for
+from ltca.studies.quantities import check_quantities, quantities_for
 from ltca.studies.shapes import shapes_of
 
 FloatArray = NDArray[np.float64]
@@ -114,7 +115,7 @@ def parse_limit(text: str) -> Limit:
         raise DriveError([f"--subject {shortened(text)}: write it as 'quantity <= value unit'"])
     name, sign, value = match.groups()
     check_quantities((name,))
-    unit = QUANTITIES[name].unit
+    unit = SCALARS[name].unit
     number = parse_quantity(value, "dimensionless" if unit == "1" else unit, f"--subject {name}")
     return Limit(quantity=name, sense=1 if sign in ("<=", "≤") else -1, value=number)
 
@@ -405,6 +406,6 @@ def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Limit,
 
 def describe_limit(limit: Limit) -> str:
     """Return a limit as it is written on the command line."""
-    unit = QUANTITIES[limit.quantity].unit
+    unit = SCALARS[limit.quantity].unit
     text = label(unit) if unit != "1" else ""
     return f"{limit.quantity} {'<=' if limit.sense > 0 else '>='} {limit.value:g} {text}".rstrip()

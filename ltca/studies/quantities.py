@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,127 +121,49 @@ class SampleBatch:
         return np.asarray(rows.sum(axis=2).mean(axis=1))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Quantity:
-    """One scalar of a sample.
+Evaluate: TypeAlias = Callable[[SampleBatch], FloatArray]
+"""One scalar of every sample, shape (samples,), from the solved batch."""
 
-    Attributes
-    ----------
-    unit : str
-        Of its values: those of a run's summary.
-    stage : {"full", "light", "backlash", "play"}
-        What has to be solved for it.
-    description : str
-        For labels.
-    evaluate : callable
-        From the solved batch, shape (samples,).
-    more_is_better : bool
-        Whether the worst sample is that of the least value.
-    """
-
-    unit: str
-    stage: Stage
-    description: str
-    evaluate: Callable[[SampleBatch], FloatArray]
-    more_is_better: bool = False
-
-    @property
-    def symbol(self) -> str:
-        """The unit as it is printed, empty for numbers."""
-        return {"1": "", "arcsec": "″", "arcmin": "′"}.get(self.unit, self.unit)
-
-    @property
-    def heading(self) -> str:
-        """Description and unit."""
-        return f"{self.description}{f' [{self.symbol}]' if self.symbol else ''}"
-
-
-def _quantity(
-    unit: str, description: str, evaluate: Callable[[SampleBatch], FloatArray], stage: Stage = "full"
-) -> Quantity:
-    return Quantity(unit=unit, stage=stage, description=description, evaluate=evaluate)
-
-
-QUANTITIES: dict[str, Quantity] = {
-    "ptp_transmission_error": _quantity(
-        "arcsec", "transmission error, peak to peak", lambda b: np.ptp(b.transmission_error(), axis=1)
-    ),
-    "mean_transmission_error": _quantity(
-        "arcsec", "transmission error, mean", lambda b: b.transmission_error().mean(axis=1)
-    ),
-    "max_pin_load": _quantity(
-        "N", "largest load of a wheel pin", lambda b: b.by_sample(b.full.response.pin_load).max(axis=1)
-    ),
-    "max_pin_pressure_mid": _quantity(
-        "MPa", "largest flank pressure at mid-width", lambda b: b.by_sample(b.pressures.pins.mid).max(axis=1)
-    ),
-    "max_roller_load": _quantity(
-        "N", "largest load of a roller", lambda b: b.by_sample(b.full.response.rollers.outer_load).max(axis=1)
-    ),
-    "max_roller_pressure_mid": _quantity(
-        "MPa",
-        "largest roller pressure at mid-width",
-        lambda b: np.maximum(
+EVALUATORS: dict[Stage, dict[str, Evaluate]] = {
+    "full": {
+        "ptp_transmission_error": lambda b: np.ptp(b.transmission_error(), axis=1),
+        "mean_transmission_error": lambda b: b.transmission_error().mean(axis=1),
+        "max_pin_load": lambda b: b.by_sample(b.full.response.pin_load).max(axis=1),
+        "max_pin_pressure_mid": lambda b: b.by_sample(b.pressures.pins.mid).max(axis=1),
+        "max_roller_load": lambda b: b.by_sample(b.full.response.rollers.outer_load).max(axis=1),
+        "max_roller_pressure_mid": lambda b: np.maximum(
             b.by_sample(b.pressures.outer.mid).max(axis=1), b.by_sample(b.pressures.inner.mid).max(axis=1)
         ),
-    ),
-    "max_pin_shaft_load": _quantity(
-        "N", "largest load of a shaft pin", lambda b: b.by_sample(b.full.response.hole_load).max(axis=1)
-    ),
-    "max_pin_shaft_pressure_mid": _quantity(
-        "MPa", "largest pressure of a shaft pin at mid-width", lambda b: b.by_sample(b.pressures.holes.mid).max(axis=1)
-    ),
-    "mean_bearing_load": _quantity("N", "bearing load, mean", lambda b: np.hypot(*b.bearing).mean(axis=(1, 2))),
-    "max_bearing_load": _quantity("N", "bearing load, largest", lambda b: np.hypot(*b.bearing).max(axis=(1, 2))),
-    "mean_radial_bearing_load": _quantity("N", "radial bearing load, mean", lambda b: b.bearing[0].mean(axis=(1, 2))),
-    "mean_tangential_bearing_load": _quantity(
-        "N", "tangential bearing load, mean", lambda b: b.bearing[1].mean(axis=(1, 2))
-    ),
-    "ptp_tangential_bearing_load": _quantity(
-        "N", "tangential bearing load, peak to peak", lambda b: np.ptp(b.bearing[1], axis=1).max(axis=1)
-    ),
-    "mean_loaded_pins": _quantity("1", "loaded wheel pins, mean", lambda b: b.loaded(b.full.response.pin_load)),
-    "mean_loaded_rollers": _quantity(
-        "1", "loaded rollers, mean", lambda b: b.loaded(b.full.response.rollers.outer_load)
-    ),
-    "mean_loaded_pin_shaft_pins": _quantity(
-        "1", "loaded shaft pins, mean", lambda b: b.loaded(b.full.response.hole_load)
-    ),
-    "mean_efficiency": Quantity(
-        unit="1",
-        stage="full",
-        description="efficiency, mean",
-        evaluate=lambda b: b.efficiency(),
-        more_is_better=True,
-    ),
-    "mean_input_torque": _quantity(
-        "N mm", "torque of the input, mean", lambda b: b.by_sample(b.losses().input_torque).mean(axis=1)
-    ),
-    "power_loss": _quantity("W", "power lost, mean", lambda b: b.power_loss()),
-    "ptp_transmission_error_light": _quantity(
-        "arcsec",
-        "transmission error at the light torque, peak to peak",
-        lambda b: np.ptp(b.light_transmission_error(), axis=1),
-        "light",
-    ),
-    "max_backlash_output": _quantity(
-        "arcmin",
-        "backlash at the output, all clearances, largest",
-        lambda b: b.output_backlashes().max(axis=1),
-        "play",
-    ),
-    "min_backlash_output": _quantity(
-        "arcmin", "backlash at the output, all clearances, least", lambda b: b.output_backlashes().min(axis=1), "play"
-    ),
-    "mean_backlash_wheel": _quantity(
-        "arcmin", "backlash of the flank alone, at the wheel, mean", lambda b: b.backlashes().mean(axis=1), "backlash"
-    ),
-    "min_backlash_wheel": _quantity(
-        "arcmin", "backlash of the flank alone, at the wheel, least", lambda b: b.backlashes().min(axis=1), "backlash"
-    ),
+        "max_pin_shaft_load": lambda b: b.by_sample(b.full.response.hole_load).max(axis=1),
+        "max_pin_shaft_pressure_mid": lambda b: b.by_sample(b.pressures.holes.mid).max(axis=1),
+        "mean_bearing_load": lambda b: np.hypot(*b.bearing).mean(axis=(1, 2)),
+        "max_bearing_load": lambda b: np.hypot(*b.bearing).max(axis=(1, 2)),
+        "mean_radial_bearing_load": lambda b: b.bearing[0].mean(axis=(1, 2)),
+        "mean_tangential_bearing_load": lambda b: b.bearing[1].mean(axis=(1, 2)),
+        "ptp_tangential_bearing_load": lambda b: np.ptp(b.bearing[1], axis=1).max(axis=1),
+        "mean_loaded_pins": lambda b: b.loaded(b.full.response.pin_load),
+        "mean_loaded_rollers": lambda b: b.loaded(b.full.response.rollers.outer_load),
+        "mean_loaded_pin_shaft_pins": lambda b: b.loaded(b.full.response.hole_load),
+        "mean_efficiency": lambda b: b.efficiency(),
+        "mean_input_torque": lambda b: b.by_sample(b.losses().input_torque).mean(axis=1),
+        "power_loss": lambda b: b.power_loss(),
+    },
+    "light": {"ptp_transmission_error_light": lambda b: np.ptp(b.light_transmission_error(), axis=1)},
+    "play": {
+        "max_backlash_output": lambda b: b.output_backlashes().max(axis=1),
+        "min_backlash_output": lambda b: b.output_backlashes().min(axis=1),
+    },
+    "backlash": {
+        "mean_backlash_wheel": lambda b: b.backlashes().mean(axis=1),
+        "min_backlash_wheel": lambda b: b.backlashes().min(axis=1),
+    },
 }
+"""How the scalars of a study are evaluated, by what has to be solved for them."""
 
-DEFAULT_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.stage == "full")
+
+STAGES: dict[str, Stage] = {name: stage for stage, evaluators in EVALUATORS.items() for name in evaluators}
+"""Every scalar of a study, by name in `ltca.quantities.SCALARS`, and what has to be solved for it."""
+DEFAULT_QUANTITIES = tuple(EVALUATORS["full"])
 """What the solution at the torque of the drive gives; the others cost another solution and come when named."""
 
 
@@ -252,7 +174,7 @@ OF_FRICTION = ("mean_efficiency", "mean_input_torque", "power_loss")
 
 
 def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ...]:
-    """Return the quantities of a study of a drive: names of `QUANTITIES`, by default and for ``all`` those that it has.
+    """Return the quantities of a study of a drive: names of `STAGES`, by default and for ``all`` those that it has.
 
     Raises
     ------
@@ -266,12 +188,17 @@ def quantities_for(drive: Drive, names: tuple[str, ...] | None) -> tuple[str, ..
         missing |= {"power_loss": "speed (load.speed)"}
     if names is not None:
         names = check_quantities(names)
-    if names is None or names == tuple(QUANTITIES):
+    if names is None or names == tuple(STAGES):
         return tuple(name for name in (names or DEFAULT_QUANTITIES) if name not in missing)
     absent = [name for name in names if name in missing]
     if absent:
         raise DriveError([f"{name}: {drive.name} has no {missing[name]}" for name in absent])
     return names
+
+
+def evaluate(name: str, batch: SampleBatch) -> FloatArray:
+    """Return a scalar of every sample, one of `STAGES`, shape (samples,)."""
+    return EVALUATORS[STAGES[name]][name](batch)
 
 
 def with_what_varies(drive: Drive, paths: Iterable[str]) -> Drive:
@@ -281,7 +208,7 @@ def with_what_varies(drive: Drive, paths: Iterable[str]) -> Drive:
 
 
 def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names in the order of `QUANTITIES`, ``all`` meaning every one.
+    """Return the names in the order of `STAGES`, ``all`` meaning every one.
 
     Raises
     ------
@@ -291,10 +218,10 @@ def check_quantities(names: tuple[str, ...]) -> tuple[str, ...]:
     if repeated := told_twice(names):
         raise DriveError([f"{shortened(repeated)[1:-1]}: is given twice"])
     if "all" in names:
-        return tuple(QUANTITIES)
-    unknown = [name for name in names if name not in QUANTITIES]
+        return tuple(STAGES)
+    unknown = [name for name in names if name not in STAGES]
     if unknown:
-        known = [*QUANTITIES, "all"]
+        known = [*STAGES, "all"]
         meant = {name: did_you_mean(name, known) or f"; there are {', '.join(known)}" for name in unknown}
         raise DriveError([f"{shortened(name)[1:-1]}: is no quantity of a study{meant[name]}" for name in unknown])
-    return tuple(name for name in QUANTITIES if name in names)
+    return tuple(name for name in STAGES if name in names)

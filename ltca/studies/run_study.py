@@ -9,11 +9,11 @@ from typing import Any
 
 from ltca.errors import CycloError
 from ltca.output.files import whole_file, write_json
+from ltca.quantities import SCALARS
 from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import analyse_samples
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
-from ltca.studies.quantities import QUANTITIES
 from ltca.studies.shapes import find_beforehand
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES, QuantitySummary, rank, read_quantity, summarise_quantity
@@ -132,7 +132,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
             "failed": len(found.failures),
             "percentiles": list(PERCENTILES),
             "compliance": study.engine.compliance,
-            "units": {name: QUANTITIES[name].unit for name in study.quantities},
+            "units": {name: SCALARS[name].unit for name in study.quantities},
             "nominal": found.nominal,
             "quantities": {name: asdict(summary) for name, summary in found.quantities.items()},
             "sensitivity": found.ranking,
@@ -144,13 +144,7 @@ def _write_summary(study: Study, folder: StudyFolder, found: StudySummary) -> No
 
 
 def sample_file(number: str) -> str:
-    """Return where the drive of a sample lies in the folder of a study.
-
-    Parameters
-    ----------
-    number : str
-        Of the sample, eight digits.
-    """
+    """Return where the drive of a sample, by its number of eight digits, lies in the folder of a study."""
     return f"samples/sample_{number}.toml"
 
 

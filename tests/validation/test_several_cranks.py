@@ -203,7 +203,8 @@ def test_a_full_solution_keeps_the_stress_of_every_bore():
     walls = (wall("flank", 1.0, 2.0), wall("bore_0", 3.0, 9.0), wall("bore_1", 4.0, 7.0), wall("bore_2", 5.0, 5.0))
     stress = DiscStress(
         walls=(*walls, wall("hole_0", 8.0, 6.0)), clear=clear, root_stress=np.ones(2), bore_stress=7.0,
-        hole_stress=np.array([8.0]), pin_shear=np.zeros(2), roller_shear=np.zeros(6), hole_shear=np.zeros(1),
+        hole_stress=np.array([8.0]), pin_shear_max=np.zeros(2), roller_shear_max_outer=np.zeros(6),
+        pin_shaft_shear_max=np.zeros(1),
     )  # fmt: skip
     found = answer_of_content(stress_content(stress)).largest["bore"]
     np.testing.assert_array_equal(found, [3.0, 7.0, np.nan])

@@ -108,9 +108,9 @@ def stress_content(stress: DiscStress) -> dict[str, Any]:
             "holes": plain(stress.hole_stress),
         },
         "shear": {
-            "pin": stress.pin_shear.tolist(),
-            "roller_outer": stress.roller_shear.tolist(),
-            "hole": stress.hole_shear.tolist(),
+            "pin": stress.pin_shear_max.tolist(),
+            "roller_outer": stress.roller_shear_max_outer.tolist(),
+            "hole": stress.pin_shaft_shear_max.tolist(),
         },
     }
 

@@ -103,7 +103,7 @@ def our_drive() -> Answer:
     contacts = solution.contacts
     return {
         "pin_load": contacts.pin_load.tolist(),
-        "roller_load": contacts.roller_load_outer.tolist(),
+        "roller_load": contacts.roller_load.tolist(),
         "roller_load_inner": contacts.roller_load_inner.tolist(),
         "pin_shaft_load": contacts.pin_shaft_load.tolist(),
         "wheel_angle": solution.pose.wheel_angle,
@@ -122,7 +122,7 @@ def _by_part(solution: FullSolution, load: dict[str, float]) -> Answer:
     contacts = solution.contacts
     found = {
         "pin": ("pin_load", np.zeros_like(contacts.pin_load)),
-        "roller_outer": ("roller_load", np.zeros_like(contacts.roller_load_outer)),
+        "roller_outer": ("roller_load", np.zeros_like(contacts.roller_load)),
         "roller_inner": ("roller_load_inner", np.zeros_like(contacts.roller_load_inner)),
         "hole": ("pin_shaft_load", np.zeros_like(contacts.pin_shaft_load)),
     }

@@ -1,4 +1,4 @@
-"""What friction adds to dataset and summary of a run."""
+"""What friction adds to the dataset of a run."""
 
 from __future__ import annotations
 
@@ -13,58 +13,9 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 
 FloatArray = NDArray[np.float64]
 
-VARIABLES: dict[str, tuple[str, str, str]] = {
-    "pin_friction_force": ("pin", "N", "friction force of flank and wheel pin, its size"),
-    "pin_slip": ("pin", "mm", "slip of the flank on the pin by radian of the crank; 0 where the pin rolls there"),
-    "pin_slip_speed": ("pin", "mm/s", "the same at the speed of the drive"),
-    "pin_friction_power": ("pin", "W", "power that the wheel pin takes, at flank and seat"),
-    "pin_pv": ("pin", "MPa m/s", "pressure at mid-width times slip speed at the flank"),
-    "pin_seat_slip": ("pin", "mm", "slip of the wheel pin in its slot, or of its sleeve, by radian of the crank"),
-    "pin_seat_slip_speed": ("pin", "mm/s", "the same at the speed of the drive"),
-    "pin_seat_pv": ("pin", "MPa m/s", "largest pressure times slip speed in the seat"),
-    "pin_shaft_friction_force": ("hole", "N", "friction force of hole and shaft pin, its size"),
-    "pin_shaft_slip": (
-        "hole",
-        "mm",
-        "slip of the hole on the shaft pin by radian of the crank; 0 where it rolls there",
-    ),
-    "pin_shaft_slip_speed": ("hole", "mm/s", "the same at the speed of the drive"),
-    "pin_shaft_friction_power": ("hole", "W", "power that the shaft pin takes, at hole and seat"),
-    "pin_shaft_pv": ("hole", "MPa m/s", "pressure at mid-width times slip speed at the hole"),
-    "hole_seat_slip": ("hole", "mm", "slip of the sleeve on the shaft pin by radian of the crank"),
-    "hole_seat_slip_speed": ("hole", "mm/s", "the same at the speed of the drive"),
-    "hole_seat_pv": ("hole", "MPa m/s", "largest pressure times slip speed in the seat"),
-    **{
-        f"loss_{kind}": ("drive", "N mm", f"energy lost by radian of the crank: {words}")
-        for kind, words in (
-            ("pin", "flank on wheel pins"),
-            ("seat", "pins and sleeves in their seats"),
-            ("hole", "holes on shaft pins"),
-            ("roller", "rolling resistance of the crank bearings"),
-            ("support_bearing", "bearings of cranks and wheel"),
-            ("no_load", "seals and oil at the input"),
-        )
-    },
-    "power_loss": ("drive", "W", "power of all losses"),
-    "input_torque": ("drive", "N mm", "external moment of the input, seals and oil included, ccw positive"),
-    "input_torque_back": ("drive", "N mm", "the same with the motion reversed"),
-    "efficiency": ("drive", "1", "1 − loss/input"),
-    "efficiency_back": ("drive", "1", "the same with the motion reversed"),
-    "moves_back": ("drive", "1", "1: the load at the output turns the input without help, 0: it does not"),
-}
-"""Variables of a dataset: what each belongs to, unit, description, as in `ltca.analysis.results`."""
-
 
 def friction_values(analysis: LoadedAnalysis, pressures: Mapping[str, FloatArray]) -> dict[str, Any]:
-    """Return the variables of `VARIABLES` of one case; empty for a drive without friction.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-    pressures : mapping of str to array, shape (discs, positions, pairs)
-        Pressures by their names in the dataset, of seats where there are any.
-    """
+    """Return what friction adds to the arrays of a case; `pressures` by name, shape (discs, positions, pairs)."""
     found, back = analysis.losses, analysis.losses_back
     if found is None or back is None:
         return {}
@@ -101,27 +52,3 @@ def _of_joint(
             f"{seat}_pv": pressures[f"{seat}_pressure_max"] * seat_speed * 1e-3,
         }
     return values
-
-
-def friction_scalars(analysis: LoadedAnalysis, pressures: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Return what friction adds to the summary of one case, by key; arguments as for `friction_values`."""
-    found, back = analysis.losses, analysis.losses_back
-    if found is None or back is None:
-        return {}
-    values = friction_values(analysis, pressures)
-    scalars = {
-        "mean_efficiency": found.mean_efficiency,
-        "min_efficiency": float(np.min(found.efficiency)),
-        "mean_efficiency_back": back.mean_efficiency,
-        "moves_back": float(np.min(values["moves_back"])),
-        "mean_crank_torque_Nmm": float(np.mean(analysis.crank_torques.sum(axis=1))),
-        "mean_input_torque_Nmm": float(np.mean(found.input_torque)),
-        "mean_input_torque_back_Nmm": float(np.mean(back.input_torque)),
-        "power_loss_W": float(np.mean(found.watts(found.total))),
-    }
-    scalars |= {f"power_loss_{kind}_W": float(np.mean(found.watts(found.by_kind[kind]))) for kind in KINDS}
-    scalars |= {f"mean_loss_{kind}_Nmm": float(np.mean(found.by_kind[kind])) for kind in KINDS}
-    for name in ("pin_pv", "pin_seat_pv", "pin_shaft_pv", "hole_seat_pv"):
-        if name in values and values[name].size:
-            scalars[f"max_{name}_MPa_m_s"] = float(np.max(values[name]))
-    return scalars

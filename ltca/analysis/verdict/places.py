@@ -14,13 +14,7 @@ FloatArray = NDArray[np.float64]
 
 
 def most_of(values: Iterable[Value]) -> Value:
-    """Return the largest of one quantity at several kinds of contacts.
-
-    Parameters
-    ----------
-    values : iterable of Value
-        At least one.
-    """
+    """Return the largest of one quantity at several kinds of contacts, at least one."""
     return max(values, key=lambda one: -1.0 if one.value is None else one.value)
 
 
@@ -39,7 +33,7 @@ def largest_value(
     analysis : LoadedAnalysis
         Whose positions these are.
     quantity : str
-        One of `ltca.drive.members.limits.LIMITED`.
+        One of `ltca.quantities.LIMITED`.
     values : array, shape (positions, pairs)
         Those of disc 0 first.
     name : str

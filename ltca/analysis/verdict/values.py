@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.extremes import RESOLVED
-from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.analysis.results import seat_values
-from ltca.analysis.summary import refined_value, rubbing_pressures
+from ltca.analysis.results import case_arrays
+from ltca.analysis.summary import refined_value
 from ltca.analysis.verdict.assembly import assembly_values
 from ltca.analysis.verdict.duty import worst_of_duty
 from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, undercut_margin, walls
@@ -26,6 +25,7 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.geometry.play import preload_words
+from ltca.quantities import LIMITED
 
 FloatArray = NDArray[np.float64]
 
@@ -132,8 +132,8 @@ def _disc(number: int, discs: list[object] | tuple[object, ...]) -> str:
 
 def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> Iterator[Value]:
     contacts, pressures, angle = analysis.full.response, analysis.pressures, analysis.full.crank_angle
-    for key in ("backlash_disc_arcmin", "backlash_wheel_arcmin", "interference_mm"):
-        yield Value(quantity=key.rpartition("_")[0], value=summary[key])
+    for quantity in ("backlash_disc", "backlash_wheel", "interference"):
+        yield Value(quantity=quantity, value=summary[LIMITED[quantity].key])
     play = summary["backlash_output_arcmin"]
     yield Value(
         quantity="backlash_output",
@@ -145,23 +145,20 @@ def _of_loads(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
         least=summary["min_backlash_output_arcmin"],
     )
     yield Value(quantity="mean_loaded_pins", value=summary["mean_loaded_pins"])
-    yield Value(quantity="ptp_transmission_error", value=refined_value(summary, "ptp_transmission_error_arcsec"))
+    yield Value(quantity="ptp_transmission_error", value=refined_value(summary, LIMITED["ptp_transmission_error"].key))
     bearing = np.hypot(analysis.bearing_radial, analysis.bearing_tangential).reshape(angle.size, -1)
-    kinds: tuple[tuple[str, str | None, FloatArray, str], ...] = (
-        ("pin_load", "max_pin_load_N", contacts.pin_load, "wheel pin"),
-        ("roller_load", "max_roller_load_N", contacts.rollers.outer_load, "roller"),
-        ("pin_shaft_load", "max_pin_shaft_load_N", contacts.hole_load, "shaft pin"),
-        ("bearing_load", "max_bearing_load_N", bearing, "bearing"),
-        ("pin_pressure_mid", "max_pin_pressure_mid_MPa", pressures.pins.mid, "wheel pin"),
-        ("roller_pressure_mid_outer", None, pressures.outer.mid, "roller"),
-        ("roller_pressure_mid_inner", None, pressures.inner.mid, "roller"),
-        ("pin_shaft_pressure_mid", "max_pin_shaft_pressure_mid_MPa", pressures.holes.mid, "shaft pin"),
-    )
-    for quantity, scalar, each, name in kinds:
+    for quantity, each, name in (
+        ("pin_load", contacts.pin_load, "wheel pin"),
+        ("roller_load", contacts.rollers.outer_load, "roller"),
+        ("pin_shaft_load", contacts.hole_load, "shaft pin"),
+        ("bearing_load", bearing, "bearing"),
+        ("pin_pressure_mid", pressures.pins.mid, "wheel pin"),
+        ("roller_pressure_mid_outer", pressures.outer.mid, "roller"),
+        ("roller_pressure_mid_inner", pressures.inner.mid, "roller"),
+        ("pin_shaft_pressure_mid", pressures.holes.mid, "shaft pin"),
+    ):
         if each.shape[1]:
-            yield largest_value(
-                analysis, quantity, each, name, None if scalar is None else refined_value(summary, scalar)
-            )
+            yield largest_value(analysis, quantity, each, name, refined_value(summary, LIMITED[quantity].key))
 
 
 def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
@@ -175,15 +172,15 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
                 yield Value(quantity=quantity, value=None, reason=f"{name}s are no beams (pin_{pins}.beam)")
             else:
                 yield largest_value(analysis, quantity, getattr(stress, kind), name, discs=1)
-    each = [seat_values(disc) for disc in analysis.discs]
+    arrays = case_arrays(analysis)
     for quantity, variable, name in (
         ("pin_seat_pressure", "pin_seat_pressure_max", "wheel pin"),
         ("hole_seat_pressure", "hole_seat_pressure_max", "shaft pin"),
         ("pin_deflection", "pin_deflection", "wheel pin"),
         ("shaft_pin_deflection", "shaft_pin_deflection", "shaft pin"),
     ):
-        if variable in each[0]:
-            yield largest_value(analysis, quantity, np.concatenate([one[variable] for one in each], axis=1), name)
+        if variable in arrays:
+            yield largest_value(analysis, quantity, np.concatenate(arrays[variable], axis=1), name)
 
 
 def _bending_fatigue(analysis: LoadedAnalysis, stress: PinStress | None, pins: str) -> Value:
@@ -292,15 +289,10 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
         for quantity in ("mean_efficiency", "pin_pv"):
             yield Value(quantity=quantity, value=None, reason="nothing rubs ([friction] is left out)")
         return
-    for quantity, key in (
-        ("mean_efficiency", "mean_efficiency"),
-        ("mean_efficiency_back", "mean_efficiency_back"),
-        ("moves_back", "moves_back"),
-        ("power_loss", "power_loss_W"),
-    ):
-        missing = "there is no speed (load.speed)" if summary[key] is None else ""
-        yield Value(quantity=quantity, value=summary[key], reason=missing)
-    values = friction_values(analysis, rubbing_pressures(analysis))
+    for quantity in ("mean_efficiency", "mean_efficiency_back", "moves_back", "power_loss"):
+        value = summary[LIMITED[quantity].key]
+        yield Value(quantity=quantity, value=value, reason="there is no speed (load.speed)" if value is None else "")
+    values = case_arrays(analysis)
     for quantity, part in (
         ("pin_pv", "wheel pin"),
         ("pin_seat_pv", "wheel pin"),
@@ -309,7 +301,7 @@ def _of_friction(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) 
     ):
         if quantity not in values or not values[quantity].size:
             continue
-        each = np.concatenate(list(values[quantity]), axis=1)
+        each = np.concatenate(values[quantity], axis=1)
         if np.any(np.isfinite(each)):
             yield largest_value(analysis, quantity, each, part)
         else:

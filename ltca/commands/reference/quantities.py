@@ -26,10 +26,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print both lists."""
-    from ltca.drive.members.judgement import TITLES
-    from ltca.drive.members.limits import LIMITED
-    from ltca.drive.units.table import label
-    from ltca.studies.quantities import DEFAULT_QUANTITIES, QUANTITIES
+    from ltca.quantities import LIMITED, SCALARS, unit_sign
+    from ltca.studies.quantities import DEFAULT_QUANTITIES, STAGES
 
     lacking: Mapping[str, str] = {}
     known: Mapping[str, str] = {}
@@ -46,25 +44,24 @@ def execute(arguments: argparse.Namespace) -> int:
         print(f"{file.name} {case}\n")
     print("Studies (cyclo tolerance --quantities, quantities of a sweep, cyclo optimise --minimise and --subject);")
     print("a star: not unless named, since it costs another solution")
-    for name, quantity in QUANTITIES.items():
+    for name in STAGES:
         star = "" if name in DEFAULT_QUANTITIES else " *"
         told = f" [{lacking[name]}]" if name in lacking else ""
-        print(f"  {name + star:<34}{quantity.symbol or '–':<6}{quantity.description}{told}")
+        print(f"  {name + star:<34}{unit_sign(SCALARS[name].unit) or '–':<6}{SCALARS[name].title}{told}")
     print("\nLimits ([limits] of a drive file; max_… or min_… before the name)")
-    for name, unit in LIMITED.items():
+    for name, limited in LIMITED.items():
         told = f" [{known[name]}]" if name in known else ""
-        symbol = {"1": "–", "arcsec": "″", "arcmin": "′"}.get(unit, label(unit))
-        print(f"  {name:<34}{symbol:<10}{TITLES[name]}{told}")
+        print(f"  {name:<34}{unit_sign(limited.unit) or '–':<10}{limited.verdict_title}{told}")
     return 0
 
 
 def _missing(drive: Drive) -> dict[str, str]:
     """Why a drive has not some quantities of studies."""
     from ltca.errors import DriveError
-    from ltca.studies.quantities import QUANTITIES, quantities_for
+    from ltca.studies.quantities import STAGES, quantities_for
 
     found = {}
-    for name in QUANTITIES:
+    for name in STAGES:
         try:
             quantities_for(drive, (name,))
         except DriveError as error:
@@ -78,8 +75,8 @@ def _judged(drive: Drive) -> dict[str, str]:
     from ltca.analysis.summary import summarise
     from ltca.analysis.verdict.values import find_values
     from ltca.drive.members.judgement import WHOLE
-    from ltca.drive.members.limits import LIMITED
     from ltca.geometry.placement import position_angles
+    from ltca.quantities import LIMITED
 
     analysis = analyse(drive, position_angles(POSITIONS))
     values = {value.quantity: value for value in find_values(analysis, summarise(analysis))}

@@ -11,72 +11,11 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from ltca.drive.materials import Material
-from ltca.drive.members.limits import LIMITED, SENSES, Limit
+from ltca.drive.members.limits import SENSES, Limit
 from ltca.drive.parts import Drive
+from ltca.quantities import LIMITED
 
 Verdict = Literal["pass", "fail", "no limit", "not known"]
-
-TITLES = {
-    "carried_torque": "part of the torque that is carried",
-    "undercut_margin": "undercut: pin radius to spare",
-    "wall": "thinnest wall",
-    "pin_hollow_margin": "hollow of the flank against the pin",
-    "roller_gap": "gap between rollers",
-    "interference": "assembly: overlap at rest",
-    "mean_loaded_pins": "contact ratio: loaded wheel pins, mean",
-    "backlash_disc": "backlash of the flank alone, at the disc",
-    "backlash_wheel": "backlash of the flank alone, at the wheel",
-    "backlash_output": "backlash at the output, all clearances",
-    "ptp_transmission_error": "transmission error, peak to peak",
-    "pin_load": "largest load of a wheel pin",
-    "roller_load": "largest load of a roller",
-    "pin_shaft_load": "largest load of a shaft pin",
-    "bearing_load": "largest load of a crank bearing",
-    "pin_pressure_mid": "flank pressure",
-    "pin_shaft_pressure_mid": "hole pressure",
-    "roller_pressure_mid": "roller pressure",
-    "roller_pressure_mid_outer": "roller pressure in the bore",
-    "roller_pressure_mid_inner": "roller pressure on the inner race",
-    "pin_seat_pressure": "pressure in wheel-pin seats",
-    "hole_seat_pressure": "pressure in shaft-pin sleeves",
-    "disc_shear": "shear below the surface of the disc",
-    "shear_depth": "depth of that shear",
-    "core_shear": "shear in the core of the disc, below its case",
-    "wheel_pin_bending_stress": "bending of wheel pins, largest (static)",
-    "wheel_pin_bending_amplitude": "bending of wheel pins, fatigue",
-    "wheel_pin_shear_stress": "shear of wheel pins, largest (static)",
-    "shaft_pin_bending_stress": "bending of shaft pins, largest (static)",
-    "shaft_pin_bending_amplitude": "bending of shaft pins, fatigue",
-    "shaft_pin_shear_stress": "shear of shaft pins, largest (static)",
-    "root_stress": "stress along lobe roots",
-    "bore_stress": "stress along bores",
-    "hole_stress": "stress along holes (ligaments)",
-    "bearing_life_hours": "life of the crank bearings in hours",
-    "bearing_life_modified_hours": "life of the crank bearings by a_ISO in hours",
-    "bearing_life_million_turns": "life of the crank bearings, million turns",
-    "static_safety_S0": "static safety S0 of the crank bearings",
-    "mean_efficiency": "efficiency, mean",
-    "mean_efficiency_back": "efficiency, motion reversed",
-    "moves_back": "moves back",
-    "power_loss": "power lost",
-    "pin_pv": "p·v at the flank",
-    "pin_shaft_pv": "p·v at the holes",
-    "pin_seat_pv": "p·v in wheel-pin seats",
-    "hole_seat_pv": "p·v in shaft-pin sleeves",
-    "half_width_ratio": "half-width by radius",
-    "contact_strain": "strain of the flank contact, p/E",
-    "distinct_mesh_phases": "different places in a mesh period",
-    "pin_deflection": "deflection of wheel pins",
-    "shaft_pin_deflection": "deflection of shaft pins",
-    "play_at_temperature": "least play at temperature",
-    "bearing_deflection": "deflection of the crank bearings",
-    "bearing_deflection_by_clearance": "deflection of crank bearings by their radial clearance",
-    "crank_deflection": "deflection of cranks",
-    "crank_deflection_by_clearance": "deflection of cranks by the bearings' radial clearance",
-    "wheel_deflection": "deflection of the wheel on its bearing",
-    "wheel_deflection_by_clearance": "deflection of the wheel by the crank bearings' radial clearance",
-}
-"""What each quantity is called in tables."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +25,7 @@ class Value:
     Attributes
     ----------
     quantity : str
-        One of `ltca.drive.members.limits.LIMITED`.
+        One of `ltca.quantities.LIMITED`.
     value : float or None
         In its unit there; None where it cannot be said.
     part : str
@@ -109,7 +48,7 @@ class Value:
     @property
     def unit(self) -> str:
         """Unit of the value."""
-        return LIMITED[self.quantity]
+        return LIMITED[self.quantity].unit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,7 +77,7 @@ class Check:
     @property
     def title(self) -> str:
         """What is looked at, in words."""
-        return TITLES[self.value.quantity]
+        return LIMITED[self.value.quantity].verdict_title
 
     @property
     def safety(self) -> float | None:
@@ -209,15 +148,7 @@ def judge(
 
 
 def judged_by(limit: Limit, value: Value) -> Value:
-    """Return the value that a limit goes by: the least of what has a range where it is a lower limit.
-
-    Parameters
-    ----------
-    limit : Limit
-        Upper or lower.
-    value : Value
-        Largest, and least where there is a range.
-    """
+    """Return the value that a limit goes by: the least of what has a range where it is a lower limit."""
     if limit.sense == "max" or value.least is None:
         return value
     return replace(value, value=value.least, part=", ".join(filter(None, ("least", value.part))))

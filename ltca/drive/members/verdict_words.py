@@ -7,25 +7,18 @@ from math import degrees
 from typing import Any
 
 from ltca.drive.members.judgement import Check
+from ltca.quantities import unit_sign
 
 WORDS = {"pass": "pass", "fail": "FAIL", "no limit": "no limit", "not known": "–"}
 
 
 def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
-    """Return the checks as a table.
-
-    Parameters
-    ----------
-    checks : sequence of Check
-        Of one case.
-    limited : bool
-        Whether those without a limit are counted only.
-    """
+    """Return the checks of one case as a table; `limited` only counts those without a limit."""
     shown = [check for check in checks if check.limit is not None or not limited]
     rows = [("check", "value", "limit", "safety", "verdict", "where")]
     for check in shown:
         value, limit = check.value, check.limit
-        unit = "" if value.unit == "1" else f" {_symbol(value.unit)}"
+        unit = f" {unit_sign(value.unit)}".rstrip()
         bound = "" if limit is None else f"{'≤' if limit.sense == 'max' else '≥'} {limit.value:.5g}{unit}"
         safety = "" if check.safety is None else f"{check.safety:.3f}"
         told = "–" if value.value is None else f"{value.value:.5g}{unit}"
@@ -43,13 +36,7 @@ def verdict_table(checks: Sequence[Check], *, limited: bool = False) -> str:
 
 
 def verdict_line(checks: Sequence[Check]) -> str:
-    """Return the verdict on a case in one line: how it ends, and the check that fails most or is nearest to its limit.
-
-    Parameters
-    ----------
-    checks : sequence of Check
-        Of one case.
-    """
+    """Return the verdict on a case in one line: how it ends, and the check that fails most or is nearest to its limit."""
     judged = [check for check in checks if check.fails or check.verdict == "pass"]
     if not judged:
         return "not judged: neither drive file nor materials have limits"
@@ -60,7 +47,7 @@ def verdict_line(checks: Sequence[Check]) -> str:
     if nearest.value.value is None:
         told += f" cannot be judged: {nearest.value.reason}"
     elif nearest.limit is not None:
-        unit = "" if nearest.value.unit == "1" else f" {_symbol(nearest.value.unit)}"
+        unit = f" {unit_sign(nearest.value.unit)}".rstrip()
         bound = f"{'≤' if nearest.limit.sense == 'max' else '≥'} {nearest.limit.value:.4g}{unit}"
         told += f" {nearest.value.value:.4g}{unit} ({bound})"
     if nearest.safety is not None:
@@ -74,10 +61,6 @@ def urgency(check: Check) -> tuple[bool, bool, float]:
     return not check.fails, of_sampling, float("inf") if check.safety is None else check.safety
 
 
-def _symbol(unit: str) -> str:
-    return {"arcmin": "′", "arcsec": "″"}.get(unit, unit)
-
-
 def place_words(check: Check) -> str:
     """Return where the value of a check is reached, or why it is not told."""
     value = check.value
@@ -88,15 +71,7 @@ def place_words(check: Check) -> str:
 
 
 def check_content(check: Check, case: str) -> dict[str, Any]:
-    """Return a check as files hold it.
-
-    Parameters
-    ----------
-    check : Check
-        The check.
-    case : str
-        Name of its case.
-    """
+    """Return a check as files hold it, with the name of its case."""
     value, limit = check.value, check.limit
     return {
         "check": check.title,

@@ -9,31 +9,19 @@ import numpy as np
 
 from ltca.page.study_page import Curves, Section, StudyPage
 from ltca.page.tables import Table, number, word
+from ltca.quantities import SCALARS
 from ltca.studies.optimiser import Optimum
-from ltca.studies.quantities import QUANTITIES
 
 
 def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, Any], text: str) -> StudyPage:
-    """Return the page of a search.
-
-    Parameters
-    ----------
-    name, told : str
-        Of the drive, and what was asked.
-    optimum : Optimum
-        What was found.
-    outcome : mapping
-        What ``optimum.json`` holds.
-    text : str
-        The drive file that was found.
-    """
+    """Return the page of a search, `told` being what was asked, `outcome` what ``optimum.json`` holds, `text` the drive found."""
     variables = [
         [word(path), word(each["units"]), *(number(each[key]) for key in ("low", "high", "as_it_is", "found"))]
         for path, each in outcome["variables"].items()
     ]
     seen = ("as_it_is", "found", "as_it_is_in_search", "found_in_search")
     quantities = [
-        [word(QUANTITIES[key].heading), *(number(each[column]) for column in seen)]
+        [word(SCALARS[key].heading), *(number(each[column]) for column in seen)]
         for key, each in outcome["quantities"].items()
     ]
     fine, coarse = outcome["positions"], outcome["positions_of_candidates"]
@@ -53,7 +41,7 @@ def optimum_page(name: str, told: str, optimum: Optimum, outcome: Mapping[str, A
             "candidates within the limits": np.where(front, np.nan, y)[good],
             "Pareto front": np.where(front, y, np.nan)[good],
         }
-        titles = [QUANTITIES[aim].heading for aim in aims]
+        titles = [SCALARS[aim].heading for aim in aims]
         curves = [
             Curves(
                 title=f"{titles[1]} over {titles[0]}", unit="", axis=titles[0], x=x[good], lines=lines, kind="points"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ltca.analysis.engines import describe_engine
 from ltca.page.study_page import Section, StudyPage
 from ltca.page.tables import Table, number, word
-from ltca.studies.quantities import QUANTITIES
+from ltca.quantities import SCALARS
 from ltca.studies.run_study import StudySummary
 from ltca.studies.study import Study
 from ltca.studies.study_results import PERCENTILES
@@ -16,19 +16,11 @@ MOST_FAILURES = 50
 
 
 def samples_page(study: Study, found: StudySummary) -> StudyPage:
-    """Return the page of a study.
-
-    Parameters
-    ----------
-    study : Study
-        What was asked.
-    found : StudySummary
-        What its samples gave.
-    """
+    """Return the page of a study: what was asked, and what its samples gave."""
     heads = ["", "nominal", "mean", "standard deviation", *(f"{part:g} %" for part in PERCENTILES), "largest", "sample"]
     rows = [
         [
-            word(QUANTITIES[name].heading),
+            word(SCALARS[name].heading),
             number(found.nominal.get(name), "{:.4g}"),
             number(each.mean, "{:.4g}"),
             number(each.standard_deviation, "{:.3g}"),
@@ -42,7 +34,7 @@ def samples_page(study: Study, found: StudySummary) -> StudyPage:
         Section(heading="Over all samples", tables=[Table(name="quantities", caption="", columns=heads, rows=rows)])
     ]
     shares = [
-        [word(QUANTITIES[name].description), word(study.field_words(path)), number(100.0 * share, "{:.1f}", "%")]
+        [word(SCALARS[name].title), word(study.field_words(path)), number(100.0 * share, "{:.1f}", "%")]
         for name, entry in found.ranking["quantities"].items()
         for path, share in list(entry["shares"].items())[:MOST_SHARES]
     ]

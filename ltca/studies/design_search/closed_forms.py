@@ -144,15 +144,7 @@ def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
 
 
 def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of candidates of one number of pins.
-    setting : Setting
-        What they share.
-    """
+    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses; of one number of pins."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     pins = int(sizes.pins[0])
     angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PLACES) / PLACES) / pins
@@ -220,17 +212,7 @@ def wheel_torque(sizes: Sizes, setting: Setting) -> FloatArray:
 
 
 def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return what crank bearings, holes and the whole drive reach.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-    flank : dict of str to array
-        Of `flank_values`.
-    """
+    """Return what crank bearings, holes and the whole drive reach, from what the flank does (`flank_values`)."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     several, friction = asked.kind == "rv", asked.friction
     torque = wheel_torque(sizes, setting) / sizes.discs
@@ -319,16 +301,9 @@ def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:
 
 
 def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: FloatArray) -> dict[str, FloatArray]:
-    """Return life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive).
+    """Return life by ISO 281 and static safety by ISO 76 (`ltca.analysis.life.ratings` for one drive), shape (candidates,).
 
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-    most, mean : array, shape (candidates,)
-        Largest force of a crank bearing, and the mean one by the power 10/3, N.
+    By the largest force of a crank bearing and the mean one by the power 10/3, N.
     """
     asked = setting.requirements.asked
     diameter, pitch = 2.0 * sizes.roller_radius, 2.0 * (sizes.bore - sizes.roller_radius)
@@ -362,7 +337,7 @@ def closed_forms(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
     Returns
     -------
     dict of str to array
-        By the names of `ltca.drive.members.limits.LIMITED` where there is one; mm, N, MPa, h, arcmin,
+        By the names of `ltca.quantities.LIMITED` where there is one; mm, N, MPa, h, arcmin,
         N·mm/rad.
     """
     flank = flank_values(sizes, setting)

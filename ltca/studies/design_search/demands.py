@@ -17,11 +17,12 @@ from pydantic import TypeAdapter
 
 from ltca.analysis.life.ratings import not_rated
 from ltca.analysis.verdict.values import DEMANDED
-from ltca.drive.members.judgement import TITLES, Value, judge
-from ltca.drive.members.limits import LIMITED, Limit, Limits
+from ltca.drive.members.judgement import Value, judge
+from ltca.drive.members.limits import Limit, Limits
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import label
+from ltca.quantities import LIMITED, SCALARS, Scalar
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_table
 
@@ -38,14 +39,6 @@ OF_MATERIALS = (
     "shaft_pin_bending_stress", "shaft_pin_bending_amplitude", "shaft_pin_shear_stress", "contact_strain",
     "half_width_ratio",
 )  # fmt: skip
-OWN_TITLES = {
-    "outer_diameter": ("outer diameter", "mm"),
-    "length": ("length", "mm"),
-    "torque": ("output torque", "N*mm"),
-    "stiffness": ("torsional stiffness of the cycloid stage", "N*mm/rad"),
-    "lost_motion": ("lost motion", "arcmin"),
-}
-"""What a drive file has no limit for: title and unit."""
 OF_SHAPE = ("undercut_margin", "pin_hollow_margin", "pin_gap", "wall", "cage_room", "race", "roller_room")
 
 
@@ -58,7 +51,7 @@ class Demand:
     name : str
         Key of the requirement file, or of its ``[limits]``; the quantity for others.
     quantity : str
-        Of `closed_forms`, or of `ltca.drive.members.limits.LIMITED`.
+        Of `closed_forms`: a key of `ltca.quantities.LIMITED` or `SCALARS`.
     sense : {"max", "min"}
         Whether the value is to be at most or at least the limit.
     value : float
@@ -80,23 +73,21 @@ class Demand:
     scale: float = 1.0
 
     @property
+    def _scalar(self) -> Scalar:
+        return LIMITED.get(self.quantity) or SCALARS[self.quantity]
+
+    @property
     def title(self) -> str:
         """What is looked at, in words."""
-        return OWN_TITLES[self.quantity][0] if self.quantity in OWN_TITLES else TITLES.get(self.quantity, self.quantity)
+        return self._scalar.verdict_title
 
     @property
     def unit(self) -> str:
         """Unit of the value."""
-        return OWN_TITLES[self.quantity][1] if self.quantity in OWN_TITLES else LIMITED.get(self.quantity, "mm")
+        return self._scalar.unit
 
     def margin(self, reached: FloatArray | float) -> FloatArray:
-        """Return how far values keep it, negative where they break it.
-
-        Parameters
-        ----------
-        reached : array
-            In the unit of the quantity.
-        """
+        """Return how far values in the unit of the quantity keep it, negative where they break it."""
         value = np.asarray(reached, dtype=float)
         if self.kind == "shape":
             return np.asarray((value - self.value) / self.scale)
@@ -109,13 +100,7 @@ class Demand:
         return np.asarray(ratio if self.sense == "min" else -ratio)
 
     def words(self, value: float | None = None) -> str:
-        """Return limit, or a value beside it, with sign and unit.
-
-        Parameters
-        ----------
-        value : float, optional
-            Shown in the place of the limit.
-        """
+        """Return the limit with sign and unit, or a value in its place."""
         if value is not None:
             return shown(value, self.unit)
         return f"{'≤' if self.sense == 'max' else '≥'} {shown(self.value, self.unit)}"
@@ -133,24 +118,18 @@ def shown(value: float, unit: str) -> str:
 
     Examples
     --------
-    >>> shown(412_000.0, "N*mm")
+    >>> shown(412_000.0, "N mm")
     '412 N·m'
     """
-    if unit == "N*mm":
+    if unit == "N mm":
         return f"{value / 1000.0:.4g} N·m"
-    if unit == "N*mm/rad":
+    if unit == "N mm/rad":
         return f"{value / 1000.0 / ARCMIN:.4g} N·m/arcmin"
     return f"{value:.4g} {label(unit)}".rstrip() if unit != "1" else f"{value:.4g}"
 
 
 def written_limits(requirements: Requirements) -> Limits:
-    """Return what the ``[limits]`` of a drive file hold: those of the requirement file, and what else `cyclo check` knows.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    """
+    """Return what the ``[limits]`` of a drive file hold: those of the requirement file, and what else `cyclo check` knows."""
     asked, shop, found = requirements.asked, requirements.asked.shop, {}
 
     def add(sense: str, quantity: str, value: float | None, source: str) -> None:
@@ -168,13 +147,7 @@ def written_limits(requirements: Requirements) -> Limits:
 
 
 def find_demands(requirements: Requirements) -> tuple[Demand, ...]:
-    """Return every demand on candidates.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    """
+    """Return every demand on candidates."""
     asked, shop = requirements.asked, requirements.asked.shop
     found: dict[tuple[str, str], Demand] = {}
 
@@ -239,15 +212,7 @@ def prototype(requirements: Requirements) -> Drive:
 
 
 def margins(demands: Sequence[Demand], values: Mapping[str, FloatArray]) -> FloatArray:
-    """Return all margins, shape (candidates, demands); not a number where a value is not known.
-
-    Parameters
-    ----------
-    demands : sequence of Demand
-        What is demanded.
-    values : mapping of str to array
-        What candidates reach, shape (candidates,) each.
-    """
+    """Return all margins, shape (candidates, demands); not a number where a value, of shape (candidates,), is not known."""
     count = len(next(iter(values.values())))
     return np.stack(
         [

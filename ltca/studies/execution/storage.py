@@ -22,10 +22,10 @@ from ltca.output.netcdf import DiscStream, netcdf_stream, require_sound_netcdf
 from ltca.output.provenance import code_hash, code_version
 from ltca.output.regular_files import read_regular
 from ltca.output.run_folder import BATCHES, PLAN
+from ltca.quantities import SCALARS
 from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.batch_files import DAMAGE, batch_files, read_batch, write_batch
-from ltca.studies.quantities import QUANTITIES
 from ltca.studies.study import BatchResult, Study
 
 FloatArray = NDArray[np.float64]
@@ -39,23 +39,7 @@ CHUNK = 4096
 
 @contextmanager
 def opened_results(path: Path) -> Iterator[Any]:
-    """Open the dataset of a finished study.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Yields
-    ------
-    h5netcdf.File
-        For reading.
-
-    Raises
-    ------
-    DamagedFileError
-        When it, or what is asked of it while the block runs, cannot be read.
-    """
+    """Open the dataset of a finished study (h5netcdf); `DamagedFileError` where it is unreadable within the block."""
     import h5netcdf
 
     try:
@@ -271,7 +255,7 @@ class StudyFolder:
             columns = []
             for name in study.quantities:
                 column = file.create_variable(name, ("sample",), dtype="f8")
-                column.attrs.update({"units": QUANTITIES[name].unit, "long_name": QUANTITIES[name].description})
+                column.attrs.update({"units": SCALARS[name].unit, "long_name": SCALARS[name].title})
                 columns.append(column)
             if failures:
                 numbers = file.create_variable("failed_sample", ("failure",), dtype="i8")
@@ -331,7 +315,7 @@ def _attributes(study: Study) -> dict[str, Any]:
 
 def quantity_column(name: str) -> dict[str, str]:
     """Return the metadata of the column of a quantity in a table."""
-    return {"units": QUANTITIES[name].unit, "description": QUANTITIES[name].description}
+    return {"units": SCALARS[name].unit, "description": SCALARS[name].title}
 
 
 def field_column(path: str, owner: str = "") -> dict[str, str]:

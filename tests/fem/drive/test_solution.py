@@ -20,10 +20,10 @@ pytestmark = pytest.mark.slow
 # Crank torque over eccentricity, T_out/(u e).
 TANGENTIAL = 377_300.0 / (14.0 * 4.0)
 CONTACT_KINDS = (
-    ("pin_load", "pin_pressure_max"),
-    ("roller_load_outer", "roller_pressure_max_outer"),
-    ("roller_load_inner", "roller_pressure_max_inner"),
-    ("pin_shaft_load", "hole_pressure_max"),
+    ("pin_load", "pin_pressure_mid"),
+    ("roller_load", "roller_pressure_mid_outer"),
+    ("roller_load_inner", "roller_pressure_mid_inner"),
+    ("pin_shaft_load", "pin_shaft_pressure_mid"),
 )
 
 
@@ -55,7 +55,7 @@ def check_balance(solution):
         moment += (np.conj(centre) * -contacts.pin_force[index]).imag
     # The resultant leaves the centre by what the pressure is skewed under the loaded, turning normals.
     assert moment == pytest.approx(-solution.state.wheel_moment, rel=2e-5)
-    np.testing.assert_allclose(contacts.roller_load_outer, contacts.roller_load_inner, rtol=1e-5)
+    np.testing.assert_allclose(contacts.roller_load, contacts.roller_load_inner, rtol=1e-5)
     total = contacts.pin_force.sum() + contacts.roller_force.sum() + contacts.shaft_pin_force.sum()
     assert abs(total) < 1e-6 * largest
 
@@ -92,17 +92,17 @@ def test_arrays_have_full_length(coarse):
     contacts = coarse.contacts
     for name, values in (
         ("pin_load_N", contacts.pin_load),
-        ("roller_load_outer_N", contacts.roller_load_outer),
+        ("roller_load_outer_N", contacts.roller_load),
         ("roller_load_inner_N", contacts.roller_load_inner),
         ("pin_shaft_load_N", contacts.pin_shaft_load),
-        ("pin_pressure_max_MPa", contacts.pin_pressure_max),
-        ("roller_pressure_max_outer_MPa", contacts.roller_pressure_max_outer),
-        ("roller_pressure_max_inner_MPa", contacts.roller_pressure_max_inner),
-        ("pin_shaft_pressure_max_MPa", contacts.hole_pressure_max),
+        ("pin_pressure_max_MPa", contacts.pin_pressure_mid),
+        ("roller_pressure_max_outer_MPa", contacts.roller_pressure_mid_outer),
+        ("roller_pressure_max_inner_MPa", contacts.roller_pressure_mid_inner),
+        ("pin_shaft_pressure_max_MPa", contacts.pin_shaft_pressure_mid),
         ("pin_half_width_mm", contacts.pin_half_width),
         ("roller_half_width_outer_mm", contacts.roller_half_width_outer),
         ("roller_half_width_inner_mm", contacts.roller_half_width_inner),
-        ("pin_shaft_half_width_mm", contacts.hole_half_width),
+        ("pin_shaft_half_width_mm", contacts.pin_shaft_half_width),
     ):
         np.testing.assert_array_equal(summary[name], values[None], err_msg=name)
     assert summary["dof"] > 50_000
@@ -172,7 +172,7 @@ def test_deformed_bodies_touch(coarse, coarse_fields):
 
 def test_pins_and_rollers_without_load_keep_their_shape(coarse, coarse_fields):
     """What nothing presses on neither moves nor is strained; what carries does both."""
-    idle = {"pin": coarse.contacts.pin_load == 0.0, "roller": coarse.contacts.roller_load_outer == 0.0}
+    idle = {"pin": coarse.contacts.pin_load == 0.0, "roller": coarse.contacts.roller_load == 0.0}
     for kind, without in idle.items():
         assert 0 < np.count_nonzero(without) < without.size
         bodies = [field for field in coarse_fields if field.kind == kind]
@@ -236,17 +236,17 @@ def test_stress_in_the_disc(coarse):
     assert data["roller_shear_max_outer"].dims == ("case", "disc", "crank", "position", "roller")
     # Contacts hide what is right beside them: under the pressure the wall is compressed by about as much.
     pressed = data["wall_stress"].where(data["wall_clear"] == 0)
-    assert pressed.min() < -0.8 * coarse.contacts.pin_pressure_max.max()
+    assert pressed.min() < -0.8 * coarse.contacts.pin_pressure_mid.max()
     clear = float(data["wall_stress"].where(data["wall_clear"] == 1).max())
     largest = [*summary["root_stress_MPa"][0], *summary["bore_stress_MPa"], *summary["hole_stress_MPa"][0]]
     assert clear == max(largest)
-    assert 40.0 < clear < 0.1 * coarse.contacts.pin_pressure_max.max()
+    assert 40.0 < clear < 0.1 * coarse.contacts.pin_pressure_mid.max()
     # 0.300 p0 and half the stress along the wall, a tenth of it here; three elements for the half-width.
     contacts = coarse.contacts
     for shear, peak, load in (
-        (stress.pin_shear, contacts.pin_pressure_max, contacts.pin_load),
-        (stress.roller_shear, contacts.roller_pressure_max_outer, contacts.roller_load_outer),
-        (stress.hole_shear, contacts.hole_pressure_max, contacts.pin_shaft_load),
+        (stress.pin_shear_max, contacts.pin_pressure_mid, contacts.pin_load),
+        (stress.roller_shear_max_outer, contacts.roller_pressure_mid_outer, contacts.roller_load),
+        (stress.pin_shaft_shear_max, contacts.pin_shaft_pressure_mid, contacts.pin_shaft_load),
     ):
         looked = load > 0.05 * load.max()
         np.testing.assert_allclose(shear[looked], 0.3 * peak[looked], rtol=0.12)
@@ -351,7 +351,7 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(coarse):
     half_space = analyse(steel, np.array([0.5]), None).full.response
     for name, limit, theirs in (
         ("pin_load", 0.15, half_space.pin_load[0]),
-        ("roller_load_outer", 0.05, half_space.rollers.outer_load[0]),
+        ("roller_load", 0.05, half_space.rollers.outer_load[0]),
         ("pin_shaft_load", 0.02, half_space.hole_load[0]),
     ):
         away = np.max(np.abs(getattr(contacts, name) - theirs)) / theirs.max()
@@ -368,7 +368,9 @@ def test_elastic_shaft_pins_halve_the_contact_modulus(coarse):
     on = rigid.pin_shaft_load > 0.0
     loads = np.sqrt(soft.pin_shaft_load[on] / rigid.pin_shaft_load[on])
     # Three elements for each half-width: half-widths good to 2 %, pressures to 3 %.
-    np.testing.assert_allclose(soft.hole_half_width[on] / rigid.hole_half_width[on], np.sqrt(2.0) * loads, rtol=0.03)
+    np.testing.assert_allclose(
+        soft.pin_shaft_half_width[on] / rigid.pin_shaft_half_width[on], np.sqrt(2.0) * loads, rtol=0.03
+    )
     # The pins give way locally by some micrometres, so the wheel turns back further.
     assert yielding.pose.wheel_angle < coarse.pose.wheel_angle
     kinds = [field.kind for field in recover_fields(yielding.model, yielding.state)]
@@ -382,7 +384,7 @@ def test_shaft_pins_of_a_material_that_does_not_yield_are_rigid(coarse):
     found = solve_drive(with_fields(drive(), stiff, check=False), 0.5, scale=3.0)
     # A mesh of quadratic edges stands for the circle: of a peak over three elements for the half-width 0.1 % (found), with
     # room for other meshers; loads feel the mean. Pins of steel move them by 2 % and 30 %.
-    for name, part in (("pin_load", 1e-3), ("pin_shaft_load", 1e-3), ("hole_pressure_max", 5e-3)):
+    for name, part in (("pin_load", 1e-3), ("pin_shaft_load", 1e-3), ("pin_shaft_pressure_mid", 5e-3)):
         own, rigid = getattr(found.contacts, name), getattr(coarse.contacts, name)
         np.testing.assert_allclose(own, rigid, atol=part * rigid.max(), err_msg=name)
     assert found.pose.wheel_angle == pytest.approx(coarse.pose.wheel_angle, rel=1e-4)

@@ -128,7 +128,7 @@ def test_the_disc_is_in_equilibrium(solved, small):
     """From the places and normals of the contacts alone: forces and moment on the disc, and what the cranks take."""
     (disc,) = solved.discs
     contacts, model, pose = disc.contacts, disc.model, disc.pose
-    largest = contacts.roller_load_outer.max()
+    largest = contacts.roller_load.max()
     assert contacts.equilibrium_residual < 1e-6 * largest
     total = contacts.pin_force.sum() + contacts.roller_force.sum()
     assert abs(total) < 1e-6 * largest
@@ -139,7 +139,7 @@ def test_the_disc_is_in_equilibrium(solved, small):
             moment += (model.circle_centre(kind, index, pose).conjugate() * forces[index]).imag
     # The resultant leaves the centre by what the pressure is skewed, on coarse meshes by some tenths of a micrometre.
     assert abs(moment) < 1e-4 * abs(solved.wheel_moment)
-    np.testing.assert_allclose(contacts.roller_load_outer, contacts.roller_load_inner, rtol=1e-5)
+    np.testing.assert_allclose(contacts.roller_load, contacts.roller_load_inner, rtol=1e-5)
     forces = contacts.roller_force.reshape(3, ROLLERS).sum(axis=1)
     np.testing.assert_allclose(contacts.bearing_force, forces, rtol=1e-12)
     along = forces * np.exp(-1j * ANGLE)
@@ -166,7 +166,7 @@ def test_a_held_wheel_takes_the_moment_of_the_sun(solved, small):
 @pytest.mark.slow
 def test_numbering_of_the_cranks_is_a_matter_of_names(solved, small):
     one, other = solved.discs[0], solve_disc(renumbered(small), ANGLE, solved.wheel_moment, scale=6.0)
-    for name, shift in (("pin_load", 0), ("roller_load_outer", ROLLERS), ("roller_load_inner", ROLLERS)):
+    for name, shift in (("pin_load", 0), ("roller_load", ROLLERS), ("roller_load_inner", ROLLERS)):
         first, second = getattr(one.contacts, name), getattr(other.contacts, name)
         # The same circles in another order give other meshes: 1.3 elements for a half-width, a load is good to 1 % or 2.
         assert np.max(np.abs(np.roll(first, -shift) - second)) < 0.02 * first.max(), name
@@ -188,7 +188,7 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(solved, small):
     half_space = analyse(small, np.array([ANGLE]), None).full.response
     for name, limit, theirs in (
         ("pin_load", 0.17, half_space.pin_load[0]),
-        ("roller_load_outer", 0.07, half_space.rollers.outer_load[0]),
+        ("roller_load", 0.07, half_space.rollers.outer_load[0]),
     ):
         away = np.max(np.abs(getattr(contacts, name) - theirs)) / theirs.max()
         flexible = np.max(np.abs(getattr(solved.discs[0].contacts, name) - theirs)) / theirs.max()
@@ -221,7 +221,7 @@ def test_the_ltca_on_plane_strain_bodies_says_the_same(small, tmp_path):
     for own, disc in zip(answer.discs, full.discs, strict=True):
         for load, theirs in (
             (own.full.response.pin_load[0], disc.contacts.pin_load),
-            (own.full.response.rollers.outer_load[0], disc.contacts.roller_load_outer),
+            (own.full.response.rollers.outer_load[0], disc.contacts.roller_load),
         ):
             assert np.max(np.abs(load - theirs)) < 0.01 * theirs.max()
     assert abs(np.degrees(answer.full.pose[0, -1] - full.wheel_angle)) * 3600.0 < 0.3
@@ -238,7 +238,7 @@ def test_files_are_by_crank(solved, small, tmp_path, monkeypatch, capsys):
         assert data[name].shape == run[name].shape, name
     for name in set(run.coords) - {"light_torque", "case"}:
         np.testing.assert_allclose(data[name], run[name], rtol=1e-12, err_msg=name)
-    np.testing.assert_array_equal(data["roller_load"].values.ravel(), disc.contacts.roller_load_outer)
+    np.testing.assert_array_equal(data["roller_load"].values.ravel(), disc.contacts.roller_load)
     np.testing.assert_array_equal(data["bearing_tangential"].values.ravel(), disc.bearing_components[:, 1])
     assert len(summarise(solved)["bearing_radial_N"]) == 3
     monkeypatch.setattr("fem.reducer.solution.solve_reducer", lambda drive, angle, **options: solved)

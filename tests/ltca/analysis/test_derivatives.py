@@ -1,4 +1,4 @@
-"""Derivatives of loads, poses and angles by fields of the drive, against central differences of analyses that are balanced anew."""
+"""Derivatives of loads, poses and angles by fields of the drive, against differences of analyses that are balanced anew."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from ltca.testing.closed_form_bodies import closed_form_coefficients
 ANGLES = np.array([0.1, 1.4])
 NAMES = ("wheel_angle", "pin_load", "roller_load", "pin_shaft_load", "pin_pressure_mid", "transmission_error_light")
 RELATIVE = 1e-6
-"""The issue's. Differences of fourth order over steps that change loads by some 1e-3 leave 1e-12 of them; analyses balance to 1e-9
-of the load, which such a step makes 1e-6 of the slope at most, and some 1e-8 where approaches are round."""
+"""The issue's. Differences of fourth order over steps that change loads by some 1e-3 leave 1e-12 of them; analyses balance
+to 1e-9 of the load, which such a step makes 1e-6 of the slope at most, and usually a hundredth of that."""
 
 
 def shipped(name, case="nominal"):
@@ -42,26 +42,28 @@ def differences(drive, path, step, engine):
 def agree(drive, steps, engine=None):
     engine = HalfSpace() if engine is None else engine
     result = ltca.analyse(drive, crank_angle=ANGLES, compliance=engine)
-    found = ltca.derivatives(result, list(steps))
+    found, values = ltca.derivatives(result, list(steps)), result.dataset
     for path, step in steps.items():
         expected, mine = differences(drive, path, step, engine), found.sel(field=path)
         for name in NAMES:
-            size = max(float(np.max(np.abs(expected[name]))), 1e-12)
+            # What does not follow the field at all is round-off by the step.
+            size = float(np.max(np.abs(expected[name]), initial=0.0))
+            size = max(size, 1e-6 * float(np.max(np.abs(values[name].values), initial=0.0)) / step)
             np.testing.assert_allclose(
-                mine[name].values, expected[name], rtol=0.0, atol=RELATIVE * size, err_msg=f"{path}: {name}"
+                mine[name].values[None], expected[name], rtol=0.0, atol=RELATIVE * size, err_msg=f"{path}: {name}"
             )
 
 
 def test_paper(paper_cases):
-    agree(paper_cases["CS-3"], {"disc.shifting_offset": 2e-6, "load.torque": 300.0})
+    agree(paper_cases["CS-3"], {"disc.shifting_offset": 2e-5, "load.torque": 300.0})
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "case", "steps"),
     [
-        ("paper", "CS-6", {"clearance.bearing": 2e-6, "pin_wheel.pin_errors.radial.2": 1e-6}),
-        ("robot-joint", "nominal", {"crank.eccentricity": 3e-6, "pin_shaft.hole_radius": 3e-6}),
+        ("paper", "CS-6", {"clearance.bearing": 2e-5, "pin_wheel.pin_errors.radial.2": 1e-5}),
+        ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}),
         ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}),
         ("sleeved", "nominal", {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3}),
     ],
@@ -75,7 +77,7 @@ def test_shipped_drives(name, case, steps):
 def test_no_offsets_at_all(vary):
     agree(
         vary(disc={"equidistant_offset": 0.0, "shifting_offset": 0.0}, clearance={"bearing": 0.02, "pin_hole": 0.05}),
-        {"materials.disc.youngs_modulus": 200.0, "crank.axis_offset.x": 2e-6},
+        {"materials.disc.youngs_modulus": 2000.0, "crank.axis_offset.x": 2e-5},
     )
 
 
@@ -83,21 +85,21 @@ def test_no_offsets_at_all(vary):
 def test_plastic(vary):
     plastic = {"youngs_modulus": 2.6e3, "poisson_ratio": 0.38}
     drive = vary(materials={"disc": plastic}, load={"torque": 20_000.0, "light_torque": 500.0})
-    agree(drive, {"disc.thickness": 1e-2, "disc.shifting_offset": 1e-5})
+    agree(drive, {"pin_shaft.pin_circle_radius": 1e-3, "disc.shifting_offset": 1e-3})
 
 
 @pytest.mark.slow
 def test_two_discs_the_wheel_held_each_with_errors_of_its_own(vary):
     drive = vary(disc={"number_of_discs": 2}, installation={"held": "pin-wheel"})
     drive = with_fields(drive, {"disc.of.0.runout.amount": 0.004, "disc.of.1.runout.amount": 0.0})
-    agree(drive, {"disc.of.0.runout.amount": 2e-6})
+    agree(drive, {"disc.of.0.runout.amount": 2e-5})
 
 
 @pytest.mark.slow
 def test_friction():
     """Slip follows the pose, and the motion turned back is followed as well."""
     drive = with_fields(shipped("robot-joint"), {"friction.pin": 0.05, "friction.hole": 0.05, "friction.roller": 1e-3})
-    agree(drive, {"disc.shifting_offset": 2e-6, "friction.pin": 5e-4})
+    agree(drive, {"disc.shifting_offset": 2e-5, "friction.pin": 5e-4})
 
 
 @pytest.mark.slow
@@ -106,13 +108,14 @@ def test_coupled_bodies(paper_cases, engine, tmp_path):
     """Fields that leave the body: clearances, loads, the place of a pin; stations of the coefficients move along."""
     path = tmp_path / "bodies.nc"
     closed_form_coefficients(paper_cases["CS-3"], half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")
-    agree(paper_cases["CS-3"], {"pin_wheel.pin_errors.radial.3": 1e-6, "load.torque": 300.0}, engine(coefficients=path))
+    agree(paper_cases["CS-3"], {"pin_wheel.pin_errors.radial.3": 1e-5, "load.torque": 300.0}, engine(coefficients=path))
 
 
-@pytest.mark.slow
-def test_contact_grids(paper_cases):
-    """The grids' loads are found to 1e-10, so a step changes them enough."""
-    agree(paper_cases["CS-1"], {"disc.shifting_offset": 5e-6}, HalfSpace(method="direct"))
+def test_contact_grids_are_refused_by_name(paper_cases):
+    """Their loads change cell by cell: slopes over 1e-6 … 1e-3 mm scatter by some 1e-4."""
+    result = ltca.analyse(paper_cases["CS-1"], crank_angle=ANGLES[:1], method="direct")
+    with pytest.raises(DriveError, match=r"method direct: has no derivatives"):
+        ltca.derivatives(result, ["disc.shifting_offset"])
 
 
 @pytest.mark.slow
@@ -120,21 +123,23 @@ def test_zero_clearance_has_a_derivative_to_its_side(vary):
     """Clearances cannot be negative: differences to one side, of fourth order as well."""
     drive = vary(clearance={"bearing": 0.0, "pin_hole": 0.1})
     found = ltca.derivatives(ltca.analyse(drive, crank_angle=ANGLES), ["clearance.bearing"])
-    step, ends = 2e-6, []
-    for part in range(5):
-        ends.append(ltca.analyse(with_fields(drive, {"clearance.bearing": part * step}), crank_angle=ANGLES).dataset)
+    step = 2e-6
+    ends = [
+        ltca.analyse(with_fields(drive, {"clearance.bearing": part * step}), crank_angle=ANGLES).dataset
+        for part in range(5)
+    ]
     weights = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / (12.0 * step)
     expected = sum(weight * end["pin_load"].values for weight, end in zip(weights, ends, strict=True))
     # Both are differences to one side: some ten times what central ones leave.
     size = np.max(np.abs(expected))
-    np.testing.assert_allclose(found["pin_load"].values[0], expected, rtol=0.0, atol=1e-5 * size)
+    np.testing.assert_allclose(found["pin_load"].values, expected, rtol=0.0, atol=1e-5 * size)
 
 
 def test_scalars_are_those_of_their_arrays(paper_cases):
     result = ltca.analyse(paper_cases["CS-3"], crank_angle=ANGLES)
     found = ltca.derivatives(result, ["disc.shifting_offset"])
     load = result.dataset["pin_load"].values.ravel()
-    assert float(found["max_pin_load_N"]) == found["pin_load"].values[0].ravel()[np.argmax(load)]
+    assert found["max_pin_load_N"].values[0] == found["pin_load"].values[0].ravel()[np.argmax(load)]
     assert found["field"].values.tolist() == ["disc.shifting_offset"]
     assert found["unit"].values.tolist() == ["mm"]
     assert found["pose"].dims == ("field", "position", "coordinate")
@@ -145,7 +150,10 @@ def test_scalars_are_those_of_their_arrays(paper_cases):
     [
         ("crank_bearing.number_of_rollers", "crank_bearing.number_of_rollers: must be a real number"),
         ("installation.held", "installation.held: must be a real number"),
-        ("pin_wheel.pin_errors.radial", r"pin_wheel.pin_errors.radial: must be a real number, or an element .*radial\.0"),
+        (
+            "pin_wheel.pin_errors.radial",
+            r"pin_wheel.pin_errors.radial: must be a real number, or an element .*radial\.0",
+        ),
         ("disc.thicknes", "disc.thicknes"),
     ],
 )

@@ -11,7 +11,6 @@ from ltca.analysis import extremes
 from ltca.analysis.engines import HalfSpace, Hybrid
 from ltca.analysis.extremes import (
     GAIN,
-    Extremes,
     PeakSearch,
     is_full_turn,
     passages_per_turn,
@@ -21,9 +20,11 @@ from ltca.analysis.extremes import (
     scan_angles,
 )
 from ltca.analysis.loaded_analysis import analyse
-from ltca.analysis.summary import REFINED, summarise
+from ltca.analysis.summary import summarise
 from ltca.compliance.coefficients import without_coupling
+from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.placement import position_angles
+from ltca.quantities import REFINED
 
 TURN = 2.0 * np.pi
 CASE = "CS-4"  # two kinks and the end of the turn make its transmission error: 4.83″ at 360 positions, 4.98″ at 14401
@@ -90,8 +91,8 @@ def extremes_of(analysis):
     pressures, loads = analysis.pressures, analysis.full.response
     total = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
     return {
-        "ptp_transmission_error": np.ptp(analysis.full.pose[:, 3]),
-        "ptp_transmission_error_light": np.ptp(analysis.light.pose[:, 3]),
+        "ptp_transmission_error": ARCSEC * np.ptp(analysis.full.pose[:, 3]),
+        "ptp_transmission_error_light": ARCSEC * np.ptp(analysis.light.pose[:, 3]),
         "ptp_tangential_bearing_load": np.ptp(analysis.bearing_tangential),
         "max_bearing_load": total.max(),
         "max_pin_load": loads.pin_load.max(),
@@ -114,11 +115,11 @@ def test_thirteen_positions_reach_what_thousands_say(paper_cases, case, many):
     coarse, finely = (analyse(drive, angle) for angle in (position_angles(13), np.append(position_angles(many), TURN)))
     found, expected = refine_extremes(coarse), extremes_of(finely)
     assert extremes_of(coarse)["ptp_transmission_error"] < 0.5 * expected["ptp_transmission_error"]
-    assert expected.keys() == {name for name, _ in REFINED.values()}
+    assert expected.keys() == found.values.keys() == REFINED.keys()
     for name, value in expected.items():
         # a kink falls by 0.35″ a degree on each side: 1200 positions miss it by 0.05″ of 5″ at worst, 3600 by a third
         # of that; the search ends at 0.1 %
-        assert getattr(found, name) == pytest.approx(value, rel=0.01), name
+        assert found.values[name] == pytest.approx(value, rel=0.01), name
 
 
 @pytest.mark.parametrize(("case", "positions"), [("CS-1", 26), pytest.param("CS-6", 28, marks=pytest.mark.slow)])
@@ -126,16 +127,15 @@ def test_refined_values_do_not_hang_on_the_positions(paper_cases, case, position
     """2.1, 3.0, 5.0, 5.4″ at 13, 26, 28, 360 positions of CS-1 was the fault."""
     given, many = (analyse(paper_cases[case], position_angles(count)) for count in (positions, 360))
     found, other = refine_extremes(given), refine_extremes(many)
-    for name in (item for item, _ in REFINED.values()):
+    for name in REFINED:
         # each ends within 0.1 % of what its own brackets allow; two ends of a range
-        assert getattr(found, name) == pytest.approx(getattr(other, name), rel=4e-3), name
+        assert found.values[name] == pytest.approx(other.values[name], rel=4e-3), name
     assert other.added_positions + other.added_light_positions < 100
     told = summarise(given)
-    units = {"N": 1.0, "MPa": 1.0, "arcsec": 180.0 * 3600.0 / np.pi}
-    for key, (name, _) in REFINED.items():
-        assert told[f"refined_{key}"] == pytest.approx(units[key.rpartition("_")[2]] * getattr(found, name))
+    for name, scalar in REFINED.items():
+        assert told[f"refined_{scalar.key}"] == found.values[name]
         # never less than the positions themselves
-        assert key == "max_bearing_load_N" or told[f"refined_{key}"] >= told[key]
+        assert name == "max_bearing_load" or told[f"refined_{scalar.key}"] >= told[scalar.key]
 
 
 @pytest.mark.slow
@@ -150,9 +150,9 @@ def test_other_engines_are_refined_on_their_own_loads(paper_cases, monkeypatch):
     grids = refine_extremes(analyse(drive, angle, engine=HalfSpace(method="direct")))
     for name in ("ptp_transmission_error", "max_pin_load", "max_roller_load", "max_pin_shaft_load"):
         # another start ends the search elsewhere within its 0.1 %
-        assert getattr(hybrid, name) == pytest.approx(getattr(tables, name), rel=2e-3), name
+        assert hybrid.values[name] == pytest.approx(tables.values[name], rel=2e-3), name
         # tables and grids differ by at most 0.013 % in loads
-        assert getattr(grids, name) == pytest.approx(getattr(tables, name), rel=2e-3), name
+        assert grids.values[name] == pytest.approx(tables.values[name], rel=2e-3), name
     assert grids.added_positions < 20
 
 
@@ -220,9 +220,3 @@ def test_studies_are_warned_of_holes_too(paper_cases):
 def test_one_angle_warns_of_nothing(paper_cases):
     assert sampling_warning(paper_cases["CS-1"], np.array([0.3])) is None
     assert sampling(paper_cases["CS-1"], np.array([0.3])).distinct_mesh_phases == 1
-
-
-def test_every_refined_key_is_an_extreme():
-    assert {name for name, _ in REFINED.values()} == {
-        name for name in Extremes.__annotations__ if not name.startswith("added")
-    }

@@ -10,8 +10,8 @@ from importlib.metadata import entry_points
 import pytest
 
 from ltca.commands.program import EXAMPLES, GROUP, main
-from ltca.drive.members.limits import LIMITED
-from ltca.studies.quantities import QUANTITIES
+from ltca.quantities import LIMITED
+from ltca.studies.quantities import STAGES
 
 COMMANDS = {entry.name: entry.load() for entry in entry_points(group=GROUP)}
 
@@ -48,7 +48,7 @@ def test_quantities_are_those_of_studies_and_limits(capsys):
     assert main(["quantities"]) == 0
     told = capsys.readouterr().out.splitlines()
     names = [line.split()[0] for line in told if line.startswith("  ")]
-    assert names == [*QUANTITIES, *LIMITED]
+    assert names == [*STAGES, *LIMITED]
 
 
 @pytest.mark.slow

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 import pytest
 
 from ltca.drive.fields import field_kinds
-from ltca.drive.members.judgement import TITLES
-from ltca.drive.members.limits import LIMITED
 from ltca.drive.reference.engine_support import ENGINES, REFUSED
 from ltca.drive.reference.field_descriptions import (
     REQUIRED,
@@ -120,7 +118,3 @@ def test_engines_and_their_refusals_are_of_this_definition():
     for fields in REFUSED.values():
         for path in fields:
             assert path in DESCRIBED or path in describe_tables(), path
-
-
-def test_every_limited_quantity_has_a_title():
-    assert list(TITLES) == list(LIMITED)

@@ -120,7 +120,7 @@ def test_arrows_are_the_values_of_the_dataset(kind, run_of, chromium, tmp_path):
     assert seen["focus"][1].split(":")[0] in seen["chosen"]
     assert (seen["clicked"], seen["key"]) == (0, 1)
     assert seen["svg"]
-    assert "mean bearing load," in seen["csv"]
+    assert "bearing load, mean" in seen["csv"]
     assert "−" not in seen["csv"]
     assert seen["overflow"] <= 0
     if kind == "paper":

@@ -17,7 +17,7 @@ from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
 from ltca.studies.fine_solution import solve_finely
 from ltca.studies.optimiser import Limit, Problem, broken_limits
-from ltca.studies.quantities import OF_FRICTION, QUANTITIES, quantities_for
+from ltca.studies.quantities import OF_FRICTION, STAGES, quantities_for
 
 ARCMIN, ARCSEC = 10_800.0 / np.pi, 648_000.0 / np.pi
 
@@ -34,17 +34,17 @@ def test_every_quantity_finely(drive):
     found = solve_finely(drive, names, HalfSpace(), 60)
     assert found.positions == 60
     assert tuple(found.values) == names
-    assert set(QUANTITIES) - set(names) == set(OF_FRICTION)
+    assert set(STAGES) - set(names) == set(OF_FRICTION)
     analysis = analyse(drive, position_angles(60))
     refined = refine_extremes(analysis)
     total = np.hypot(analysis.bearing_radial, analysis.bearing_tangential)
     for name, value in {
-        "ptp_transmission_error": refined.ptp_transmission_error * ARCSEC,
-        "ptp_transmission_error_light": refined.ptp_transmission_error_light * ARCSEC,
+        "ptp_transmission_error": refined.values["ptp_transmission_error"],
+        "ptp_transmission_error_light": refined.values["ptp_transmission_error_light"],
         "mean_transmission_error": analysis.full.pose[:, 3].mean() * ARCSEC,
-        "max_pin_load": refined.max_pin_load,
-        "max_bearing_load": refined.max_bearing_load,
-        "ptp_tangential_bearing_load": refined.ptp_tangential_bearing_load,
+        "max_pin_load": refined.values["max_pin_load"],
+        "max_bearing_load": refined.values["max_bearing_load"],
+        "ptp_tangential_bearing_load": refined.values["ptp_tangential_bearing_load"],
         "mean_bearing_load": total.mean(),
     }.items():
         assert found.values[name] == pytest.approx(value, rel=1e-9), name
@@ -79,7 +79,7 @@ def test_optimum_is_told_finely(tmp_path, capsys):
     for name, place in (("as_it_is", load_drive("paper").cases["CS-3"]), ("found", tmp_path / "optimum.toml")):
         one = place if name == "as_it_is" else load_drive(place).cases["nominal"]
         fine = refine_extremes(analyse(one, position_angles(360)))
-        assert error[name] == pytest.approx(fine.ptp_transmission_error * ARCSEC, rel=1e-9)
+        assert error[name] == pytest.approx(fine.values["ptp_transmission_error"], rel=1e-9)
         coarse = analyse(one, position_angles(4)).full.pose[:, 3]
         assert error[f"{name}_in_search"] == pytest.approx(np.ptp(coarse) * ARCSEC, rel=1e-6)
         assert error[name] > 1.1 * error[f"{name}_in_search"]

@@ -8,9 +8,10 @@ import pytest
 from ltca.commands.program import main
 from ltca.drive.parts import Friction
 from ltca.errors import DriveError
+from ltca.quantities import SCALARS
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
-from ltca.studies.quantities import QUANTITIES, quantities_for, with_what_varies
+from ltca.studies.quantities import quantities_for, with_what_varies
 
 SWEEP = """
 drive = "paper"
@@ -54,8 +55,8 @@ def test_quantities_of_friction_need_friction_and_a_speed():
     assert "power_loss" in quantities_for(with_fields(rubs, {"load.speed": 1500.0}), None)
     with pytest.raises(DriveError, match=r"mean_efficiency: .* has no friction"):
         quantities_for(drive, ("mean_efficiency",))
-    assert QUANTITIES["mean_efficiency"].more_is_better
-    assert not any(one.more_is_better for name, one in QUANTITIES.items() if name != "mean_efficiency")
+    assert SCALARS["mean_efficiency"].more_is_better
+    assert not any(one.more_is_better for name, one in SCALARS.items() if name != "mean_efficiency")
 
 
 def test_a_coefficient_of_zero_is_a_coefficient():

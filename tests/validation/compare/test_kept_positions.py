@@ -39,7 +39,8 @@ def stress_of(solution):
     )
     return DiscStress(
         walls=(wall,) * 10, clear=(np.array([True, False]),) * 10, root_stress=np.array([3.0, np.nan]), bore_stress=1.5,
-        hole_stress=np.ones(8), pin_shear=np.arange(14.0), roller_shear=np.zeros(11), hole_shear=np.zeros(8),
+        hole_stress=np.ones(8), pin_shear_max=np.arange(14.0), roller_shear_max_outer=np.zeros(11),
+        pin_shaft_shear_max=np.zeros(8),
     )  # fmt: skip
 
 

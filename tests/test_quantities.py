@@ -1,0 +1,129 @@
+"""The registry is the single source of quantities: what runs write is in it, and what is in it is written by some run."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fem.drive.disc_stress import STRESSES, recover_disc_stress, stress_variables, summarise_stress
+from fem.reducer.solution import solve_reducer
+from fem.reducer.solution_files import ARRAYS, build_dataset as build_fem_dataset, summarise as summarise_fem
+from ltca.analysis.loaded_analysis import analyse
+from ltca.analysis.pressure_fields import build_pressure_dataset
+from ltca.analysis.results import build_dataset
+from ltca.analysis.summary import summarise
+from ltca.analysis.verdict.values import find_values
+from ltca.quantities import LIMITED, QUANTITIES, REFINED, SCALARS, SCHEMA_VERSION, Quantity, scalar_named
+from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.studies.quantities import STAGES
+
+SCHEMA = Path(__file__).parent / "regression" / f"schema_{SCHEMA_VERSION}.json"
+SHIPPED = ("paper", "rv", "robot-joint", "sleeved")
+RUBBING = """
+[friction]
+pin = 0.05
+seat = 0.05
+hole = 0.05
+[lubricant]
+viscosity = 100.0
+contamination = 0.5
+[temperature]
+disc = 30.0
+"""
+INDEXES = {"case", "disc", "crank", "position", "pin", "roller", "hole"}
+INFORMATION = {
+    "torque_share", "disc_displacement", "disc_displacement_area", "pose_iterations", "dof", "size", "plane_state", "held",
+    "fingerprint", "seconds", "seconds_by_stage",
+}  # fmt: skip
+"""What the summary of `cyclo fem` has beside the arrays of the registry."""
+
+
+def schema():
+    """What is seen outside: arrays with unit and dimensions, keys of summaries, limits and scalars of studies with units."""
+    return {
+        "arrays": {name: [one.unit, *one.dimensions] for name, one in QUANTITIES.items() if one.of},
+        "summary": [scalar.key for scalar in SCALARS.values() if scalar.in_summary],
+        "refined": [scalar.key for scalar in REFINED.values()],
+        "fem_summary": [key for name in (*ARRAYS, *STRESSES) for key in _fem_keys(QUANTITIES[name])],
+        "limits": {name: scalar.unit for name, scalar in LIMITED.items()},
+        "studies": {name: SCALARS[name].unit for name in STAGES},
+    }
+
+
+def _fem_keys(quantity: Quantity):
+    return dict.fromkeys((quantity.older_fem_key, quantity.fem_key))
+
+
+def test_the_registry_is_the_schema_of_its_version():
+    """Outside checks read these names: one that changes or goes needs a higher `SCHEMA_VERSION` and a file of its own."""
+    assert schema() == json.loads(SCHEMA.read_text(encoding="utf-8"))
+
+
+def test_a_wrong_unit_is_seen(monkeypatch):
+    monkeypatch.setitem(QUANTITIES, "pin_load", replace(QUANTITIES["pin_load"], unit="kN"))
+    monkeypatch.setitem(SCALARS, "max_pin_load", replace(SCALARS["max_pin_load"], unit="kN"))
+    found, kept = schema(), json.loads(SCHEMA.read_text(encoding="utf-8"))
+    assert {name for name in kept if found[name] != kept[name]} == {"arrays", "summary", "fem_summary", "studies"}
+
+
+def test_scalars_have_the_unit_of_what_they_sum_up():
+    """But for angles, which the datasets have in radians, and energies that are told as powers."""
+    for quantity in QUANTITIES.values():
+        for scalar in quantity.scalars:
+            assert scalar.unit in ("", quantity.unit) or (quantity.unit, scalar.unit) in {
+                ("rad", "arcsec"),
+                ("N mm", "W"),
+            }
+
+
+@pytest.fixture(scope="module")
+def drives():
+    """The shipped drives, and one that rubs, is warm, stands on a soft bearing and has a hardened case."""
+    files = {name: parse_drive(shipped_drive(name), name) for name in SHIPPED}
+    text = re.sub(r"(?m)^(torque = .*)$", r"\1\nspeed = 1000.0", shipped_drive("sleeved")).replace(
+        'disc = { like = "100Cr6",', 'disc = { like = "100Cr6", hardness_depth = 0.5,'
+    )
+    text = text.replace("[pin_wheel]\n", "[pin_wheel]\nsupport_stiffness = 1e6\n") + RUBBING
+    files["rubbing"] = parse_drive(text, "rubbing")
+    return {name: next(iter(file.cases.values())) for name, file in files.items()}
+
+
+@pytest.mark.slow
+def test_runs_write_what_is_declared_and_nothing_else(drives):
+    kept = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    arrays, keys, judged = set(), set(), {"carried_torque", "roller_pressure_mid"}
+    for name, drive in drives.items():
+        analysis = analyse(drive, np.array([0.1, 1.9]))
+        summary = summarise(analysis)
+        arrays |= check_arrays(build_dataset(name, {name: analysis}), kept)
+        keys |= {re.sub(r"(disc|crank)_\d+", r"\1_#", key) for key in summary}
+        judged |= {value.quantity for value in find_values(analysis, summary)}
+    analyses = {"CS-1": analyse(drives["paper"], np.array([0.0]))}
+    arrays |= check_arrays(build_pressure_dataset("paper", analyses, cells=4), kept)
+    solution = solve_reducer(drives["paper"], 0.5, scale=6.0)
+    stresses = [recover_disc_stress(disc) for disc in solution.discs]
+    arrays |= check_arrays(build_fem_dataset(solution, "CS-1").assign(stress_variables(stresses)), kept)
+    assert arrays == set(kept["arrays"])
+    walls = {scalar_named(f"max_{wall}_stress").key for wall in ("root", "bore", "hole")}  # of fe and hybrid
+    assert keys | walls == {*kept["summary"], *(f"refined_{key}" for key in kept["refined"])}
+    assert judged == set(LIMITED)
+    told = set(summarise_fem(solution) | summarise_stress(stresses)) - INFORMATION
+    arrays_of_fem = {QUANTITIES[name].fem_key for name in arrays}
+    assert set(kept["fem_summary"]) <= told <= {*kept["fem_summary"], *arrays_of_fem}
+
+
+def check_arrays(dataset, kept):
+    """Units, dimensions and descriptions are those of the registry; names of the arrays."""
+    assert dataset.attrs["schema_version"] == SCHEMA_VERSION
+    names = {str(name) for name in dataset.variables} - INDEXES
+    for name in names - {"lobe"}:
+        array = dataset[name]
+        assert [array.attrs["units"], *array.dims] == kept["arrays"][name], name
+        texts = (QUANTITIES[name].description, QUANTITIES[name].in_fem or None)
+        assert array.attrs["long_name"].startswith(tuple(filter(None, texts))), name
+    return names
