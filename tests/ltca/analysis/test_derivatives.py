@@ -26,11 +26,11 @@ def shipped(name, case="nominal"):
     return load_drive(files("ltca.drives") / f"{name}.toml").cases[case]
 
 
-def differences(drive, path, step, engine):
+def differences(drive, path, step, engine, angles):
     """∂/∂path of the dataset by four analyses, each balanced anew."""
     value = float(read_field(drive, path))
     beside = [
-        ltca.analyse(with_fields(drive, {path: value + part * step}), crank_angle=ANGLES, compliance=engine).dataset
+        ltca.analyse(with_fields(drive, {path: value + part * step}), crank_angle=angles, compliance=engine).dataset
         for part in (-2.0, -1.0, 1.0, 2.0)
     ]
     return {
@@ -39,12 +39,12 @@ def differences(drive, path, step, engine):
     }
 
 
-def agree(drive, steps, engine=None):
+def agree(drive, steps, engine=None, angles=ANGLES):
     engine = HalfSpace() if engine is None else engine
-    result = ltca.analyse(drive, crank_angle=ANGLES, compliance=engine)
+    result = ltca.analyse(drive, crank_angle=angles, compliance=engine)
     found, values = ltca.derivatives(result, list(steps)), result.dataset
     for path, step in steps.items():
-        expected, mine = differences(drive, path, step, engine), found.sel(field=path)
+        expected, mine = differences(drive, path, step, engine, angles), found.sel(field=path)
         for name in NAMES:
             # What does not follow the field at all is round-off by the step.
             size = float(np.max(np.abs(expected[name]), initial=0.0))
@@ -60,17 +60,20 @@ def test_paper(paper_cases):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "case", "steps"),
+    ("name", "case", "steps", "angles"),
     [
-        ("paper", "CS-6", {"clearance.bearing": 2e-5, "pin_wheel.pin_errors.radial.2": 1e-5}),
-        ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}),
-        ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}),
-        ("sleeved", "nominal", {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3}),
+        ("paper", "CS-6", {"clearance.bearing": 2e-5, "pin_wheel.pin_errors.radial.2": 1e-5}, ANGLES),
+        ("robot-joint", "nominal", {"crank.eccentricity": 1e-5, "pin_shaft.hole_radius": 1e-5}, ANGLES),
+        ("rv", "nominal", {"disc.equidistant_offset": 2e-6, "crank.support.diameter": 0.003}, ANGLES + 0.37),
+        ("sleeved", "nominal", {"pin_wheel.beam.span": 2e-3, "pin_shaft.beam.diameter": 1e-3}, ANGLES),
     ],
 )
-def test_shipped_drives(name, case, steps):
-    """One disc; the wheel held by secants; cranks on springs; loose pins and beams that several discs bend."""
-    agree(shipped(name, case), steps)
+def test_shipped_drives(name, case, steps, angles):
+    """One disc; the wheel held by secants; cranks on springs; loose pins and beams that several discs bend.
+
+    No pin of the RV is about to open at its angles, where steps to either side would differ.
+    """
+    agree(shipped(name, case), steps, angles=angles)
 
 
 @pytest.mark.slow
@@ -85,7 +88,7 @@ def test_no_offsets_at_all(vary):
 def test_plastic(vary):
     plastic = {"youngs_modulus": 2.6e3, "poisson_ratio": 0.38}
     drive = vary(materials={"disc": plastic}, load={"torque": 20_000.0, "light_torque": 500.0})
-    agree(drive, {"pin_shaft.pin_circle_radius": 1e-3, "disc.shifting_offset": 1e-3})
+    agree(drive, {"pin_shaft.pin_circle_radius": 1e-3, "disc.shifting_offset": 3e-4})
 
 
 @pytest.mark.slow
