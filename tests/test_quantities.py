@@ -1,4 +1,7 @@
-"""The registry is the single source of quantities: what runs write is in it, and what is in it is written by some run."""
+"""The registry is the single source of quantities: what runs write is in it, and what is in it is written by some run.
+
+``python -m tests.test_quantities`` writes the schema of the version anew.
+"""
 
 from __future__ import annotations
 
@@ -127,3 +130,7 @@ def check_arrays(dataset, kept):
         texts = (QUANTITIES[name].description, QUANTITIES[name].in_fem or None)
         assert array.attrs["long_name"].startswith(tuple(filter(None, texts))), name
     return names
+
+
+if __name__ == "__main__":
+    SCHEMA.write_text(re.sub(r"(.{100,}?,) ", r"\1\n", json.dumps(schema())) + "\n", encoding="utf-8")
