@@ -60,6 +60,7 @@ SMALLER = {
     "fem": "--size 4",
     "mesh": "--size 4",
     "validate": "--level quick --angles 0.5",
+    "benchmarks/before_and_after.py": "--count 5",
     "benchmarks/contract.py": "full-fe --fields 1",
     "benchmarks/equilibria.py": "--positions 4 --rounds 1",
     "benchmarks/faults.py malformed": "--count 3",

@@ -46,10 +46,6 @@ def _literal(value: Any) -> str:
         return f"{{ {inner} }}" if inner else "{}"
     if isinstance(value, tuple):
         return "[" + ", ".join(_literal(item) for item in value) + "]"
-    if is_dataclass(value):
-        given = {item.name: getattr(value, item.name) for item in fields(value)}
-        entries = [f"{name} = {_literal(own)}" for name, own in given.items() if own is not None and own != ()]
-        return "{ " + ", ".join(entries) + " }" if entries else "{}"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
