@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 from dataclasses import replace
@@ -133,4 +134,5 @@ def check_arrays(dataset, kept):
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=f"Write {SCHEMA.name} anew.").parse_args()
     SCHEMA.write_text(re.sub(r"(.{100,}?,) ", r"\1\n", json.dumps(schema())) + "\n", encoding="utf-8")

@@ -15,6 +15,7 @@ extremes                   Extremes of an analysis between its positions: peak-t
 results                    The labelled dataset of a run: what ``results.nc`` holds
 summary                    The scalars of one case: what ``summary.json`` holds
 summary_rows               Which of them a table shows, in which order
+derivatives                Derivatives of loads, poses, angles and pressures of a balanced drive with respect to its fields
 pressure_fields            Pressure over every loaded contact at chosen crank angles: solved on grids at the pose
                            found, as one dataset
 torque_curve               Torque against wind-up over both directions, and what is read from it: backlash, lost

@@ -1,17 +1,17 @@
-r"""How loads, poses, angles and pressures of a balanced drive follow its fields, without balancing it again.
+r"""Derivatives of loads, poses, angles and pressures of a balanced drive with respect to its fields.
 
-At a balanced position the residual :math:`R(z, p)` is nought: of the forces on all members, z being their pose q, and, where the
-wheel is held, of the moments about the axis, z having the moment that holds it, too. With a field p of the drive the balance goes
+At a balanced position the residual :math:`R(z, p)` vanishes. The unknowns z are the pose q and, where the wheel is held, the
+moment that holds it; R has the forces on all members and the moment about the axis. A field p of the drive moves the balance by
 
 .. math:: \frac{dz}{dp} = -\left(\frac{\partial R}{\partial z}\right)^{-1} \frac{\partial R}{\partial p} ,
 
-and whatever is read from pose and drive, :math:`f(z, p)`, goes :math:`\partial f/\partial p + \partial f/\partial z \cdot dz/dp`.
+and a result :math:`f(z, p)` by :math:`\partial f/\partial p + \partial f/\partial z \cdot dz/dp`.
 
-The tangent of the balance leaves out that radii of curvature and influence coefficients change along the flank, some 1e-5 of it.
-So it only proposes dz/dp; what the residual itself does along that direction corrects the proposal until nothing is left: the
-answer is that of the whole Jacobian. Slopes along a direction are differences of fourth order of residuals and results evaluated
-beside the balanced position, with parameters of one thousandth of the approaches: round-off and what they leave out are below
-1e-7. Where a contact is just about to open a derivative has two sides, and these differences a value between.
+The tangent used by Newton's method neglects that radii of curvature and influence coefficients change along the flank (relative
+error 1e-5). It therefore serves as a preconditioner only: the directional derivative of the residual along the current dz/dp is
+reduced to zero by iteration, so the result is that of the full Jacobian. Directional derivatives are fourth-order differences
+beside the balanced position, with steps of a thousandth of the approaches; their error is below 1e-7. At a position where a
+contact is about to open, the derivative is one-sided, and the differences return a value in between.
 """
 
 from __future__ import annotations
@@ -45,19 +45,19 @@ from ltca.reading.changes import with_fields
 FloatArray = NDArray[np.float64]
 
 CHANGE = 1e-3
-"""By what part of the largest force a step changes a residual: large against round-off of approaches (1e-9 of it), and its fourth
-power small."""
+"""Relative change of the residual by one step: large compared with round-off of the approaches (1e-9 of it), small to the fourth
+power."""
 FIRST_STEP = 1e-7
-"""First step of a field, as a part of its value or of one of its unit where it is zero."""
+"""First step of a field relative to its value, or in its unit where the value is zero."""
 CORRECTIONS = 12
 SETTLED = 1e-9
-"""Slope of the residual that is left, as a part of what the field alone makes."""
+"""Relative derivative of the residual at which the iteration stops."""
 KEPT_SLOPE = 1e-6
-"""Slope that is left beyond which there is no derivative."""
+"""Relative derivative of the residual above which the iteration has failed."""
 ROUND_OFF = 1e-10
-"""Change of a residual over a step that counts as none, as a part of the load: inner unknowns are found to some such part."""
+"""Change of the residual over one step, relative to the load, that counts as round-off of the inner unknowns."""
 FLOATING = 1e-13
-"""Stiffness that counts as none, as a part of the largest."""
+"""Stiffness, relative to the largest, below which a disc counts as unloaded; its pose stays as it is."""
 CENTRAL = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0)
 FORWARD = (np.array([0.0, 1.0, 2.0, 3.0, 4.0]), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0)
 """Steps and weights of differences of fourth order; forward ones (or backward) where a field is at its bound."""
@@ -90,8 +90,7 @@ class _Position:
         self.lever = np.broadcast_to(lever_arms(base.model), found.pose.shape)
         self.load = float(np.abs(found.wheel_moment / self.lever[:, WHEEL_ANGLE]).max())
         self.start = Start.after(found.response)
-        # A disc that carries nothing floats: it is left where it is.
-        self.inverse = np.linalg.pinv(self._tangent(base), rcond=FLOATING)
+        self.inverse = self._inverse(self._tangent(base))
 
     def residual(self, node: _Node, pose: FloatArray, moment: FloatArray) -> FloatArray:
         """Forces and moments that are not balanced, moments by their levers, N, shape (positions, unknowns)."""
@@ -145,6 +144,13 @@ class _Position:
                     ends.append(self._closure(base, self._at(base, pose, self.found.wheel_moment)))
                 matrix[:, size, column] = (ends[1] - ends[0]) / (2.0 * step) / lever[:, WHEEL_ANGLE]
         return matrix
+
+    def _inverse(self, matrix: FloatArray) -> FloatArray:
+        """Pseudo-inverse of the tangent, scaled so that all unknowns are lengths."""
+        stiffness = np.max(np.abs(matrix[:, :-1, :-1] / self.lever[:, None, :]), axis=(1, 2))
+        moment = stiffness * self.lever[:, WHEEL_ANGLE]
+        scale = np.concatenate((1.0 / self.lever, moment[:, None]), axis=1)
+        return np.asarray(scale[:, :, None] * np.linalg.pinv(matrix * scale[:, None, :], rcond=FLOATING))
 
     def follow(self, nodes: Sequence[_Node], weights: FloatArray, step: float) -> FloatArray:
         """Return dz/dp, shape (positions, unknowns)."""

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.friction.hysteresis import HysteresisLoop, hysteresis_loop
-from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
@@ -128,8 +127,8 @@ def torque_curve(
     loads = np.tile(opposing * torque, angles.size)
     tables = replace(HalfSpace().prepare(drive).model, friction=None)
     found = solve_at_output(tables, drive, held, loads)
-    model = tables if engine is None else replace(engine.prepare(drive).model, friction=None)
-    if not isinstance(model.discs[0], HalfSpaceCompliance):
+    if not (engine is None or engine == HalfSpace()):
+        model = replace(engine.prepare(drive).model, friction=None)
         found = solve_at_output(model, drive, held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
     output = drive.output_per_wheel_angle * wheel
@@ -146,7 +145,7 @@ def torque_curve(
         torque=torque,
         wheel_angle=wheel,
         output_angle=output,
-        backlash=abs(drive.output_per_wheel_angle) * free_play(model.geometries, angles).play,
+        backlash=abs(drive.output_per_wheel_angle) * free_play(tables.geometries, angles).play,
         lost_motion=at(lost_motion) - at(-lost_motion) if loop is None else loop.lost_motion,
         stiffness=np.stack([half / (at(-STIFF_FROM) - at(-1.0)), half / (at(1.0) - at(STIFF_FROM))], axis=1),
         lost_motion_part=lost_motion,

@@ -62,7 +62,7 @@ def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArra
         shift = np.einsum("bcj,bj->bc", bores.gradient, own)
         push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
         work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
-    if isinstance(model, Reducer) and model.supports is not None:
+    if model.supports is not None:
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = True
         ring[model.coordinates.ring_place] = True

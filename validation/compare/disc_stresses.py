@@ -139,9 +139,13 @@ def answer_of_content(content: dict[str, Any]) -> DiscStressAnswer:
 
 
 def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
-    """Return the stress of an analysis position by position; none where its model knows no stress in the disc."""
-    model, full = analysis.model, analysis.full
-    if not (isinstance(model, CoupledCompliance) and model.coefficients.stress.available):
+    """Return the stress of an analysis of one disc position by position; none where its model knows no stress in the disc."""
+    model, full = analysis.model.discs[0], analysis.full
+    if (
+        len(analysis.model.discs) > 1
+        or not isinstance(model, CoupledCompliance)
+        or not model.coefficients.stress.available
+    ):
         return []
     rotation = full.pose[:, 2]
     profiles = wall_profiles(model, full.response, analysis.pressures, rotation, refinement=1)
