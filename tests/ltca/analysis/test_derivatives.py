@@ -88,7 +88,7 @@ def test_no_offsets_at_all(vary):
 def test_plastic(vary):
     plastic = {"youngs_modulus": 2.6e3, "poisson_ratio": 0.38}
     drive = vary(materials={"disc": plastic}, load={"torque": 20_000.0, "light_torque": 500.0})
-    agree(drive, {"pin_shaft.pin_circle_radius": 1e-3, "clearance.bearing": 1e-3})
+    agree(drive, {"pin_shaft.pin_circle_radius": 1e-3, "load.torque": 50.0})
 
 
 @pytest.mark.slow
