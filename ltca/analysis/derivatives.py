@@ -11,8 +11,8 @@ The tangent used by Newton's method neglects that radii of curvature and influen
 error 1e-5). It therefore serves as a preconditioner only: the directional derivative of the residual along the current dz/dp is
 reduced to zero by iteration, so the result is that of the full Jacobian. Directional derivatives are fourth-order differences
 beside the balanced position, with steps of a thousandth of the approaches. Their error is some 1e-8 of the change at a held
-pose: 1e-7 of most derivatives, 1e-6 where the balance takes back all but a hundredth of that change. At a position where a contact
-is about to open, the derivative is one-sided, and the differences return a value in between.
+pose: 1e-7 of most derivatives, 1e-6 where the balance takes back all but a hundredth of that change. At a position where a
+contact is about to open, the derivative is one-sided, and the differences return a value in between.
 """
 
 from __future__ import annotations
