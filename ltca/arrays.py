@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 
 Result = TypeVar("Result")
 
+_NAMES: dict[type[Any], tuple[str, ...]] = {}
+"""Fields of the types met so far: `dataclasses.fields` costs as much as a small array."""
+
 
 def map_arrays(function: Callable[..., Any], *trees: Any) -> Any:
     """Return a tree with every array, of one axis at least, replaced by a function of it and of those in its place elsewhere.
@@ -31,19 +34,38 @@ def map_arrays(function: Callable[..., Any], *trees: Any) -> Any:
     >>> map_arrays(np.add, (np.ones(2), "N"), (np.arange(2), "N"))
     (array([1., 2.]), 'N')
     """
+    return _mapped(function, trees, {})
+
+
+def _mapped(function: Callable[..., Any], trees: tuple[Any, ...], known: dict[tuple[int, ...], Any]) -> Any:
+    """A tree mapped; what stands in it twice, as in a reducer of one disc, is mapped once."""
     first = trees[0]
-    if isinstance(first, np.ndarray):
-        return function(*trees) if first.ndim else first
+    kind = type(first)
+    if kind is np.ndarray and not first.ndim:
+        return first
+    names = () if kind is np.ndarray else _field_names(kind)
+    if kind is np.ndarray or names:
+        place = tuple(map(id, trees))
+        if place not in known:
+            if not names:
+                known[place] = function(*trees)
+            else:
+                known[place] = fresh = object.__new__(kind)
+                for name in names:
+                    value = _mapped(function, tuple([getattr(tree, name) for tree in trees]), known)
+                    object.__setattr__(fresh, name, value)
+        return known[place]
     if isinstance(first, tuple):
-        items = [map_arrays(function, *each) for each in zip(*trees, strict=True)]
-        return type(first)(*items) if hasattr(first, "_fields") else tuple(items)
-    if is_dataclass(first) and not isinstance(first, type):
-        fresh = object.__new__(type(first))
-        for item in fields(first):
-            value = map_arrays(function, *(getattr(tree, item.name) for tree in trees))
-            object.__setattr__(fresh, item.name, value)
-        return fresh
+        items = [_mapped(function, each, known) for each in zip(*trees, strict=True)]
+        return kind(*items) if hasattr(first, "_fields") else tuple(items)
     return first
+
+
+def _field_names(kind: type[Any]) -> tuple[str, ...]:
+    """Names of the fields of a dataclass; none of another type."""
+    if kind not in _NAMES:
+        _NAMES[kind] = tuple(item.name for item in fields(kind)) if is_dataclass(kind) else ()
+    return _NAMES[kind]
 
 
 def take_positions(tree: Result, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Result:

@@ -278,6 +278,9 @@ def disc_torques(response: Response) -> FloatArray:
 
 
 def _split_start(start: Start, count: int) -> list[Start]:
+    if count == 1:
+        return [replace(start, warm_start=start.warm_start[:, 0], shifts=None)]
+
     def of_each(values: Any) -> list[Any]:
         return np.split(values, count, axis=1)
 
@@ -293,6 +296,8 @@ def _split_start(start: Start, count: int) -> list[Start]:
 
 def _beside(values: Sequence[Any]) -> Any:
     """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side."""
+    if len(values) == 1:
+        return values[0]
     if not is_dataclass(values[0]):
         return np.concatenate(values, axis=1)
     kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState
