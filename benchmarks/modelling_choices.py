@@ -25,7 +25,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ltca.arrays import FloatArray
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
@@ -40,8 +41,6 @@ from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
-
-FloatArray = NDArray[np.float64]
 
 CORES = (0.3, 1.0, 3.5)
 """Radii of the rigid core of the wheel pins beside the default, mm."""

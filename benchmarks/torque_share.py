@@ -24,9 +24,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import HalfSpace
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.tolerances import Factors, Tolerances
@@ -37,8 +37,6 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
-
-FloatArray = NDArray[np.float64]
 
 SIZES = (1.0, 2.0, 5.0, 10.0)
 """Of errors, µm."""

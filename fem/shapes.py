@@ -11,17 +11,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 DEFAULT_CORE_RADIUS = 2.0
 DEFAULT_RACE_BORE_RADIUS = 10.0

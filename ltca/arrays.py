@@ -13,6 +13,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
 Result = TypeVar("Result")
 
 _NAMES: dict[type[Any], tuple[str, ...]] = {}

@@ -10,17 +10,16 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
 from fem.testing.seated_pin import SleeveOnPin, press_pin_into_bore, squeeze_sleeve
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.series import approach_at_load
 from ltca.output.files import whole_file
-
-FloatArray = NDArray[np.float64]
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 BRONZE = Material(youngs_modulus=110_000.0, poisson_ratio=0.34)

@@ -13,13 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 
 from fem.mesh.body_mesh import BodyMesh, IntArray
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 
 def element_nodes(body: BodyMesh) -> IntArray:

@@ -22,14 +22,12 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem.body.assembly import element_nodes
 from fem.body.elasticity import area_loads, rigid_modes
 from fem.mesh.body_mesh import BodyMesh, IntArray
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 SYMMETRIC = {"SymmetricMode": True, "Equil": False}
 # Any diagonal above the sum of a row keeps the proxy of the node graph positive definite.

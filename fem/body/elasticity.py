@@ -18,9 +18,9 @@ from skfem.models.elasticity import lame_parameters
 
 from fem.body.assembly import elastic_blocks, element_nodes, jacobians, shape_functions, sum_by_nodes
 from fem.mesh.body_mesh import BodyMesh, IntArray
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
 
-FloatArray = NDArray[np.float64]
 PlaneState = Literal["strain", "stress"]
 
 # Stiffness of straight quadratic triangles is a polynomial of degree 2 in the reference coordinates, exact with

@@ -11,12 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.body.surface import GAUSS_POINTS, GAUSS_WEIGHTS, quadratic_shapes, quadratic_slopes
 from fem.mesh.body_mesh import BodyMesh
-
-FloatArray = NDArray[np.float64]
 
 
 def boundary_motion_loads(body: BodyMesh, boundary: str, centre: complex = 0j) -> sp.csc_matrix:

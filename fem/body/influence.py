@@ -23,13 +23,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from numpy.typing import NDArray
 
 from fem.body.condensation import SYMMETRIC, order_nodes, statically_determinate
 from fem.body.elasticity import rigid_modes, unknowns_of_nodes
 from fem.mesh.body_mesh import BodyMesh, IntArray
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 # Columns of Z that are made dense together. With fewer the overhead of each panel counts, with more the zeros: 64 to
 # 128 take the least time on discs of 26 to 90 teeth.

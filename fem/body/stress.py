@@ -11,15 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
 from fem.body.elasticity import PlaneState
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.mesh_file import element_nodes
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
-
-FloatArray = NDArray[np.float64]
 
 SAMPLES = (np.array([[1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0, np.full(3, 1.0 / 6.0))
 

@@ -16,9 +16,7 @@ from fem.body.elasticity import unknowns_of_nodes
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.shapes import Curve
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray
 
 # Products of a quadratic and a linear shape function, a normal that turns by less than 0.1 rad along the edge and
 # a square-root length element: five points integrate them to round-off.

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.stress import Stress
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

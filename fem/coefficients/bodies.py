@@ -14,7 +14,6 @@ from operator import add
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.body.condensation import condense_body
 from fem.body.elasticity import PlaneState, area_loads, assemble_stiffness, rigid_modes, unknowns_of_boundary
@@ -29,13 +28,10 @@ from fem.mesh.element_size import Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, RingShape, Shape
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 from ltca.output.resources import available_memory
 from ltca.reading.coefficient_laws import project_rigid_motions
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-ComplexArray = NDArray[np.complex128]
 
 # Element edge at a patch for its half-width, and growth of the edge by distance, on a mesh of size 1. Measured on
 # the paper's disc: 0.3 % of the largest entry between this size and twice it, 0.05 % between it and half of it.

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.coefficients.bodies import (
@@ -30,6 +29,7 @@ from fem.coefficients.bodies import (
 from fem.coefficients.stations import DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive, Material, Materials
 from ltca.drive.single_discs import nominal_shape
 from ltca.output.provenance import code_hash, code_version
@@ -39,7 +39,6 @@ from ltca.reading.coefficient_schema import elastic_constants
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 
 DATUM = (
     "disc: relative to the best-fit rigid motion of {} (least squares along its length), the resultant of each "

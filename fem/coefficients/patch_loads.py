@@ -16,17 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem.body.surface import quadratic_shapes, quadratic_slopes
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 
 # Between two vertices the integrand is cos²φ times a quadratic in s = b sin φ; where the patch lies within one edge,
 # φ runs over all of π, and ten points leave 1e-13.

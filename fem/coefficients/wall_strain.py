@@ -24,9 +24,8 @@ from fem.body.surface import quadratic_slopes
 from fem.coefficients.patch_loads import BoundaryArc, divide_patches
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
-
-FloatArray = NDArray[np.float64]
 
 
 def wall_modulus(material: Material, state: PlaneState = "strain") -> float:

@@ -16,12 +16,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.surface import GAUSS_POINTS, GAUSS_WEIGHTS, OppositeZone, PressureZone
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray
 
 # Gap of a ray that misses the circle, mm: far beyond any approach.
 NO_PARTNER = 1.0e3

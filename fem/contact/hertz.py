@@ -8,9 +8,9 @@ with P the load by length, 1/R the sum of the curvatures and 1/E* the sum of (1 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 
 def hertz_half_width(load_by_length: ArrayLike, radius: ArrayLike, modulus: ArrayLike) -> FloatArray:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from fem.body.stress import Stress
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
-
-FloatArray = NDArray[np.float64]
 
 # Depths looked at, in half-widths: a Hertz contact has its largest shear at 0.786.
 SHALLOWEST, DEEPEST, DEPTHS = 0.3, 2.0, 171

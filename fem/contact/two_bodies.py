@@ -8,15 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.condensation import CondensedBody
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.contact.unilateral import ContactProblem, ContactSolution, solve_floating_contact
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

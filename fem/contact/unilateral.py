@@ -17,12 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as sla
-from numpy.typing import NDArray
 
+from ltca.arrays import BoolArray, FloatArray
 from ltca.errors import ConvergenceError
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 # A rigid motion whose pivot is this much smaller than the others is not held by the active contacts.
 SINGULAR_MOTION = 1e-12

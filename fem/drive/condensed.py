@@ -16,11 +16,9 @@ from fem.drive.meshes import DriveMeshes, RoundMesh
 from fem.drive.model import ContactPair, DriveModel, PairKind, RoundBody, RoundGroup
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve, DriveShapes
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.placement import Placement
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 # Reach of the pressure zones and of the zones opposite, in expected half-widths. A load guessed too small by a
 # factor of four doubles the half-width and still ends inside.

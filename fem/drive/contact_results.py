@@ -11,8 +11,7 @@ from fem.body.surface import PressureZone
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.drive.model import ContactPair, DriveModel, PairKind
 from fem.drive.pose import PoseSolution, pair_forces
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 # The peak is that of a parabola through the pressures within this part of the half-width about the largest one:
 # single values wiggle by some tenths of a per cent and the largest of them lies beside the peak.

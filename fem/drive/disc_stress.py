@@ -21,9 +21,8 @@ from fem.drive.contact_results import PairResult
 from fem.drive.full_solution import FullSolution
 from fem.drive.grading import FINE_SHARE
 from fem.drive.model import ContactPair
+from ltca.arrays import FloatArray
 from ltca.quantities import QUANTITIES
-
-FloatArray = NDArray[np.float64]
 
 CLEAR_HALF_WIDTHS = 4.0
 

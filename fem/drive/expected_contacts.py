@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.contact.hertz import hertz_half_width
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import (
     hole_modulus,
@@ -26,9 +27,6 @@ from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 # Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
 SMALLEST_LOAD_SHARE = 0.05

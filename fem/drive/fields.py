@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.body.stress import Stress, recover_stress
@@ -15,10 +14,7 @@ from fem.drive.model import DriveModel, PairKind
 from fem.drive.pose import PoseSolution
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.placed_body import PlacedBody
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-
+from ltca.arrays import ComplexArray, FloatArray
 
 _BODY_KINDS = {"pin": "pin", "roller_outer": "roller", "roller_inner": "roller", "hole": "shaft_pin"}
 

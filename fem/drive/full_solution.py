@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.drive.contact_results import ContactResults
 from fem.drive.model import DriveModel, DrivePose, RoundGroup
 from fem.drive.pose import PoseSolution, pair_forces
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

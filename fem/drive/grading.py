@@ -17,13 +17,11 @@ from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_dis
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import hole_modulus, shaft_pins_yield
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 # Contacts under this share of the largest load of their kind get elements as if they carried it (design.md: 5 %).
 FINE_SHARE = 0.05

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.errors import MeshError
@@ -15,9 +14,7 @@ from fem.mesh.element_size import DEFAULT_GROWTH, Refinement
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_disc, mesh_ring
 from fem.shapes import CircleShape, DiscShape, DriveShapes, Shape
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray
 
 ELEMENTS_PER_HALF_WIDTH = 8.0
 # The pressure ends at one half-width; the rest is for contacts that lie a little beside the place expected.

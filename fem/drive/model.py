@@ -21,11 +21,10 @@ from fem.drive.expected_contacts import ExpectedContacts, bore_displacements
 from fem.drive.meshes import DriveMeshes, RoundGrading
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import DriveShapes
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.placement import Placement
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 PairKind = Literal["pin", "roller_outer", "roller_inner", "hole"]
 
 

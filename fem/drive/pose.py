@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 from fem.contact.coupling import PairIntegrals
 from fem.contact.unilateral import ContactSolution, solve_floating_contact
 from fem.drive.model import DriveModel, DrivePose
+from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
-
-FloatArray = NDArray[np.float64]
 
 # design.md asks for 0.5 µm and 0.1 %; one more step of a linearly converging iteration costs a tenth of a second.
 POSE_TOLERANCE = 5.0e-5

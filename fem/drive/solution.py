@@ -14,7 +14,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.drive.condensed import condense_drive, keep_rounds
@@ -28,6 +27,7 @@ from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
 from fem.errors import MeshError
 from fem.mesh.element_size import DEFAULT_GROWTH
 from fem.shapes import DriveShapes
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import (
     require_fixed_pins,
@@ -38,8 +38,6 @@ from ltca.drive.plane_strain import (
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
-
-FloatArray = NDArray[np.float64]
 
 # The coarse stage looks for loads only: 8/3.5 elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.

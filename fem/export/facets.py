@@ -10,17 +10,13 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.mesh.gmsh_session import gmsh_model
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.export.flank_outline import FlankSpline
 from ltca.export.parts import Body, Circle, Part
 from ltca.output.files import whole_file
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-IntArray = NDArray[np.int64]
 
 DEFAULT_CHORD = 1e-3
 """mm."""

@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTri1, MeshTri2
 
 from fem.errors import MeshError
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from ltca.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

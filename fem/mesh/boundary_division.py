@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.mesh.element_size import Refinement, SizeField, cover_small_edges, nearest_distance
 from fem.shapes import Curve
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 # Largest angle α a boundary edge may turn through. Between its nodes, which are exact, a quadratic edge leaves a
 # circle by up to (1 − cos(α/2))²/8 = 9e-6 of the radius; at contacts edges are shorter and the rest is nil.

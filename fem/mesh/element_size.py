@@ -14,13 +14,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem.errors import MeshError
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray
 
 DEFAULT_GROWTH = 0.3
 # Mean area of the triangles that gmsh makes for a wanted edge of 1, measured with the edges of the boundary

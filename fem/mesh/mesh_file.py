@@ -13,17 +13,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, IntArray, triangle_mesh
 from fem.mesh.quality import require_valid_elements
+from ltca.arrays import FloatArray
 from ltca.output.files import whole_file
 
 if TYPE_CHECKING:
     import meshio
 
-FloatArray = NDArray[np.float64]
 
 BODY_TAG = 1
 # meshio reports broken files by whatever its parser stumbles over.

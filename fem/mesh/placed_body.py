@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.mesh.mesh_file import element_nodes
-
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray
 
 POINTS_PER_EDGE = 5
 """Points drawn along a curved edge."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 # Below this angle the interpolation error grows visibly (1/sin); gmsh's frontal meshes stay above 25°.
 SMALLEST_ANGLE = np.radians(15.0)

@@ -12,7 +12,6 @@ from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, IntArray, triangle_mesh
@@ -22,9 +21,7 @@ from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import UNKNOWNS_PER_TRIANGLE, mesh_memory, require_memory
 from fem.mesh.quality import require_quality
 from fem.shapes import CircleShape, DiscShape, RingShape, Shape
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray
 
 FRONTAL_DELAUNAY = 6
 TRIANGLE, LINE, POINT = 2, 1, 15

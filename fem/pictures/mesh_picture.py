@@ -9,7 +9,6 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements
 from fem.drive.meshes import DriveMeshes
@@ -22,6 +21,7 @@ from fem.pictures.flat_view import (
     snapshot,
 )
 from fem.pictures.offscreen import rendering_problem
+from ltca.arrays import ComplexArray
 from ltca.figures.house_style import STYLE
 from ltca.geometry.placement import Placement
 from ltca.output.files import whole_file
@@ -29,8 +29,6 @@ from ltca.output.files import whole_file
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 # Fill and line colour of each kind of body.
 COLOURS = {

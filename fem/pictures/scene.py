@@ -13,15 +13,13 @@ from numpy.typing import NDArray
 
 from fem.pictures.flat_view import coordinate_pairs, flat_lines, flat_surface, may_show, snapshot
 from fem.pictures.offscreen import rendering_problem
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.figures.house_style import COLOUR_MAP, STYLE
 from ltca.output.files import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-IntArray = NDArray[np.int64]
 
 PIXELS_PER_INCH = 200.0
 """Of pictures: words keep their size, so they read larger on a smaller one."""

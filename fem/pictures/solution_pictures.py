@@ -6,15 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.contact.pressure_measures import vertex_means
 from fem.drive.fields import BodyField
 from fem.drive.full_solution import FullSolution
 from fem.pictures.scene import Lines, Panel, Triangles, render
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ltca.arrays import ComplexArray, FloatArray
 
 # Colours over the whole drive run over ratios, from where this share of its area is below up to the largest stress: on an
 # even scale the spots under the contacts would leave the rest of the drive in one colour.

@@ -10,11 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
-
-FloatArray = NDArray[np.float64]
 
 ROUNDS = 12
 ANGLE_TOLERANCE = 1e-9

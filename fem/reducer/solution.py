@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.body.elasticity import PlaneState
 from fem.drive.condensed import keep_rounds
@@ -22,13 +21,12 @@ from fem.drive.model import RoundGroup
 from fem.drive.solution import solve_disc, solve_moment
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
-
-FloatArray = NDArray[np.float64]
 
 POSE_TOLERANCE = 1e-7
 """Largest increment of a pose at rest, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.drive.disc_stress import DiscStress
 from fem.reducer.solution import ReducerSolution
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Check, Value, judge
 from ltca.drive.members.limits import Limit
-
-FloatArray = NDArray[np.float64]
 
 
 def judge_solution(

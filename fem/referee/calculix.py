@@ -17,15 +17,13 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.drive.full_solution import FullSolution
 from fem.referee.calculix_deck import pair_name, slave_faces, write_deck
+from ltca.arrays import FloatArray
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
 from ltca.output.processes import supervised
-
-FloatArray = NDArray[np.float64]
 
 LONGEST_RUN = 3600.0
 CONTACT_STRESS = "contact stress"

@@ -39,7 +39,6 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem.body.elasticity import area_loads, unknowns_of_boundary
@@ -49,12 +48,10 @@ from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair, DriveModel
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from fem.mesh.mesh_file import element_nodes
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 # Penalty stiffness times expected half-width over E. Penetration under the peak pressure is then p b/(100 E), some
 # thousandths of the approach; the wheel of the paper's drive gives way by 0.08″.

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.body.condensation import condense_body
 from fem.body.elasticity import assemble_stiffness, strain_energy, unknowns_of_boundary
@@ -27,8 +26,6 @@ from fem.testing.fixtures import CYLINDER_RADIUS, SLEEVE
 from fem.testing.seated_pin import squeeze_sleeve
 from ltca.drive.parts import Material
 from ltca.output.files import whole_file
-
-FloatArray = NDArray[np.float64]
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 LINE_LOAD = 2000.0

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import Basis, ElementTriP2, ElementVector, MeshTri1
 
 from fem.body.condensation import condense_body
@@ -25,9 +24,8 @@ from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleCurve, CircleShape, RingShape
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
-
-FloatArray = NDArray[np.float64]
 
 DATUM_POINTS = 720
 

@@ -23,12 +23,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analysis_of
 from ltca.analysis.results import case_arrays
 from ltca.analysis.summary import scalar_key, scalars_of_positions
+from ltca.arrays import FloatArray
 from ltca.compliance.response import Start
 from ltca.drive.fields import field_kind, is_element, read_field
 from ltca.drive.members.temperatures import warm_drive
@@ -42,8 +42,6 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.quantities import DIMENSIONS, QUANTITIES
 from ltca.reading.changes import with_fields
-
-FloatArray = NDArray[np.float64]
 
 CHANGE = 1e-3
 """Relative change of the residual by one step: large compared with round-off of the approaches (1e-9 of it), small to the fourth

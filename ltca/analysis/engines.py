@@ -12,10 +12,8 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Protocol, Self, TypeAlias, get_args
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ltca.analysis.half_width_guard import check_half_widths
+from ltca.arrays import FloatArray
 from ltca.compliance.coefficient_files import find_coefficients
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
@@ -38,8 +36,6 @@ from ltca.equilibrium.shared_pins import SharedPins
 from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
-
-FloatArray = NDArray[np.float64]
 
 Method = Literal["tables", "direct", "paper"]
 Contacts = Literal["tables", "grids"]

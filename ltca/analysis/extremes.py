@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from math import ceil, gcd
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.arrays import FloatArray
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -26,8 +26,6 @@ from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.placement import Placement, position_angles
 from ltca.quantities import REFINED
-
-FloatArray = NDArray[np.float64]
 
 TURN = 2.0 * np.pi
 RESOLVED = 8

@@ -15,8 +15,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ContactPressures, Response, split_shifts
@@ -31,8 +31,6 @@ from ltca.geometry.coordinates import X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.separation import circle_departure
 from ltca.laws.backed import own_flexibility, shaft_pin_beam, wheel_pin_beam
-
-FloatArray = NDArray[np.float64]
 
 HALF_WIDTH_BOUND = 0.3
 """Largest contact half-width as a part of the smallest radius in contact: beyond it the bodies are no half-spaces

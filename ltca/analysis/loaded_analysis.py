@@ -17,7 +17,7 @@ from ltca.analysis.half_width_guard import (
     unborne_warning,
     wide_holes_warning,
 )
-from ltca.arrays import freeze, take_positions
+from ltca.arrays import ComplexArray, FloatArray, freeze, take_positions
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ContactPressures
@@ -38,10 +38,6 @@ from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, di
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-
 
 SHARED = 24
 """Positions at which shares of the compliance are looked at: they change slowly over the turn."""

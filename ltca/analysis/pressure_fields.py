@@ -17,19 +17,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
+from ltca.arrays import FloatArray
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.subsurface import find_subsurface_shear
 from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.quantities import QUANTITIES
-
-FloatArray = NDArray[np.float64]
 
 FIELD_CELLS = 16
 """Cells over each half-width and half of each length."""

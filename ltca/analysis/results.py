@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
@@ -29,8 +29,6 @@ from ltca.laws.backed import shaft_pin_seat, wheel_pin_seat
 from ltca.output.provenance import code_hash, code_version
 from ltca.quantities import DIMENSIONS, QUANTITIES, SCHEMA_VERSION
 from ltca.reading.writing import drive_text
-
-FloatArray = NDArray[np.float64]
 
 
 def case_arrays(analysis: LoadedAnalysis) -> dict[str, Any]:

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_extremes, sampling
 from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import case_arrays
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import ConvergenceError
@@ -20,8 +20,6 @@ from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import play_over_a_turn
 from ltca.quantities import REFINED, SCALARS, scalar_named
-
-FloatArray = NDArray[np.float64]
 
 LOADED_FRACTION = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind in the case."""

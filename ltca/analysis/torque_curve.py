@@ -14,18 +14,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.analysis.friction.hysteresis import HysteresisLoop, hysteresis_loop
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.play import free_play
-
-FloatArray = NDArray[np.float64]
 
 SMALLEST = 1e-4
 """Smallest torque as a part of the rated one: elastic wind-up is some 1e-4 of its rated value there."""

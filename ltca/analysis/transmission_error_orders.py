@@ -13,13 +13,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
-
-FloatArray = NDArray[np.float64]
 
 APART = 1e-3
 """Of the largest singular value the least that orders told apart leave."""

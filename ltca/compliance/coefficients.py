@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.compliance.stress_coefficients import NO_STRESSES, StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Clearance, Drive, Material
 from ltca.drive.single_discs import nominal_shape
@@ -35,7 +36,6 @@ from ltca.reading.coefficient_schema import shape_differences, shape_of
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 
 MISPLACED = 1e-3
 """Of a half-width: coefficients change by that part of the near field's unit."""

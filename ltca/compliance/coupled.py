@@ -26,7 +26,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import join_positions, take_positions
+from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_of_law
@@ -51,9 +51,6 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw, approach_at_load
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
 CHUNK = 256

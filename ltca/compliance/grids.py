@@ -15,6 +15,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.pressures import elastic_hole_pressures
 from ltca.compliance.response import ContactPressures, DiscResponse, KindPressures, Start, assemble_response
 from ltca.compliance.rollers import RollerLaws, balance_rollers
@@ -26,9 +27,6 @@ from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.series import SpringLaw
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 PLACES = 4096
 """Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,

@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_law
 from ltca.compliance.response import ContactPressures, DiscResponse, Start, assemble_response, split_shifts
 from ltca.compliance.rollers import RollerLaws, balance_rollers
@@ -20,9 +21,6 @@ from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.series import SpringLaw
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 SAMPLES = 180
 """Places of each lobe at which the range of effective radii is looked for."""

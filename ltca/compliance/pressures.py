@@ -13,8 +13,8 @@ disc, Hertz's as long as its half-width is small against the pin. Who yields the
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.compliance.response import KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind
@@ -23,8 +23,6 @@ from ltca.laws.backed import BackedLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.series import approach_at_load
-
-FloatArray = NDArray[np.float64]
 
 
 def pressures_of_law(

@@ -12,13 +12,11 @@ from typing import Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

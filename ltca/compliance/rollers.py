@@ -13,12 +13,10 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import LoadLaw
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
 SETTLED = 1e-6

@@ -7,12 +7,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Motions: TypeAlias = tuple[FlankMotion, PairMotion, ComplexArray | None]
 """Pairs of wheel pins and of shaft pins, and displacements of the pins that are in them."""
 

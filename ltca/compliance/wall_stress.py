@@ -12,12 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ContactPressures, DiscResponse
 from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 CLEAR_HALF_WIDTHS = 4.0
 """A wall is clear of a contact beyond this many of its half-widths."""

@@ -13,12 +13,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.contact.pressure_cells import PatchSolution
 from ltca.contact.tracked_grid import CELLS, ContactKind, solve_fitted
-
-FloatArray = NDArray[np.float64]
 
 TABLE = Path(__file__).with_name("end_pressure.json")
 _NODES = 19

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import FloatArray
 from ltca.contact.length_profile import CircularCrown, EndRelief, LogarithmicRelief, Relief
 from ltca.drive.parts import LengthProfile
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

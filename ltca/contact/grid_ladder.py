@@ -11,14 +11,11 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import freeze
+from ltca.arrays import BoolArray, freeze
 from ltca.contact.generator import SummedProfile
 from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
 from ltca.contact.unilateral import solve_unilateral_contact
-
-BoolArray = NDArray[np.bool_]
 
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""

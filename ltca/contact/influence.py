@@ -17,9 +17,8 @@ x matter then, and quarter or half domains follow by images.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 # Beyond this ratio of distance along y to the largest distance along x a power series replaces the closed
 # form, whose second difference in x would lose (distance/cell)² digits: 1e-9 at worst on either side.

@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.arrays import FloatArray
 from ltca.contact.influence import assemble_influence_matrix
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 
-FloatArray = NDArray[np.float64]
 Separation = Callable[[FloatArray, FloatArray], FloatArray]
 ReliefFunction = Callable[[FloatArray], FloatArray]
 

@@ -14,11 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import FloatArray
 from ltca.contact.pressure_cells import PatchSolution
-
-FloatArray = NDArray[np.float64]
 
 _DEPTHS = 48
 

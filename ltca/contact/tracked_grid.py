@@ -21,9 +21,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import freeze
+from ltca.arrays import BoolArray, FloatArray, freeze
 from ltca.contact.generator import SummedProfile, generator_profile
 from ltca.contact.grid_ladder import (
     RUNG,
@@ -41,8 +40,6 @@ from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Drive, contact_modulus
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 Departure = Callable[[FloatArray], FloatArray]
 
 CELLS = 12

@@ -12,10 +12,10 @@ from dataclasses import fields
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
+from ltca.arrays import FloatArray
 from ltca.drive.fields import (
     MAY_BE_LEFT_OUT,
     absence,
@@ -30,8 +30,6 @@ from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
 from ltca.errors import DriveError, printable, shortened
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=ConfigDict(extra="forbid"))

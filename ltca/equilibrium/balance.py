@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import take_positions
+from ltca.arrays import FloatArray, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
@@ -22,8 +22,6 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
 
 ITERATIONS = 100
 """Newton iterations after which a start counts as lost; usual are ten, and fifty where contacts take turns."""

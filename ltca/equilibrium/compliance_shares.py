@@ -10,14 +10,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.compliance.response import Start, bearing_pushes
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
-
-FloatArray = NDArray[np.float64]
 
 PARTS = ("pins", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "geometry")
 STEP = 1e-4

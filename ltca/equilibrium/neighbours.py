@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.compliance.response import Start
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
 
 RESOLVED = 4
 """Leading positions in a passage of a tooth, a hole or a roller, whichever are most: a pose between two is near then."""

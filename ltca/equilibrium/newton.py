@@ -12,13 +12,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import join_positions, put_positions, take_positions
+from ltca.arrays import FloatArray, join_positions, put_positions, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
-
-FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9
 """Largest residual accepted, as a part of the load T/(e z_P)."""

@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import put_positions, take_positions
+from ltca.arrays import FloatArray, put_positions, take_positions
 from ltca.compliance.response import Response, Start, bearing_pushes
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
@@ -27,7 +27,6 @@ from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
-FloatArray = NDArray[np.float64]
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 """What balances positions: crank angles, moments on the wheel and poses to start from."""
 Begin = FloatArray | Equilibrium | None

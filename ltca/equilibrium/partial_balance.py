@@ -9,11 +9,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import join_positions, spread_positions, take_positions
+from ltca.arrays import FloatArray, join_positions, spread_positions, take_positions
 from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError
 
-FloatArray = NDArray[np.float64]
 Balance = Callable[[NDArray[np.intp], FloatArray | None], Equilibrium]
 """What balances some positions, from poses near by if given."""
 Value = TypeVar("Value")

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
@@ -30,9 +31,6 @@ from ltca.equilibrium.shared_pins import SharedPins
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 class JointFriction(Protocol):

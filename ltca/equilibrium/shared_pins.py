@@ -18,15 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse, PairSlopes
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, Coordinates
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.laws.beam import PinBeam
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 ITERATIONS = 60
 SETTLED = 5e-14

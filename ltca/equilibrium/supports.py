@@ -10,16 +10,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import shaft_pin_beam
 from ltca.laws.beam import shaft_flexibility
-
-FloatArray = NDArray[np.float64]
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:

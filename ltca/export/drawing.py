@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline
 from ltca.export.parts import Body, Circle, Part
@@ -24,7 +24,6 @@ from ltca.output.files import whole_file
 if TYPE_CHECKING:
     from types import ModuleType
 
-ComplexArray = NDArray[np.complex128]
 
 MISSING = "--format dxf: ezdxf is not installed; pip install 'cyclo-ltca[cad]' brings it"
 RELEASE = "R2010"

@@ -13,11 +13,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 POINTS_PER_LOBE = 48
 """To start with: 0.11 µm off on the paper's drive."""

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
+from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.figures.house_style import COLOURS, CRANK, DASHED, MARK, STYLE, formula, save_figure, shortened_name
-
-FloatArray = NDArray[np.float64]
 
 NAMED = 10
 """Orders listed by name in the figure, the largest."""

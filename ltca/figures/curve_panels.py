@@ -9,11 +9,9 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.figures.house_style import COLOURS, INK, OTHERS, formula, shortened_name
-
-FloatArray = NDArray[np.float64]
 
 DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (8, 3)))
 """Lines of disc after disc."""

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
 from ltca.drive.units.quantities import ARCMIN
 from ltca.drive.units.table import label
-
-FloatArray = NDArray[np.float64]
 
 SMALL = np.radians(2.0)
 """Angles up to this are told in minutes."""

@@ -6,9 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.summary import LOADED_FRACTION
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from ltca.arrays import FloatArray, IntArray
 
 BESIDE_THE_MESH = 0.08
 """Of its length, shown before and after it."""

@@ -10,9 +10,9 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from ltca.analysis.summary import LOADED_FRACTION
+from ltca.arrays import FloatArray
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -20,8 +20,6 @@ from ltca.figures.curve_panels import BESIDE, MOST_CURVES, draw_panels, name_pan
 from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
 from ltca.figures.run_figures import numbered
 from ltca.geometry.flank import FlankProfile
-
-FloatArray = NDArray[np.float64]
 
 SIDES = ("outer", "inner")
 PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Columns = NDArray[np.intp]
 
 X, Y, DISC_ROTATION, WHEEL_ANGLE = 0, 1, 2, -1

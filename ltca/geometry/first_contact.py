@@ -11,11 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
 
 STEEP = 1e-3
 """Lever arm of a pin's contact normal, as a part of e u, above which Newton's method finds where it touches."""

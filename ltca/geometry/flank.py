@@ -21,14 +21,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank_deviation import ProfileDeviation
 from ltca.geometry.placement import BatchScalar
 from ltca.geometry.rotation import integer_power, small_turn, unit
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 SETTLED = 1e-8
 """Step of Newton's method, rad, that leaves a contact point wrong by less than round-off: convergence is quadratic."""

@@ -13,11 +13,9 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import ProfileErrors
 from ltca.geometry.rotation import integer_power
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 MARGIN = 1e-6
 """Gap below which a pin is never left out, mm: far above round-off of places, far below any play."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -27,9 +28,6 @@ from ltca.geometry.pair_motion import (
 )
 from ltca.geometry.placement import Placement
 from ltca.geometry.rotation import unit
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 FARTHEST = 0.1
 """Most that a contact is moved along the flank by its slope, rad times the tooth number."""

@@ -15,13 +15,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import PlacementErrors
 from ltca.drive.parts import Drive
 from ltca.geometry.rotation import unit
 from ltca.quantities import QUANTITIES
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 BatchScalar: TypeAlias = float | FloatArray
 """What is one number for one drive, and an array of shape (positions, 1) for a batch of drives."""
 

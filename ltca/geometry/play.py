@@ -23,13 +23,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import take_positions
+from ltca.arrays import FloatArray, take_positions
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
 
-FloatArray = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 CLOSED = 1e-9

@@ -8,12 +8,10 @@ higher orders are what ``direct`` adds.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank import FlankProfile
-
-FloatArray = NDArray[np.float64]
 
 
 def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:

@@ -16,14 +16,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.errors import ConvergenceError
 from ltca.laws.beam import End, PinBeam
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.series import SpringLaw
-
-FloatArray = NDArray[np.float64]
 
 SLOT_DATUM = 3.0
 """Radius, in radii of the slot, of the circle in the wheel against which a slot's yielding is measured."""

@@ -19,9 +19,9 @@ from math import pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
+
 End = Literal["free", "supported", "clamped"]
 
 

@@ -28,14 +28,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import FloatArray
 from ltca.drive.materials import Material, contact_modulus
 from ltca.errors import DriveError
 from ltca.laws.seats.series import ConformingSeries, conforming_series
 from ltca.laws.seats.sleeve_wall import sleeve_wall
-
-FloatArray = NDArray[np.float64]
 
 SMALLEST_BREATHING = 0.02
 """Smallest c₀ that is told apart: a pin of ν = 0.495 in a rigid bore; a softer one would touch its bore all round."""

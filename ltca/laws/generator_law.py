@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.contact.generator import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-
-FloatArray = NDArray[np.float64]
 
 
 def law_for_profile(

@@ -20,9 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.arrays import FloatArray
 from ltca.laws.slenderness_curve import SlendernessCurve
-
-FloatArray = NDArray[np.float64]
 
 LONGEST = 1.0e5
 SHORTEST = 0.15

@@ -16,11 +16,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
-
-FloatArray = NDArray[np.float64]
 
 SELF_ENERGY = 0.25
 """−⟨ln|x − x′|⟩ over a semi-elliptic pressure of half-width b is −ln(b/2) + 1/4."""

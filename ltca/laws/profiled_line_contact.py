@@ -17,12 +17,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ltca.arrays import FloatArray
 from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
 from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
-
-FloatArray = NDArray[np.float64]
 
 LIGHTEST = 2.0e4
 HEAVIEST = 2.0

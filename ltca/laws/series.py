@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 from ltca.laws.contact_law import LoadLaw
 from ltca.laws.plane_strain import PlaneContactLaw
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

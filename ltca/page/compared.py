@@ -11,15 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import DamagedFileError, DriveError, one_line, printable, shortened
 from ltca.output.netcdf import DAMAGE, read_netcdf
 from ltca.output.regular_files import read_regular
 from ltca.reading.toml_text import read_text
-
-FloatArray = NDArray[np.float64]
 
 ANGLES = {"crank_angle_deg": pi / 180.0, "crank_angle_rad": 1.0}
 ERRORS = {

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 LEVEL = 6
 """Of gzip: 9 takes twice the time for a hundredth less."""

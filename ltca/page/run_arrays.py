@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import FloatArray
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import KindPressures
 from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.balance import Equilibrium
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
-
-FloatArray = NDArray[np.float64]
 
 MOST_VALUES = 1_500_000
 """Numbers on a page, some two megabytes: of runs with more, every second position is shown, or every third."""

@@ -9,17 +9,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import CycloError
 from ltca.page.study_page import Section
 from ltca.page.tables import Cell, Table, minus, number, word
-
-FloatArray = NDArray[np.float64]
 
 
 def wind_up(analyses: Mapping[str, LoadedAnalysis], summaries: Mapping[str, Mapping[str, float | None]]) -> Section:

@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 POINTS_PER_LOBE = 36
 DIGITS = 4

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.output.provenance import code_hash, code_version
 from ltca.page.packing import pack
 from ltca.page.tables import Table, texts
 from ltca.page.writing import page_text, script_data, write_page
-
-FloatArray = NDArray[np.float64]
 
 PAGE = "report.html"
 

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.reading.coefficient_schema import shape_of
 from ltca.reading.held_ring import held_ring_approach, missed_between_stations, wall_bending
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 RECIPROCITY = "reciprocity of displacements solved for"
 RIGID_MOTIONS = "rigid motions and change of datum"

@@ -10,17 +10,14 @@ from itertools import pairwise
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import BoreErrors
 from ltca.drive.fields import ANY, OWN
 from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import Drive, PlacementErrors, RollerErrors
 from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.rotation import unit
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 POINTS_PER_WAVE = 24
 """Points on which the flank is looked at, for each wave of the highest order."""

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
+
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 # Harmonics times half-width over radius: what is left out falls with the cube, to 1e-6 of the patch's own.
 RESOLUTION = 60.0

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
-from ltca.arrays import take_positions
+from ltca.arrays import FloatArray, take_positions
 from ltca.compliance.half_space import batch_signature
 from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
@@ -26,8 +25,6 @@ from ltca.geometry.first_contact import backlash
 from ltca.geometry.play import free_play
 from ltca.studies.quantities import STAGES, SampleBatch, evaluate
 from ltca.studies.shapes import with_kept_coefficients
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,11 +12,9 @@ from math import prod
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.tolerances import Factors
-
-FloatArray = NDArray[np.float64]
 
 
 class Design(Protocol):

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
+from ltca.arrays import FloatArray
 from ltca.drive.fields import ANY, field_kind, field_kinds, not_a_field, read_field
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import label, parse_quantity
@@ -27,7 +28,6 @@ from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.quantities import check_quantities, quantities_for
 from ltca.studies.shapes import shapes_of
 
-FloatArray = NDArray[np.float64]
 Analysis = Callable[[Sequence[Drive]], FloatArray]
 """Quantities of drives, shape (drives, quantities), not a number where one fails."""
 

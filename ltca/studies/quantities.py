@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.summary import LOADED_FRACTION
+from ltca.arrays import FloatArray
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
@@ -18,8 +18,6 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer, bearing_forces
 from ltca.errors import DriveError, did_you_mean, shortened, told_twice
 from ltca.geometry.coordinates import WHEEL_ANGLE
-
-FloatArray = NDArray[np.float64]
 
 Stage = Literal["full", "light", "backlash", "play"]
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace
+from ltca.arrays import FloatArray
 from ltca.drive.fields import whose, with_whose
 from ltca.drive.parts import Drive
 from ltca.errors import CycloError
@@ -21,8 +21,6 @@ from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
 from ltca.studies.designs import Design, ToleranceDesign
 from ltca.studies.shapes import coefficients_identity, shapes_of
-
-FloatArray = NDArray[np.float64]
 
 BATCH_POSITIONS = 2048
 """Positions solved together: arrays of a batch stay in the cache, and a fifth of a second of work hides what a task

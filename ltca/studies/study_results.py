@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.execution.storage import CHUNK, opened_results
 from ltca.studies.sensitivity import Regression, SobolIndices, grouped, regress, sobol_indices
 from ltca.studies.study import Study
-
-FloatArray = NDArray[np.float64]
 
 PERCENTILES = (0.1, 1.0, 5.0, 50.0, 95.0, 99.0, 99.9)
 

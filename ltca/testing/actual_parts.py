@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, ProfileErrors
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 SAMPLES = 48
 """Points of the flank for each wave of its highest order: a search is safe from the nearest of them."""

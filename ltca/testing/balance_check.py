@@ -18,9 +18,8 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import take_positions
+from ltca.arrays import ComplexArray, FloatArray, take_positions
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium
@@ -39,12 +38,9 @@ from ltca.testing.yielding_pins import (
     ring_tips,
 )
 
-FloatArray = NDArray[np.float64]
-
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 SECTIONS = 9
 """Golden sections of the approach of a roller between race and bore: to a hundredth of it, parabolas do the rest."""
-ComplexArray = NDArray[np.complex128]
 
 FARTHEST = 0.01
 """Largest displacement tried, as a part of the pin radius."""

@@ -11,8 +11,8 @@ import json
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.contact.hertz import cylinder_approach, half_plane_approach
 from ltca.drive.parts import Drive, Material
 from ltca.drive.single_discs import nominal_shape
@@ -23,8 +23,6 @@ from ltca.reading.coefficient_schema import elastic_constants
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 PER_LOBE, BORE, PER_HOLE, RACE_ANGLES = 8, 12, 8, 24
 CROSS_SHARE = 0.1

@@ -16,9 +16,8 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 POISSON_RATIO = 0.3
 POINTS_PER_CELL = 8

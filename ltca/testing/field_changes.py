@@ -11,15 +11,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.fields import ANY, element_count, field_kind, field_kinds, missing_part, read_field
 from ltca.drive.materials import JUDGED_BY, PARTS
 from ltca.drive.parts import Drive
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
-
-FloatArray = NDArray[np.float64]
 
 # Fields whose change must be a small one, or the drive stops being a drive: mm, as a part of the value.
 _CLOSE = {

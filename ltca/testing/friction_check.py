@@ -17,15 +17,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, Friction, PinShaft, PinWheel
 from ltca.geometry.coordinates import X, Y
 from ltca.testing.actual_parts import ActualParts, DeviatedFlank
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 FADES = 1e-4
 """Slip by the crank angle, in eccentricities, below which a contact is next to the pitch point: any friction may be there."""

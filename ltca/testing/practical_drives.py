@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import HalfSpace
+from ltca.arrays import FloatArray
 from ltca.drive.deviations import OneDisc, OneEccentric, Runout
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Clearance, Drive, Installation
@@ -247,8 +247,6 @@ def _load(random: Generator, table: dict[str, Any]) -> None:
         ("wheel_pin", "roller", "inner_race", "shaft_pin"), steel
     )
 
-
-FloatArray = NDArray[np.float64]
 
 PARTS = (1e-6, 1e-5, 1e-4)
 """Parts of the torque, the next where one is too little to be balanced."""

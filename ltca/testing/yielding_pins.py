@@ -13,16 +13,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, WheelPinBeam
 from ltca.drive.parts import Drive
 from ltca.laws.backed import MOST, BackedLaw, SeatLaw
 from ltca.testing.actual_parts import ActualParts
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 LOADS = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 300), np.linspace(1.02, 8.0, 60)])
 """Loads at which the energy of a seat is known, in its largest load."""

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.drive.parts import Drive
 from ltca.geometry.boundary_stations import Boundary
@@ -16,8 +16,6 @@ from validation.compare.comparison import Kind, PositionAnswer, PositionDifferen
 from validation.compare.disc_stresses import DiscStressAnswer, DiscStressDifference, compare_stresses, stresses_of
 from validation.compare.finite_element_positions import FullPosition
 from validation.compare.model_positions import MODELS, DiscCoefficients, answers_of, engine_of
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

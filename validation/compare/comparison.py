@@ -18,7 +18,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 Kind = Literal["pin", "roller_outer", "roller_inner", "hole"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 
 from fem.drive.disc_stress import DiscStress
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.wall_stress import wall_profiles, wall_stresses
 from ltca.contact.subsurface import line_contact_shear
 from validation.compare.comparison import Kind, worst
 from validation.compare.model_positions import answers_of
-
-FloatArray = NDArray[np.float64]
 
 Region = Literal["flank", "bore", "holes"]
 REGIONS: tuple[Region, ...] = get_args(Region)

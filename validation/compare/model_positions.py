@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import Compliance, Engine, HalfSpace, engine_named
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
-
-FloatArray = NDArray[np.float64]
 
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
 

@@ -16,6 +16,7 @@ from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleShape, RingShape
 from ltca.analysis.loaded_analysis import analyse
+from ltca.arrays import FloatArray
 from ltca.contact.hertz import (
     effective_radius,
     line_contact_stress,
@@ -31,8 +32,6 @@ from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement, position_angles
 from ltca.laws.line_contact import LineContactLaw
 from validation.rows import Row, relative_row
-
-FloatArray = NDArray[np.float64]
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
 MODULUS = contact_modulus(STEEL, STEEL)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.drive.parts import Drive
@@ -16,8 +15,6 @@ from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
 from validation.compare.model_positions import MODELS, DiscCoefficients, engine_of
 from validation.rows import Row, relative_row, rounded
-
-FloatArray = NDArray[np.float64]
 
 TURN_POSITIONS = 72
 TORQUES = (0.25, 0.5, 1.0, 1.5)

@@ -6,10 +6,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
+from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import NearField
@@ -18,8 +18,6 @@ from ltca.laws.series import approach_at_load
 from validation.compare.comparison import ARCSECONDS, compare_positions
 from validation.compare.model_positions import answers_of
 from validation.rows import Row, positive_row
-
-FloatArray = NDArray[np.float64]
 
 WIDTHS = (1.0, 4.0, 16.0)
 

@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.drive.full_solution import FullSolution
 from fem.drive.solution import solve_drive
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
+from ltca.arrays import FloatArray
 from ltca.contact.length_profile import LogarithmicRelief
 from ltca.drive.materials import elastic_alone
 from ltca.drive.parts import Drive, Material, contact_modulus
@@ -31,7 +31,6 @@ from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
 from ltca.laws.series import approach_at_load
 from ltca.reading.drive_file import load_drive
 
-FloatArray = NDArray[np.float64]
 Answer = dict[str, Any]
 
 CASE, CRANK_ANGLE = "CS-1", 0.5

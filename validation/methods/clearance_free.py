@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
+from ltca.arrays import FloatArray
 from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
 from ltca.drive.parts import Drive, contact_modulus
@@ -35,8 +36,6 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import carrying_holes, carrying_rollers, first_contact
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
 
 WHEEL = 3
 """Place of the wheel angle in the unknowns: behind the disc, before the rollers."""

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import take_positions
+from ltca.arrays import FloatArray, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
 from ltca.drive.plane_strain import require_one_bore, require_rigid_members
@@ -26,8 +26,6 @@ from ltca.equilibrium.output_torque import balance_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
-
-FloatArray = NDArray[np.float64]
 
 ITERATIONS = 60
 START = 0.95

@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.pairs import ContactGeometry
 from ltca.page.scene import circles, point
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import ARCSECONDS, Kind, PositionAnswer
 from validation.rows import rounded
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 Line: TypeAlias = tuple[str, int, float | None]
 """Title, digits behind the point and value of one line of a table."""

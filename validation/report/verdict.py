@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Check, Value, judge
 from ltca.drive.members.verdict_words import WORDS, check_content
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import Kind, PositionAnswer
 from validation.compare.model_positions import MODELS
 from validation.study import Study
-
-FloatArray = NDArray[np.float64]
 
 FULL = "full FE"
 QUANTITIES: tuple[tuple[str, str, tuple[Kind, ...]], ...] = (

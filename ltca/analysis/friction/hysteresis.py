@@ -10,17 +10,16 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ltca.analysis.engines import Engine, HalfSpace
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.sticking import StickingFriction
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
-
-FloatArray = NDArray[np.float64]
 
 SMALLEST = 1e-4
 """Smallest torque as a part of the largest: zero itself would leave the discs floating."""

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.balance import Equilibrium
@@ -19,8 +19,6 @@ from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction, rubbing, seat_travel
 from ltca.equilibrium.output_torque import crank_moments
 from ltca.equilibrium.reducer import Reducer
-
-FloatArray = NDArray[np.float64]
 
 KINDS = ("pin", "seat", "hole", "roller", "support_bearing", "no_load")
 """Where power goes, named like the fields of ``[friction]``."""

@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.friction.losses import KINDS, JointSlip, Losses
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 
 def friction_values(analysis: LoadedAnalysis, pressures: Mapping[str, FloatArray]) -> dict[str, Any]:

@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.life.equivalent_load import covers_whole_turns, race_load
 from ltca.analysis.life.modification import life_modification_factor, reference_viscosity
 from ltca.analysis.life.passages import RollerPassages, roller_passages
 from ltca.analysis.life.ratings import RaceRatings, RollerBearing, not_rated
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -24,11 +24,9 @@ turn of 11 rollers leaves up to 0.7 %, harmonics of their number that have not g
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.life.laminae import Laminae
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray
 
 HARMONICS = 24
 """Highest harmonic around a race: zones of load are wider than the distance of two rollers."""

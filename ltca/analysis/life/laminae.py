@@ -22,13 +22,11 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from ltca.arrays import FloatArray
 from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, expected_half_width, solve_patch
-
-FloatArray = NDArray[np.float64]
 
 LAMINAE = 31
 """n_s, odd: one in the middle and pairs beside it."""

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.life.laminae import EvenLaminae, Laminae, SolvedLaminae
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import FloatArray
 from ltca.contact.generator import generator_profile
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.geometry.coordinates import DISC_ROTATION
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

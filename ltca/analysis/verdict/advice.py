@@ -13,20 +13,16 @@ from dataclasses import dataclass
 from math import ceil, exp, floor, isfinite, log
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
 from ltca.analysis.verdict.values import find_values
+from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kinds, read_field
 from ltca.drive.members.judgement import Check, Value, judged_by
 from ltca.drive.parts import Drive
 from ltca.drive.units.table import label
 from ltca.errors import CycloError
 from ltca.reading.changes import with_fields
-
-FloatArray = NDArray[np.float64]
 
 STEP = 0.01
 """Change of an input, as a part of it; half of it where the whole makes no drive."""

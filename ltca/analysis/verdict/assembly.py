@@ -6,17 +6,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.verdict.places import largest_value
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value
 from ltca.drive.members.operation import Temperature
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.geometry.interference import drawn_plays
-
-FloatArray = NDArray[np.float64]
 
 
 def assembly_values(analysis: LoadedAnalysis) -> Iterator[Value]:

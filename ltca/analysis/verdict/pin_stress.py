@@ -19,14 +19,11 @@ from math import pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_PLACE, WHEEL_ANGLE
 from ltca.laws.backed import from_start, shaft_pin_beam, wheel_pin_beam
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 PLACES = 201
 """Places along a pin at which moments are looked at, besides its ends and the edges of the discs."""

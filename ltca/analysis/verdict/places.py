@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value
-
-FloatArray = NDArray[np.float64]
 
 
 def most_of(values: Iterable[Value]) -> Value:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.extremes import RESOLVED
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
@@ -26,8 +25,6 @@ from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.geometry.play import preload_words
 from ltca.quantities import LIMITED
-
-FloatArray = NDArray[np.float64]
 
 DEMANDED = {
     limit.quantity: limit

@@ -21,16 +21,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import take_positions
+from ltca.arrays import ComplexArray, FloatArray, take_positions
 from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 def stick_or_slip(

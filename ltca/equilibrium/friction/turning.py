@@ -16,14 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 ROLLING = 1e-4
 """Slip by the crank angle, as a part of the eccentricity, below which friction fades out: about the pitch point the sense of

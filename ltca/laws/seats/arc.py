@@ -21,11 +21,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ltca.arrays import FloatArray
 from ltca.laws.seats.sleeve_wall import sleeve_wall
-
-FloatArray = NDArray[np.float64]
 
 FUNCTIONS = 20
 """Pressure functions of even order for one arc: their error is below 1e-6 where ν differs by 0.3, else below 1e-9."""

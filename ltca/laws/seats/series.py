@@ -12,12 +12,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
-from ltca.arrays import freeze
+from ltca.arrays import FloatArray, freeze
 from ltca.laws.seats.arc import solve_arc
-
-FloatArray = NDArray[np.float64]
 
 DEGREE = 20
 """Of the Chebyshev series over b and over z."""

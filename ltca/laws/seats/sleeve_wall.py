@@ -13,11 +13,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import freeze
-
-FloatArray = NDArray[np.float64]
+from ltca.arrays import FloatArray, freeze
 
 LEAST = 1e-12
 """(a/R)ⁿ that is nothing."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.pressure_safety import PressureSafety
 from ltca.analysis.torque_curve import TorqueCurve
 from ltca.analysis.transmission_error_orders import Spectrum
+from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.page.study_page import Curves, Section
 from ltca.page.tables import Table, minus, number, texts, word
-
-FloatArray = NDArray[np.float64]
 
 TOLD_ORDERS = 15
 

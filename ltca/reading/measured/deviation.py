@@ -12,14 +12,13 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.deviations import ProfileErrors
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.deviation_checks import deviation_bound
 from ltca.reading.measured.points import MeasuredPoints
-
-FloatArray = NDArray[np.float64]
 
 LEAST_PER_LOBE = 4
 """Points: fewer do not tell a lobe from a circle."""

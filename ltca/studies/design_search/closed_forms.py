@@ -12,16 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.analysis.life.ratings import BEARING_STEEL, STATIC
 from ltca.analysis.torque_curve import LOST_MOTION
+from ltca.arrays import FloatArray
 from ltca.drive.parts import contact_modulus
 from ltca.drive.units.quantities import ARCMIN
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, stack_length
-
-FloatArray = NDArray[np.float64]
 
 PLACES = 4
 """Places of the pins in a pitch at which loads are looked at."""

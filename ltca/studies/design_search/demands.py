@@ -12,11 +12,11 @@ from math import log
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
 from ltca.analysis.life.ratings import not_rated
 from ltca.analysis.verdict.values import DEMANDED
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value, judge
 from ltca.drive.members.limits import Limit, Limits
 from ltca.drive.parts import Drive
@@ -26,7 +26,6 @@ from ltca.quantities import LIMITED, SCALARS, Scalar
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, drive_table
 
-FloatArray = NDArray[np.float64]
 Kind = Literal["requirement", "limit", "material", "shape"]
 
 ROLLERS = "ISO 76:2006, roller bearings at their static load rating"

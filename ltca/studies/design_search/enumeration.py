@@ -10,6 +10,7 @@ from math import pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.studies.design_search.closed_forms import (
     Setting,
     flank_shape,
@@ -20,8 +21,6 @@ from ltca.studies.design_search.closed_forms import (
 from ltca.studies.design_search.demands import Demand, margins
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import Sizes, joined
-
-FloatArray = NDArray[np.float64]
 
 CIRCLES = 1.0 / np.geomspace(1.0, 2.2, 7)
 """Radii of the pin circle that are tried, as parts of the largest; refinement goes between them."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.analysis.verdict.values import LIVES
+from ltca.arrays import FloatArray
 from ltca.drive.members.limits import Limits
 from ltca.errors import CycloError
 from ltca.studies.design_search.closed_forms import Setting, closed_forms
@@ -23,8 +24,6 @@ from ltca.studies.design_search.enumeration import size_of
 from ltca.studies.design_search.requirements import Requirements
 from ltca.studies.design_search.sizes import CONTINUOUS, Sizes, drive_of
 from ltca.studies.design_search.solution import Solution, solve_coarsely, solve_finely
-
-FloatArray = NDArray[np.float64]
 
 ROUNDS = 6
 """Solutions of a candidate over few positions."""

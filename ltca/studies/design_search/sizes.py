@@ -6,14 +6,12 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.materials import Material
 from ltca.drive.parts import Drive
 from ltca.reading.drive_file import build_drive
 from ltca.studies.design_search.requirements import Requirements
-
-FloatArray = NDArray[np.float64]
 
 LIGHT = 0.03
 """Light torque as a part of the whole."""

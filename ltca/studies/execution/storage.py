@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind, with_whose
 from ltca.errors import CycloError, DamagedFileError, one_line
 from ltca.output.files import whole_file, write_json
@@ -27,8 +27,6 @@ from ltca.reading.writing import drive_text
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.batch_files import DAMAGE, batch_files, read_batch, write_batch
 from ltca.studies.study import BatchResult, Study
-
-FloatArray = NDArray[np.float64]
 
 WHAT_DIFFERS = "drive, tolerances, samples, positions, seed, quantities, compliance, coefficients or the code differ"
 LARGEST_PLAN = 1_000_000
