@@ -1,13 +1,16 @@
-"""Trees of arrays: dataclasses and tuples of arrays whose axis 0 is the position, of which positions are taken, put and joined.
+"""Trees of arrays: nested dataclasses and tuples that are mapped, stacked and frozen as a whole.
 
-And results that stay as they were returned: a copy of a tree whose arrays are read-only.
+Results have the position on axis 0 of every array: positions are taken, put, joined and spread. Models of a drive say which
+of their fields may differ from drive to drive (`by_drive`); models that agree in everything else are stacked to that of a
+batch, in which what differs gets the positions as its first axis and what is equal stays as it is. Frozen results are copies
+whose arrays are read-only.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import field, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -111,6 +114,132 @@ def spread_positions(tree: Result, rows: NDArray[np.intp], positions: int) -> Re
 
     found: Result = map_arrays(spread, tree)
     return found
+
+
+def by_drive(axes: int, **options: Any) -> Any:
+    """Return a dataclass field for numbers that may differ between the drives of a batch.
+
+    Parameters
+    ----------
+    axes : int
+        Number of axes for one drive. In a batch an array has the positions as one more in front, and a single number becomes
+        a column, shape (positions, 1).
+    options
+        Of `dataclasses.field`.
+    """
+    return field(metadata={"axes": axes}, **options)
+
+
+_AXES: dict[type[Any], tuple[tuple[str, int | None], ...]] = {}
+"""Names of the fields of the dataclasses met so far, with the axes given to `by_drive`."""
+
+
+def _declared(kind: type[Any]) -> tuple[tuple[str, int | None], ...]:
+    """Names of the fields of a dataclass with their axes for one drive, None for those that are equal in a batch."""
+    if kind not in _AXES:
+        known = fields(kind) if is_dataclass(kind) else ()
+        _AXES[kind] = tuple((item.name, item.metadata.get("axes")) for item in known if item.init)
+    return _AXES[kind]
+
+
+def has_rows(model: Any, axes: int | None = None) -> bool:
+    """Tell whether something in a model differs from position to position; `axes` are those of the field it stands in."""
+    kind = type(model)
+    if axes is not None:
+        return kind is np.ndarray and model.ndim > axes
+    if kind is tuple:
+        return any(has_rows(item) for item in model)
+    return any(has_rows(getattr(model, name), own) for name, own in _declared(kind))
+
+
+def take_rows(model: Result, rows: NDArray[np.intp] | NDArray[np.bool_], axes: int | None = None) -> Result:
+    """Return the model of some positions of a batch; the model itself where all its positions are of one drive."""
+    value: Any = model
+    if axes is not None:
+        found: Result = value[rows] if has_rows(value, axes) else value
+        return found
+    if type(value) is tuple:
+        items = tuple(take_rows(item, rows) for item in value)
+        return model if all(new is old for new, old in zip(items, value, strict=True)) else items  # type: ignore[return-value]
+    changed = {}
+    for name, own in _declared(type(value)):
+        old = getattr(value, name)
+        if (new := take_rows(old, rows, own)) is not old:
+            changed[name] = new
+    return replace(value, **changed) if changed else model
+
+
+def batch_layout(model: Any, known: dict[int, Hashable] | None = None) -> Hashable:
+    """Return what models must agree in to be stacked: shapes of what may differ, and the values of everything else.
+
+    Parameters
+    ----------
+    model : dataclass instance
+        Of one drive.
+    known : dict, optional
+        Layouts of parts met before, by identity, for models that share parts; they must outlive it.
+    """
+    return _layout(model, None, {} if known is None else known)
+
+
+def _layout(value: Any, axes: int | None, known: dict[int, Hashable]) -> Hashable:
+    if axes is not None:
+        return np.shape(value)
+    kind = type(value)
+    if kind is tuple:
+        return tuple(_layout(item, None, known) for item in value)
+    if kind is np.ndarray:
+        return value.shape, value.tobytes()
+    if not (names := _declared(kind)):
+        return value if isinstance(value, Hashable) else id(value)
+    if id(value) not in known:
+        known[id(value)] = (kind, *(_layout(getattr(value, name), own, known) for name, own in names))
+    return known[id(value)]
+
+
+def stack_drives(models: Sequence[Result], positions: int) -> Result:
+    """Return the model of several drives as a batch.
+
+    Parameters
+    ----------
+    models : sequence of dataclass instances
+        Of one `batch_layout`, one for each drive.
+    positions : int
+        Of each drive: drive s takes the rows s·positions … (s + 1)·positions − 1.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Pins:
+    ...     radii: FloatArray = by_drive(1)
+    ...     circle: float = by_drive(0)
+    >>> models = [Pins(np.array([5.0, 5.0]), 88.0), Pins(np.array([5.0, 5.1]), 88.0)]
+    >>> stack_drives(models, 1)
+    Pins(radii=array([[5. , 5. ],
+           [5. , 5.1]]), circle=88.0)
+    """
+    found: Result = _stacked(tuple(models), None, positions)
+    return found
+
+
+def _stacked(values: tuple[Any, ...], axes: int | None, positions: int) -> Any:
+    first = values[0]
+    if axes is not None:
+        rows = np.array(values)
+        if (rows == rows[:1]).all():
+            return first
+        return np.repeat(rows if rows.ndim > 1 else rows[:, None], positions, axis=0)
+    if all(value is first for value in values):
+        return first
+    if type(first) is tuple:
+        return tuple(_stacked(items, None, positions) for items in zip(*values, strict=True))
+    changed = {}
+    for name, own in _declared(type(first)):
+        old = tuple([getattr(value, name) for value in values])
+        if (new := _stacked(old, own, positions)) is not old[0]:
+            changed[name] = new
+    return replace(first, **changed) if changed else first
 
 
 def freeze(result: Result) -> Result:

@@ -33,7 +33,7 @@ from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.shared_pins import SharedPins
-from ltca.equilibrium.supports import support_stiffness, support_stiffnesses
+from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
 
@@ -75,7 +75,7 @@ class Engine(Protocol):
 
     @property
     def batches(self) -> bool:
-        """Whether `build` takes several drives."""
+        """Whether its models can be stacked to that of several drives."""
         ...
 
     def with_coefficients(self, drive: Drive) -> Engine:
@@ -86,8 +86,8 @@ class Engine(Protocol):
         """Return the engine built for a drive."""
         ...
 
-    def build(self, drives: Sequence[Drive], positions: int) -> Reducer:
-        """Return the compliance of drives at a number of positions each; of one drive where `batches` is False."""
+    def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
+        """Return the compliance of a drive, for a batch of drives if so (`ltca.arrays.stack_drives`)."""
         ...
 
 
@@ -117,10 +117,10 @@ class _FromTables:
         return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
 
 
-def _on_tables(drive: Drive) -> Reducer:
+def _on_tables(drive: Drive, *, in_batch: bool = False) -> Reducer:
     """Return the model of a warm drive on tabulated laws."""
     return Reducer(
-        discs=tuple(HalfSpaceCompliance.of_drive(single) for single in single_discs(drive)),
+        discs=tuple(HalfSpaceCompliance.of_drive(single, in_batch=in_batch) for single in single_discs(drive)),
         supports=support_stiffness(drive),
         pins=SharedPins.of_drive(drive),
         friction=TurningFriction.of_drive(drive),
@@ -202,13 +202,9 @@ class HalfSpace:
             return _FromTables(drive=drive, tables=tables, model=model)
         return _OnTables(drive=drive, model=tables)
 
-    def build(self, drives: Sequence[Drive], positions: int) -> Reducer:
-        """Return the tables of several drives, each at the same number of positions."""
-        drives = [warm_drive(drive) for drive in drives]
-        discs = zip(*(single_discs(drive) for drive in drives), strict=True)
-        supports, pins = support_stiffnesses(drives, positions), SharedPins.of_drives(drives, positions)
-        parts = tuple(HalfSpaceCompliance.of_drives(each, positions) for each in discs)
-        return Reducer(discs=parts, supports=supports, pins=pins, friction=TurningFriction.of_drives(drives))
+    def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
+        """Return the tables of a drive."""
+        return _on_tables(warm_drive(drive), in_batch=in_batch)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -277,7 +273,7 @@ class _Coupled:
         found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
-    def model(self, drive: Drive) -> Reducer:
+    def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the coupled compliance of a drive.
 
         Raises
@@ -303,18 +299,6 @@ class _Coupled:
         """Return the engine built for a drive; finds or derives its coefficients."""
         drive = warm_drive(drive)
         return _FromTables(drive=drive, tables=_on_tables(drive), model=self.model(drive))
-
-    def build(self, drives: Sequence[Drive], positions: int) -> Reducer:
-        """Return the compliance of one drive.
-
-        Raises
-        ------
-        ValueError
-            For several drives: their coefficients do not mix.
-        """
-        if len(drives) != 1:
-            raise ValueError("coefficients of several drives do not mix in one batch")
-        return self.model(drives[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,7 +21,6 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,10 +152,6 @@ class CoupledCompliance:
             hole_radius=place.hole_effective_radii,
             own=own,
         )
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Self:
-        """Return the model of some positions: itself, all are of one drive."""
-        return self
 
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None

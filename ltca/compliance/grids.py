@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -117,10 +117,6 @@ class GridCompliance:
             outer_radius=place.outer_effective_radii,
             hole_law=SpringLaw(stiffness=drive.hole_stiffness),
         )
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Self:
-        """Return the model of some positions: itself, all are of one drive."""
-        return self
 
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None

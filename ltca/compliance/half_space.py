@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_of_law
@@ -17,7 +14,7 @@ from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, back_wheel_pins, law_at, shaft_pin_stiffness, tip_share
+from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw, EnergyLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.series import SpringLaw
@@ -54,47 +51,27 @@ class HalfSpaceCompliance:
     kinds: ContactKinds
 
     @classmethod
-    def of_drive(cls, drive: Drive) -> HalfSpaceCompliance:
-        """Return the half-space model of a drive."""
+    def of_drive(cls, drive: Drive, *, in_batch: bool = False) -> HalfSpaceCompliance:
+        """Return the half-space model of a drive.
+
+        Parameters
+        ----------
+        drive : Drive
+            The drive, of one disc.
+        in_batch : bool
+            Whether it is stacked with others (`ltca.arrays.stack_drives`): tables of profiled parts are then made for ranges
+            of radii on a ladder, so that drives that differ little have the same.
+        """
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
+        place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
+        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
+        rungs = _rungs if in_batch else np.asarray
         pin_radii = np.ones(1)
         if not drive.pin_wheel.pin_profile.is_cylinder:
             # A flank without deviations has the same radii on every lobe.
             lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
             turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
-            pin_radii = _effective_radii(geometry.profile, geometry.placement.wheel_pin_radii, turn)
-        return cls._of_geometry(geometry, drive, pin_radii, shaft_pin_stiffness(drive))
-
-    @classmethod
-    def of_drives(cls, drives: Sequence[Drive], positions: int) -> HalfSpaceCompliance:
-        """Return the model of a batch: every drive at the same number of positions, drive by drive.
-
-        Parameters
-        ----------
-        drives : sequence of Drive
-            Drives that agree in what `batch_signature` tells.
-        positions : int
-            Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
-        """
-        tips = np.repeat([[[tip_share(drive)]] for drive in drives], positions, axis=0)
-        geometry = replace(ContactGeometry.of_drives(drives, positions), tip_share=tips)
-        stiffness = np.repeat([[shaft_pin_stiffness(drive)] for drive in drives], positions, axis=0)
-        each = geometry.take(np.arange(len(drives)) * positions)
-        pin_radii = np.ones(1)
-        if not drives[0].pin_wheel.pin_profile.is_cylinder:
-            # One row for each drive: deviations of the flanks are summed row by row.
-            turn = np.linspace(0.0, 2.0 * np.pi, SAMPLES * drives[0].pin_wheel.number_of_pins + 1)
-            pin_radii = _effective_radii(each.profile, each.placement.wheel_pin_radii, np.tile(turn, (len(drives), 1)))
-        return cls._of_geometry(geometry, drives[0], pin_radii, stiffness)
-
-    @classmethod
-    def _of_geometry(
-        cls, geometry: ContactGeometry, drive: Drive, pin_radii: FloatArray, hole_stiffness: float | FloatArray
-    ) -> HalfSpaceCompliance:
-        place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
-        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
-        # Batches differ little from each other: on a ladder they share the tables of profiled parts.
-        rungs = _rungs if place.is_batch else np.asarray
+            pin_radii = _effective_radii(geometry.profile, place.wheel_pin_radii, turn)
 
         def roller_law(race: Material, effective_radii: FloatArray) -> ContactLaw:
             return law_for_profile(
@@ -121,26 +98,8 @@ class HalfSpaceCompliance:
                 inner_radius=inner_radius,
                 outer_radius=outer_radius,
             ),
-            hole_law=back_shaft_pins(drive, SpringLaw(stiffness=hole_stiffness), place.shaft_pin_plays),
+            hole_law=back_shaft_pins(drive, SpringLaw(stiffness=shaft_pin_stiffness(drive)), place.shaft_pin_plays),
             kinds=ContactKinds.of_drive(drive),
-        )
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> HalfSpaceCompliance:
-        """Return the model of some positions: itself for one drive, these rows of a batch."""
-        if not self.geometry.placement.is_batch:
-            return self
-        laws = self.roller_laws
-        return HalfSpaceCompliance(
-            geometry=self.geometry.take(rows),
-            pin_law=cast(ContactLaw, law_at(self.pin_law, rows)),
-            roller_laws=RollerLaws(
-                inner=laws.inner,
-                outer=laws.outer,
-                inner_radius=laws.inner_radius[rows],
-                outer_radius=laws.outer_radius[rows],
-            ),
-            hole_law=law_at(self.hole_law, rows),
-            kinds=self.kinds,
         )
 
     def respond(
@@ -207,42 +166,6 @@ class HalfSpaceCompliance:
             holes=elastic_hole_pressures(kinds.holes, response.hole_load, self.geometry.placement),
             rigid_shaft_pins=False,
         )
-
-
-def batch_signature(drive: Drive) -> tuple[object, ...]:
-    """Return what drives of one batch have in common: numbers of parts, contact laws, shape of the deviations."""
-    wheel, disc, bearing, errors = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.disc.profile_errors
-    # A logarithmic profile scales with the diameter of its part.
-    pin = None if wheel.pin_profile.is_cylinder else (wheel.pin_profile, wheel.pin_radius)
-    roller = None if bearing.roller_profile.is_cylinder else (bearing.roller_profile, bearing.roller_radius)
-    numbers = (wheel.number_of_pins, disc.number_of_teeth, bearing.number_of_rollers, drive.number_of_holes)
-    lengths = (disc.thickness, bearing.roller_length)
-    yields = (drive.crank.number, drive.crank.support is None, wheel.support_stiffness is None)
-    # Laws behind the contacts are those of one drive: what they are made of is the same for all of a batch.
-    behind: tuple[object, ...] = (wheel.seat, wheel.beam)
-    if wheel.seat.kind != "fixed" or wheel.beam is not None:
-        behind += (wheel.pin_radius, disc.disc_planes)
-    shaft = drive.pin_shaft
-    if shaft is not None and shaft.seat.kind != "fixed":
-        behind += (shaft.seat, shaft.pin_radius)
-    if drive.friction is not None:
-        behind += (drive.friction, drive.motion_sign, drive.load.driven_by, drive.installation)
-        behind += (disc.disc_planes, drive.crank.support)
-        behind += (wheel.seat, None if shaft is None else shaft.seat, wheel.pin_radius, shaft and shaft.pin_radius)
-        behind += (bearing.inner_race_radius, bearing.roller_radius)
-    return (
-        *numbers,
-        *lengths,
-        *yields,
-        *behind,
-        None if shaft is None or shaft.beam is None else shaft.beam.tip,
-        pin,
-        roller,
-        drive.materials,
-        errors.orders,
-        errors.parameter,
-        errors.deviation,
-    )
 
 
 def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ contacts exert at this pose, and what is its tangent? `ltca.equilibrium.reducer`
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Protocol, Self
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,10 +150,6 @@ class DiscModel(Protocol):
     @property
     def geometry(self) -> ContactGeometry:
         """The contact geometry of the disc in its drive."""
-        ...
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Self:
-        """Return the model of some positions: itself for one drive, these rows of a batch."""
         ...
 
     def respond(

@@ -13,7 +13,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import LoadLaw
@@ -43,8 +43,8 @@ class RollerLaws(Generic[Law]):
 
     inner: Law
     outer: Law
-    inner_radius: FloatArray
-    outer_radius: FloatArray
+    inner_radius: FloatArray = by_drive(1)
+    outer_radius: FloatArray = by_drive(1)
     by_place: bool = False
 
 

@@ -13,9 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, take_positions
+from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
-from ltca.equilibrium.neighbours import leading_positions, pose_between, start_between
+from ltca.equilibrium.neighbours import (
+    leading_positions,
+    pose_beside,
+    pose_between,
+    start_beside,
+    start_between,
+)
 from ltca.equilibrium.newton import ROUND_OFF_BOUND, Search
 from ltca.equilibrium.reducer import Reducer, complete
 from ltca.errors import ConvergenceError
@@ -83,7 +89,7 @@ def lever_arms(model: Reducer) -> FloatArray:
     """
     coordinates, wheel = model.coordinates, np.ones(1)
     eccentricities = [geometry.placement.mean_eccentricity for geometry in model.geometries]
-    arms = np.ones((*eccentricities[0].shape[:-1], coordinates.size))
+    arms = np.ones((*np.broadcast_shapes(*(e.shape[:-1] for e in eccentricities)), coordinates.size))
     for place, geometry, e in zip(coordinates.rotations, model.geometries, eccentricities, strict=False):
         wheel = e * geometry.placement.reduction_ratio
         arms[..., place] = (wheel - e)[..., 0]
@@ -101,6 +107,7 @@ def solve_equilibrium(
     start: FloatArray | Equilibrium | None = None,
     inner: Start | None = None,
     gaps: bool = True,
+    series: int = 1,
 ) -> Equilibrium:
     """Find the pose in which every position of a batch balances.
 
@@ -119,6 +126,8 @@ def solve_equilibrium(
         Inner unknowns near the poses to start from.
     gaps : bool
         Whether the pairs of pins that do not touch are wanted, which balance does not need (`FlankMotion.left_out`).
+    series : int
+        Number of series of equally many positions, one after the other: turns of different drives or under different torques.
 
     Returns
     -------
@@ -139,7 +148,7 @@ def solve_equilibrium(
         left = search.iterate(ITERATIONS, begin=start.response)
     else:
         search = Search(model, angle, moment, lever, load, np.zeros((angle.size, lever.shape[-1])))
-        left = _solve_by_neighbours(search, start, inner)
+        left = _solve_by_neighbours(search, start, inner, series)
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
     left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
     if left.size and not np.all(_below_round_off(search, left)):
@@ -157,33 +166,63 @@ def solve_equilibrium(
     )
 
 
-def _solve_by_neighbours(search: Search, start: FloatArray | None, inner: Start | None) -> NDArray[np.intp]:
+def _solve_by_neighbours(
+    search: Search, start: FloatArray | None, inner: Start | None, series: int
+) -> NDArray[np.intp]:
     """Balance leading positions from their starts, then the others from between them; return what does not balance.
 
-    Without starts one position leads: what disc and wheel do from first contact on is that of all, seen from the crank.
+    Without starts one position of each series leads: what disc and wheel do from first contact on is that of all, seen from
+    the crank.
     """
-    model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
-    first = leading_positions(model.discs[0].geometry, angle, moment)
     if start is None:
-        first = first if first.size == angle.size else first[:1]
-        pose[first] = _at_first_contact(model.take(first), angle[first], moment[first])
-    else:
-        pose[:] = start
+        return _solve_beside_leaders(search, series)
+    model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
+    pose[:] = start
+    first = np.arange(angle.size)
+    if series == 1:
+        first = leading_positions(model.discs[0].geometry, angle, moment)
     left = search.iterate(ITERATIONS, first, take_positions(inner, first))
     rest = np.setdiff1d(np.arange(angle.size), first)
     if rest.size == 0:
         return left
     begin = take_positions(inner, rest)
     # A start that leads somewhere in a few steps is as good as what lies between neighbours.
-    between = start is None or np.median(search.iterations[first]) > FEW
-    if between and search.balanced:
+    if np.median(search.iterations[first]) > FEW and search.balanced:
         known, contacts = search.contacts()
         pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
-    elif start is None:
-        pose[rest] = _at_first_contact(model.take(rest), angle[rest], moment[rest])
     return np.union1d(left, search.iterate(ITERATIONS, rest, begin))
+
+
+def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
+    """Balance one position of each series from first contact, then the others from there; return what does not balance."""
+    model, angle, pose, count = search.model, search.angle, search.pose, search.angle.size // series
+    leading = leading_positions(model.discs[0].geometry, angle[:count], search.moment[:count])
+    leaders = np.arange(angle.size)
+    if leading.size < count:
+        leaders = leading[0] + count * np.arange(series)
+    pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
+    left = search.iterate(ITERATIONS, leaders)
+    rest = np.setdiff1d(np.arange(angle.size), leaders)
+    if rest.size == 0:
+        return left
+    led = np.zeros(series, dtype=bool)
+    if search.balanced:
+        known, contacts = search.contacts()
+        led[known // count] = True
+        beside = rest[led[rest // count]]
+        rows = (np.cumsum(led) - 1)[beside // count]
+        at = known[rows]
+        pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
+        ratio = model.discs[0].geometry.placement.reduction_ratio
+        begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
+        left = np.union1d(left, search.iterate(ITERATIONS, beside, begin))
+    alone = rest[~led[rest // count]]
+    if alone.size:
+        pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
+        left = np.union1d(left, search.iterate(ITERATIONS, alone))
+    return left
 
 
 def _at_first_contact(model: Reducer, angle: FloatArray, moment: FloatArray) -> FloatArray:
@@ -192,7 +231,7 @@ def _at_first_contact(model: Reducer, angle: FloatArray, moment: FloatArray) -> 
     sense = np.where(moment < 0.0, -1, 1)
     for value in np.unique(sense):
         rows = sense == value
-        turned = [_take_up(geometry.take(rows), angle[rows], int(value)) for geometry in model.geometries]
+        turned = [_take_up(take_rows(geometry, rows), angle[rows], int(value)) for geometry in model.geometries]
         pose[rows, WHEEL_ANGLE] = value * np.min(value * np.stack(turned), axis=0)
     return pose
 
@@ -280,4 +319,4 @@ def _take_up(geometry: ContactGeometry, angle: FloatArray, sense: int) -> FloatA
         if angle.size == 1:
             return np.zeros(1)
         halves = np.array_split(np.arange(angle.size), 2)
-        return np.concatenate([_take_up(geometry.take(half), angle[half], sense) for half in halves])
+        return np.concatenate([_take_up(take_rows(geometry, half), angle[half], sense) for half in halves])

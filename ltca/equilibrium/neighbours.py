@@ -18,21 +18,21 @@ MOST = 8
 
 
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
-    """Return which positions to balance first; all of them where neighbours are no help.
+    """Return which positions of one drive to balance first; all of them where neighbours are no help.
 
     Parameters
     ----------
     geometry : ContactGeometry
-        Of a disc; positions of a batch of drives all lead.
+        Of a disc.
     angle, moment : array, shape (positions,)
         φ_C, rad, and moments on the wheel, N·mm: neighbours carry the same.
     """
     everything = np.arange(angle.size)
     place = geometry.placement
-    if place.is_batch or angle.size < WORTH * RESOLVED or np.ptp(moment) > 0.0:
+    if angle.size < WORTH * RESOLVED or np.ptp(moment) > 0.0:
         return everything
     order = np.argsort(angle, kind="stable")
-    passages = max(place.reduction_ratio, place.hole_radii.size, place.roller_radii.size // place.cranks)
+    passages = max(place.reduction_ratio, place.hole_radii.shape[-1], place.roller_radii.shape[-1] // place.cranks)
     spacing = float(np.max(np.diff(angle[order])))
     stride = min(MOST, int(2.0 * np.pi / (passages * RESOLVED * spacing))) if spacing > 0.0 else 1
     if stride < WORTH:
@@ -93,6 +93,17 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
     along = between(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
     nearer = np.where(part[:, 0] < 0.5, before, after)
     return Start(parameter=along, share=between(known.share), warm_start=known.warm_start[nearer])
+
+
+def pose_beside(angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates) -> FloatArray:
+    """Return poses that look from the turning crank as others do: row by row, from `angle` turned to `wanted`."""
+    return turned_poses(turned_poses(pose, -angle, coordinates), wanted, coordinates)
+
+
+def start_beside(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float) -> Start:
+    """Return inner unknowns as seen from the wheel, row by row, from `angle` turned to `wanted`; see `start_between`."""
+    along = (known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio
+    return Start(parameter=along, share=known.share, warm_start=known.warm_start)
 
 
 def turned_poses(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:

@@ -83,7 +83,6 @@ class Search:
         self.place = model.discs[0].geometry.placement
         """The wheel's places are those of every disc."""
         self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
-        self.batch = self.place.is_batch
         self.symmetric = model.friction is None
         self.half_pitch = np.pi / self.place.reduction_ratio
         self.rotations = model.coordinates.rotations
@@ -95,7 +94,7 @@ class Search:
 
     def levers(self, rows: NDArray[np.intp]) -> FloatArray:
         """Return the lever arms of some positions: one row for all where the drives are the same."""
-        return self.lever[rows] if self.batch else self.lever
+        return self.lever[rows] if self.lever.ndim > 1 else self.lever
 
     def evaluate(self, rows: NDArray[np.intp], pose: FloatArray, start: Start | None) -> Response:
         """Return the contacts of some positions at poses."""

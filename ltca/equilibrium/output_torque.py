@@ -234,7 +234,8 @@ def _solve(
     def balance(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
         part = model if rows.size == angle.size else model.take(rows)
         own = None if isinstance(begin, Equilibrium) else inner
-        return solve_equilibrium(part, angle[rows], moment, begin, own, gaps)
+        series = len(each) if rows.size == angle.size else rows.size
+        return solve_equilibrium(part, angle[rows], moment, begin, own, gaps, series)
 
     part = np.repeat([drive.input_per_crank_moment for drive in each], repeats)
     return _at_output(model, balance, angle, mean, signed, held, part, start)

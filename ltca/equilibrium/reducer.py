@@ -9,13 +9,13 @@ Pairs are numbered disc after disc: of n discs array axes for pairs are n times 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
 from ltca.compliance.response import (
     ContactPressures,
     DiscModel,
@@ -35,15 +35,6 @@ from ltca.geometry.pairs import ContactGeometry
 
 class JointFriction(Protocol):
     """Friction of the joints at a pose."""
-
-    @property
-    def by_position(self) -> bool:
-        """Whether every position has something of its own."""
-        ...
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> JointFriction:
-        """Return the friction of some positions."""
-        ...
 
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
@@ -74,12 +65,24 @@ class Reducer:
         Pins that several discs bend.
     friction : JointFriction or None
         What rubs.
+    by_position : bool
+        Whether something differs from position to position: in a batch of drives, or in what rubs.
     """
 
     discs: tuple[DiscModel, ...]
-    supports: FloatArray | None = None
+    supports: FloatArray | None = by_drive(2, default=None)
     pins: SharedPins | None = None
     friction: JointFriction | None = None
+    by_position: bool = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Look once whether positions differ."""
+        parts = has_rows((self.discs, self.pins, self.friction)) or has_rows(self.supports, 2)
+        object.__setattr__(self, "by_position", parts)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
+        """Return the model of some positions: itself where no two differ."""
+        return take_rows(self, rows) if self.by_position else self
 
     @property
     def coordinates(self) -> Coordinates:
@@ -90,19 +93,6 @@ class Reducer:
     def geometries(self) -> tuple[ContactGeometry, ...]:
         """The contact geometry of every disc."""
         return tuple(disc.geometry for disc in self.discs)
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
-        """Return the model of some positions: these rows of a batch, itself where all are of one drive."""
-        by_position = self.friction is not None and self.friction.by_position
-        if not self.discs[0].geometry.placement.is_batch and not by_position:
-            return self  # as every position of one drive has the same supports
-        supports = self.supports
-        if supports is not None and supports.ndim > 2:
-            supports = supports[rows]
-        discs = tuple(disc.take(rows) for disc in self.discs)
-        pins = None if self.pins is None else self.pins.take(rows)
-        friction = None if self.friction is None else self.friction.take(rows)
-        return Reducer(discs=discs, supports=supports, pins=pins, friction=friction)
 
     def respond(self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None) -> Response:
         """Return the contact forces of all discs.

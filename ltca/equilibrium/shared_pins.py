@@ -12,13 +12,12 @@ all at once, by Newton's method; the tangent is that of the whole, e turning wit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.compliance.response import DiscResponse, PairSlopes
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
@@ -41,23 +40,13 @@ class SharedPins:
         c_dd' of each pin, wheel pins before shaft pins, mm/N; zero for d = d', and for pins that do not bend.
     """
 
-    flexibility: FloatArray
+    flexibility: FloatArray = by_drive(3)
 
     @classmethod
     def of_drive(cls, drive: Drive) -> SharedPins | None:
         """Return the pins that the discs of a drive share; None where one disc is alone or none bends."""
         found = _flexibility(drive)
         return None if found is None else cls(flexibility=found)
-
-    @classmethod
-    def of_drives(cls, drives: Sequence[Drive], positions: int) -> SharedPins | None:
-        """Return those of a batch of drives, one for each position, drive by drive."""
-        each = [found for drive in drives if (found := _flexibility(drive)) is not None]
-        return cls(flexibility=np.repeat(np.stack(each), positions, axis=0)) if each else None
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> SharedPins:
-        """Return the pins of some positions of a batch."""
-        return SharedPins(flexibility=self.flexibility[rows]) if self.flexibility.ndim > 3 else self
 
     def settle(
         self,

@@ -7,8 +7,6 @@ what the pins resist when it moves all tips.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ltca.arrays import FloatArray
@@ -74,10 +72,3 @@ def _ring_stiffness(drive: Drive) -> FloatArray:
         raise AssertionError("a ring ties beams")
     tips = ContactGeometry.of_drive(single_discs(drive)[0]).tips_by_ring
     return np.asarray(beam.tip_stiffness * (tips.conjugate().T @ tips).real)
-
-
-def support_stiffnesses(drives: Sequence[Drive], positions: int) -> FloatArray | None:
-    """Return the stiffness matrices of a batch of drives, one for each position, drive by drive."""
-    matrices = [support_stiffness(drive) for drive in drives]
-    stacked = [matrix for matrix in matrices if matrix is not None]
-    return np.repeat(np.stack(stacked), positions, axis=0) if stacked else None

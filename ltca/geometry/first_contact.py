@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.pairs import ContactGeometry
@@ -107,7 +107,7 @@ def turn_to_contact(
     others = np.max(motion.approach, axis=1) > TOUCHING * _size(geometry)  # where it settled, at that pose
     unsure = np.nonzero(~settled | others)[0]
     if unsure.size:
-        part = geometry.take(unsure)
+        part = take_rows(geometry, unsure)
         bottom, pressed = _least_interference(part, angle[unsure], coordinate)
         rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
         free = pressed <= TOUCHING * _size(geometry)

@@ -14,14 +14,13 @@ deviation it is a curve of its own, F = c − (offset − δ) n: everything belo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank_deviation import ProfileDeviation
@@ -98,12 +97,12 @@ class FlankProfile:
         Departure from the design along its normal.
     """
 
-    generating_radius: BatchScalar
-    eccentricity: BatchScalar
+    generating_radius: BatchScalar = by_drive(0)
+    eccentricity: BatchScalar = by_drive(0)
     reduction_ratio: float
-    offset: BatchScalar
-    turn: complex | ComplexArray = 1.0
-    centre: complex | ComplexArray = 0.0
+    offset: BatchScalar = by_drive(0)
+    turn: complex | ComplexArray = by_drive(0, default=1.0)
+    centre: complex | ComplexArray = by_drive(0, default=0.0)
     deviation: ProfileDeviation | None = None
 
     @classmethod
@@ -120,46 +119,14 @@ class FlankProfile:
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
-        """Return the flanks of some positions of a batch."""
-        picked = {item.name: getattr(self, item.name) for item in fields(self)}
-        picked = {name: value[rows] if np.ndim(value) else value for name, value in picked.items()}
-        if self.deviation is not None:
-            picked["deviation"] = self.deviation.take(rows)
-        return FlankProfile(**picked)
-
     @property
     def is_batch(self) -> bool:
         """Whether every position has a flank of its own."""
-        return np.ndim(self.offset) > 0
+        return has_rows(self)
 
     def of_points(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
         """Return the flanks of points that belong to these positions: itself for one drive."""
-        return self.take(rows) if self.is_batch else self
-
-    @classmethod
-    def stack(cls, drives: Sequence[Drive], positions: int) -> FlankProfile:
-        """Return the flanks of several drives of equal reduction ratio, see `ltca.geometry.placement.Placement.stack`."""
-        flanks = [(d.pin_wheel, d.disc, d.crank.eccentricity, d.disc.runout) for d in drives]
-        columns = np.array(
-            [
-                (wheel.pin_circle_radius + disc.shifting_offset, e, wheel.pin_radius + disc.equidistant_offset)
-                for wheel, disc, e, _ in flanks
-            ]
-        )
-        centres = np.array([(runout.amount, runout.angle) for *_, runout in flanks])
-        rows = np.repeat(columns, positions, axis=0)
-        centre = np.repeat(centres[:, 0] * unit(centres[:, 1]), positions)
-        turns = np.array([drive.flank_turn for drive in drives])
-        return cls(
-            generating_radius=rows[:, 0:1],
-            eccentricity=rows[:, 1:2],
-            reduction_ratio=drives[0].reduction_ratio,
-            offset=rows[:, 2:3],
-            turn=np.repeat(unit(turns), positions)[:, None] if np.any(turns) else 1.0,
-            centre=centre[:, None],
-            deviation=ProfileDeviation.stack([d.disc.profile_errors for d in drives], positions),
-        )
+        return take_rows(self, rows)
 
     def locus(self, parameter: FloatArray) -> CurvePoints:
         """Return the design trochoid about its own centre, and its first two derivatives by the parameter θ.

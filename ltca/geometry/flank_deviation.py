@@ -6,14 +6,12 @@ Harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.deviations import ProfileErrors
 from ltca.geometry.rotation import integer_power
 
@@ -35,7 +33,7 @@ class ProfileDeviation:
     """
 
     orders: tuple[int, ...]
-    amplitudes: ComplexArray
+    amplitudes: ComplexArray = by_drive(1)
     knots: FloatArray
     pieces: FloatArray
 
@@ -55,28 +53,6 @@ class ProfileDeviation:
             pieces = CubicSpline(knots, [*errors.deviation, errors.deviation[0]], bc_type="periodic").c
         return cls(
             orders=errors.orders, amplitudes=np.asarray(cosine - 1j * sine, dtype=complex), knots=knots, pieces=pieces
-        )
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ProfileDeviation:
-        """Return the deviation of some positions of a batch."""
-        return replace(self, amplitudes=self.amplitudes[rows])
-
-    @classmethod
-    def stack(cls, errors: Sequence[ProfileErrors], positions: int) -> ProfileDeviation | None:
-        """Return the deviations of several flanks of equal orders and measured points, see `Placement.stack`."""
-        if all(item.is_zero for item in errors):
-            return None
-        orders = errors[0].orders
-        zeros = (0.0,) * len(orders)
-        amplitudes = np.array([item.cosine or zeros for item in errors]) - 1j * np.array(
-            [item.sine or zeros for item in errors]
-        )
-        measured = cls.of_errors(ProfileErrors(parameter=errors[0].parameter, deviation=errors[0].deviation))
-        return cls(
-            orders=orders,
-            amplitudes=np.repeat(amplitudes, positions, axis=0),
-            knots=np.empty(0) if measured is None else measured.knots,
-            pieces=np.empty((4, 0)) if measured is None else measured.pieces,
         )
 
     @property

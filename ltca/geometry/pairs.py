@@ -7,13 +7,12 @@ together.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -78,34 +77,20 @@ class ContactGeometry:
         Where the parts stand, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
-    tip_share : float or array, shape (positions, 1, 1)
+    tip_share : float or array, shape (positions, 1)
         Displacement of a shaft pin at the disc by that of its tip, where a ring ties the tips.
     """
 
     placement: Placement
     profile: FlankProfile
     coordinates: Coordinates
-    tip_share: float | FloatArray = 0.0
+    tip_share: float | FloatArray = by_drive(0, default=0.0)
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
         place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
         return cls(placement=place, profile=profile, coordinates=Coordinates.of_drive(drive))
-
-    @classmethod
-    def of_drives(cls, drives: Sequence[Drive], positions: int) -> ContactGeometry:
-        """Return the contact geometry of a batch: every drive at the same number of positions, drive by drive."""
-        places = [Placement.of_drive(drive) for drive in drives]
-        place, profile = Placement.stack(places, positions), FlankProfile.stack(drives, positions)
-        return cls(placement=place, profile=profile, coordinates=Coordinates.of_drive(drives[0]))
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> ContactGeometry:
-        """Return the geometry of some positions: itself for one drive, these rows of a batch."""
-        if not self.placement.is_batch:
-            return self
-        tips = self.tip_share[rows] if isinstance(self.tip_share, np.ndarray) else self.tip_share
-        return replace(self, placement=self.placement.take(rows), profile=self.profile.take(rows), tip_share=tips)
 
     @property
     def tips_by_ring(self) -> ComplexArray:
@@ -121,7 +106,7 @@ class ContactGeometry:
     @property
     def _by_ring(self) -> ComplexArray:
         """Displacement of the shaft pins at the disc by the coordinates of the ring, shape (…, z_PS, 3)."""
-        return self.tip_share * self.tips_by_ring
+        return np.asarray(np.asarray(self.tip_share)[..., None] * self.tips_by_ring)
 
     def coordinates_of(self, pose: FloatArray) -> Coordinates:
         """Return the coordinates that a pose has: those of rigid members where it has no more than four."""

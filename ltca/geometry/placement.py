@@ -8,14 +8,14 @@ starts at 0 and runs counter-clockwise.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.deviations import PlacementErrors
 from ltca.drive.parts import Drive
 from ltca.geometry.rotation import unit
@@ -79,7 +79,7 @@ def _bore_centres(drive: Drive) -> ComplexArray:
 class Placement:
     """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives.
 
-    In a batch axis 0 of every array is the position, and the single numbers are arrays of shape (positions, 1).
+    What differs between the drives of a batch has the position on axis 0, single numbers the shape (positions, 1).
 
     Attributes
     ----------
@@ -122,24 +122,24 @@ class Placement:
         u.
     """
 
-    wheel_pin_centres: ComplexArray
-    wheel_pin_radii: FloatArray
-    wheel_pin_plays: FloatArray
-    hole_centres: ComplexArray
-    hole_radii: FloatArray
-    shaft_pin_centres: ComplexArray
-    shaft_pin_radii: FloatArray
-    shaft_pin_plays: FloatArray
-    roller_cage_angles: FloatArray
-    roller_radii: FloatArray
-    inner_race_radius: BatchScalar
-    bore_radius: BatchScalar
-    eccentricity: FloatArray
-    eccentric_phase: FloatArray
-    crank_axes: ComplexArray
-    bore_centres: ComplexArray
-    wheel_axis: complex | ComplexArray
-    cage_speed: BatchScalar
+    wheel_pin_centres: ComplexArray = by_drive(1)
+    wheel_pin_radii: FloatArray = by_drive(1)
+    wheel_pin_plays: FloatArray = by_drive(1)
+    hole_centres: ComplexArray = by_drive(1)
+    hole_radii: FloatArray = by_drive(1)
+    shaft_pin_centres: ComplexArray = by_drive(1)
+    shaft_pin_radii: FloatArray = by_drive(1)
+    shaft_pin_plays: FloatArray = by_drive(1)
+    roller_cage_angles: FloatArray = by_drive(1)
+    roller_radii: FloatArray = by_drive(1)
+    inner_race_radius: BatchScalar = by_drive(0)
+    bore_radius: BatchScalar = by_drive(0)
+    eccentricity: FloatArray = by_drive(1)
+    eccentric_phase: FloatArray = by_drive(1)
+    crank_axes: ComplexArray = by_drive(1)
+    bore_centres: ComplexArray = by_drive(1)
+    wheel_axis: complex | ComplexArray = by_drive(0)
+    cage_speed: BatchScalar = by_drive(0)
     reduction_ratio: float
 
     @classmethod
@@ -202,37 +202,6 @@ class Placement:
     def hole_effective_radii(self) -> FloatArray:
         """Effective radii of shaft pins and holes, 1/(1/r_PS − 1/r_PSH), mm, shape (z_PS,)."""
         return np.asarray(1.0 / (1.0 / self.shaft_pin_radii - 1.0 / self.hole_radii))
-
-    @property
-    def is_batch(self) -> bool:
-        """Whether every position has a drive of its own."""
-        return self.eccentricity.ndim > 1
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Placement:
-        """Return the places of some positions of a batch."""
-        picked = {item.name: getattr(self, item.name) for item in fields(self)}
-        return Placement(**{name: value[rows] if np.ndim(value) else value for name, value in picked.items()})
-
-    @classmethod
-    def stack(cls, places: Sequence[Placement], positions: int) -> Placement:
-        """Return the batch of several drives, each at the same number of positions.
-
-        Parameters
-        ----------
-        places : sequence of Placement
-            One for each drive, with equal numbers of parts and equal reduction ratio.
-        positions : int
-            Positions of each drive; drive s takes the rows s·positions … (s + 1)·positions − 1.
-        """
-        stacked = {}
-        for item in fields(cls):
-            values = [getattr(place, item.name) for place in places]
-            if item.name == "reduction_ratio":
-                stacked[item.name] = values[0]
-            else:
-                rows = np.array(values)
-                stacked[item.name] = np.repeat(rows.reshape(len(places), -1), positions, axis=0)
-        return cls(**stacked)
 
     def eccentric_directions(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the unit vectors from the crank axes to the centres of inner races and cages, fixed frame, shape (…, cranks)."""

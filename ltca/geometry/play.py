@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, take_positions
+from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
 from ltca.geometry.pair_motion import KnownPins
@@ -177,7 +177,7 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     forward, backward = np.full(angle.size, np.inf), np.full(angle.size, -np.inf)
     preloaded, room = np.zeros(angle.size, dtype=bool), np.broadcast_to(np.asarray(overlap, dtype=float), angle.shape)
     for disc in discs:
-        pose, left = _Programme(disc.take(rows), angle[rows], room[rows]).farthest(sense)
+        pose, left = _Programme(take_rows(disc, rows), angle[rows], room[rows]).farthest(sense)
         turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
         pressed = np.flatnonzero(np.any(left.reshape(2, -1) > CLOSED, axis=0))
         if pressed.size:
@@ -200,7 +200,7 @@ def _beside_preload(disc: ContactGeometry, angle: FloatArray, room: FloatArray, 
     middle of the two poses with the least of it, and the wheel turns in what the others leave.
     """
     rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
-    programme = _Programme(disc.take(rows), angle[rows], room[rows])
+    programme = _Programme(take_rows(disc, rows), angle[rows], room[rows])
     gap, _, _ = programme.gaps(np.arange(rows.size), np.tile(poses.mean(axis=0), (2, 1)))
     programme.room = programme.room + RELIEF + np.maximum(-gap, 0.0)
     pose, _ = programme.farthest(sense)
@@ -285,7 +285,7 @@ class _Programme:
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
         """Exact gaps of all pairs, mm, their slopes by scaled coordinates, and how many of them are arcs, which stand first."""
-        geometry, angle = self.geometry.take(rows), self.angle[rows]
+        geometry, angle = take_rows(self.geometry, rows), self.angle[rows]
         rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
         # A roller on the inner race presses on the bore with |s n − d| less the bore play.
         count = rays.direction.shape[1]

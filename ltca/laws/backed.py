@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, by_drive
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.errors import ConvergenceError
 from ltca.laws.beam import End, PinBeam
@@ -76,7 +76,7 @@ class BackedLaw:
 
     contact: EnergyLaw
     seat: SeatLaw | None
-    play: FloatArray
+    play: FloatArray = by_drive(1)
     flexibility: float = 0.0
     overlap: float = 0.0
 
@@ -187,10 +187,6 @@ class BackedLaw:
         """Return the contact half-width at mid-width, mm."""
         return self.known_contact.half_width(self.contact_approach(approach, effective_radius), effective_radius)
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> BackedLaw:
-        """Return the law of some positions of a batch."""
-        return replace(self, contact=law_at(self.contact, rows), play=self.play[rows])
-
     @property
     def outside(self) -> EnergyLaw:
         """The law of the contact down to half the wall of a sleeve: overlap taken off, nothing behind."""
@@ -202,15 +198,6 @@ class BackedLaw:
         if not isinstance(self.contact, ContactLaw):
             raise TypeError("the law of the contacts knows loads alone, no pressures")
         return self.contact
-
-
-def law_at(law: EnergyLaw, rows: NDArray[np.intp] | NDArray[np.bool_]) -> EnergyLaw:
-    """Return the law of some positions of a batch: what each of its drives has of its own at these."""
-    if isinstance(law, BackedLaw):
-        return law.take(rows)
-    if isinstance(law, SpringLaw) and isinstance(law.stiffness, np.ndarray):
-        return SpringLaw(stiffness=law.stiffness[rows])
-    return law
 
 
 def of_pairs(law: EnergyLaw, chosen: NDArray[np.intp]) -> EnergyLaw:

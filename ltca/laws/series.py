@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, by_drive
 from ltca.errors import ConvergenceError
 from ltca.laws.contact_law import LoadLaw
 from ltca.laws.plane_strain import PlaneContactLaw
@@ -17,7 +17,7 @@ from ltca.laws.plane_strain import PlaneContactLaw
 class SpringLaw:
     """Unilateral linear spring (Eq. 77); `stiffness` in N/mm, of a batch of drives an array of shape (positions, 1)."""
 
-    stiffness: float | FloatArray
+    stiffness: float | FloatArray = by_drive(0)
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the load at an approach and its derivative, N and N/mm."""

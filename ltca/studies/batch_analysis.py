@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
-from ltca.arrays import FloatArray, take_positions
-from ltca.compliance.half_space import batch_signature
+from ltca.arrays import FloatArray, batch_layout, stack_drives, take_positions
 from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
@@ -112,14 +110,17 @@ def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
 
 
 class _Batch:
-    """Several drives at all angles on one engine, drive by drive."""
+    """Several drives at all angles on one engine, drive by drive; `models` are theirs where they are known."""
 
-    def __init__(self, drives: Sequence[Drive], settings: BatchSettings) -> None:
+    def __init__(
+        self, drives: Sequence[Drive], settings: BatchSettings, models: Sequence[Reducer] | None = None
+    ) -> None:
         self.drives, self.positions = [warm_drive(drive) for drive in drives], settings.crank_angle.size
         self.angle = np.tile(settings.crank_angle, len(drives))
         self.prepared: PreparedEngine | None = None
         if settings.engine.batches:
-            self.model = settings.engine.build(drives, self.positions)
+            each = models or [settings.engine.model(drive, in_batch=True) for drive in self.drives]
+            self.model = stack_drives(each, self.positions)
         else:
             (drive,) = drives
             self.prepared = with_kept_coefficients(settings.engine, drive).prepare(drive)
@@ -145,8 +146,8 @@ class _Batch:
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
     """Return the quantities of every drive.
 
-    Drives that agree in their `ltca.compliance.half_space.batch_signature` are solved together. What fails is halved until
-    the sample is found, which is tried once more from first contact before it counts as failed.
+    Drives whose models agree in their `ltca.arrays.batch_layout` are solved together. What fails is halved until the sample
+    is found, which is tried once more from first contact before it counts as failed.
 
     Parameters
     ----------
@@ -157,53 +158,75 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     """
     values = np.full((len(drives), len(settings.quantities)), np.nan)
     messages = [""] * len(drives)
-    groups: dict[tuple[object, ...], list[int]] = {}
+    groups: dict[Hashable, list[int]] = {}
     drives = [warm_drive(drive) for drive in drives]
+    models: dict[int, Reducer] = {}
+    layouts: dict[int, Hashable] = {}
     for number, drive in enumerate(drives):
-        discs = tuple(batch_signature(single) for single in single_discs(drive))
-        key: tuple[object, ...] = discs if settings.engine.batches else (number,)
+        if settings.engine.batches:
+            try:
+                models[number] = settings.engine.model(drive, in_batch=True)
+            except CycloError as error:
+                messages[number] = str(explain_failure(error, drive))
+                continue
+        key = batch_layout(models[number], layouts) if settings.engine.batches else number
         groups.setdefault(key, []).append(number)
     for members in groups.values():
-        _solve_group(drives, members, settings, values, messages)
+        _solve_group(drives, models, members, settings, values, messages)
     return SampleResults(values=values, messages=tuple(messages))
 
 
 def _solve_group(
-    drives: Sequence[Drive], members: list[int], settings: BatchSettings, values: FloatArray, messages: list[str]
+    drives: Sequence[Drive],
+    models: Mapping[int, Reducer],
+    members: list[int],
+    settings: BatchSettings,
+    values: FloatArray,
+    messages: list[str],
 ) -> None:
+    own = [models[number] for number in members] if models else None
     try:
-        values[members] = _quantities([drives[number] for number in members], settings, settings.nominal)
+        values[members] = _quantities([drives[number] for number in members], settings, settings.nominal, own)
     except CycloError as error:
         if len(members) > 1:
             half = len(members) // 2
-            _solve_group(drives, members[:half], settings, values, messages)
-            _solve_group(drives, members[half:], settings, values, messages)
+            _solve_group(drives, models, members[:half], settings, values, messages)
+            _solve_group(drives, models, members[half:], settings, values, messages)
             return
         if settings.nominal is not None:
             try:
-                values[members] = _quantities([drives[members[0]]], settings, None)
+                values[members] = _quantities([drives[members[0]]], settings, None, own)
             except CycloError as second:
                 messages[members[0]] = str(explain_failure(second, drives[members[0]]))
         else:
             messages[members[0]] = str(explain_failure(error, drives[members[0]]))
 
 
-def _quantities(drives: list[Drive], settings: BatchSettings, nominal: Nominal | None) -> FloatArray:
-    batch = solve_batch(drives, settings, nominal)
+def _quantities(
+    drives: list[Drive], settings: BatchSettings, nominal: Nominal | None, models: Sequence[Reducer] | None
+) -> FloatArray:
+    batch = solve_batch(drives, settings, nominal, models)
     return np.stack([evaluate(name, batch) for name in settings.quantities], axis=1)
 
 
-def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nominal | None = None) -> SampleBatch:
+def solve_batch(
+    drives: Sequence[Drive],
+    settings: BatchSettings,
+    nominal: Nominal | None = None,
+    models: Sequence[Reducer] | None = None,
+) -> SampleBatch:
     """Solve several drives at all angles as one batch.
 
     Parameters
     ----------
     drives : sequence of Drive
-        Drives of one `ltca.compliance.half_space.batch_signature`.
+        Drives whose models have one `ltca.arrays.batch_layout`.
     settings : BatchSettings
         Angles, quantities, engine.
     nominal : Nominal, optional
         Starting poses.
+    models : sequence of Reducer, optional
+        Their models, where they are known.
 
     Raises
     ------
@@ -214,7 +237,7 @@ def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nomin
     """
     drives = [warm_drive(drive) for drive in drives]
     stages = {STAGES[name] for name in settings.quantities}
-    solved = _Batch(drives, settings)
+    solved = _Batch(drives, settings, models)
     known = None if nominal is None else nominal.model
     full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full, known)
     pressures = solved.model.pressures(full.response)

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, take_positions
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.compliance.response import DiscResponse
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.friction.slip import Slip
@@ -73,9 +73,9 @@ class StickingFriction:
 
     pin: float
     hole: float
-    pose: FloatArray
-    tangential: FloatArray
-    closed: NDArray[np.bool_]
+    pose: FloatArray = by_drive(2)
+    tangential: FloatArray = by_drive(2)
+    closed: NDArray[np.bool_] = by_drive(2)
 
     @classmethod
     def at_rest(cls, friction: TurningFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
@@ -95,15 +95,6 @@ class StickingFriction:
     def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction since a state that was found with this one."""
         return StickingFriction(pin=self.pin, hole=self.hole, **_state(model, found, rubbed=True))
-
-    @property
-    def by_position(self) -> bool:
-        """Whether every position has something of its own: its state."""
-        return True
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> StickingFriction:
-        """Return the friction of some positions."""
-        return take_positions(self, rows)
 
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int

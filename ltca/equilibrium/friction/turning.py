@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse, bearing_pushes
@@ -118,16 +117,6 @@ class TurningFriction:
             motion=drive.motion_sign,
         )
 
-    @classmethod
-    def of_drives(cls, drives: Sequence[Drive]) -> TurningFriction | None:
-        """Return the friction that all drives of a batch have (`ltca.compliance.half_space.batch_signature`)."""
-        return cls.of_drive(drives[0])
-
-    @property
-    def by_position(self) -> bool:
-        """Whether every position has something of its own: they have not."""
-        return False
-
     def scaled(self, strength: float) -> TurningFriction:
         """Return a part of this friction."""
         return replace(self, strength=strength)
@@ -135,10 +124,6 @@ class TurningFriction:
     def reversed(self) -> TurningFriction:
         """Return the friction of the same drive as it turns the other way."""
         return replace(self, motion=-self.motion)
-
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> TurningFriction:
-        """Return the friction of some positions: itself."""
-        return self
 
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int

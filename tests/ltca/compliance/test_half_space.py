@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ltca.arrays import stack_drives, take_rows
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -172,7 +173,7 @@ def test_crowned_pins_on_deviated_flanks_are_a_batch(paper_cases, coarse_tables)
     waves = {"disc.profile_errors.cosine": (0.001, 0.0, 0.0, 0.0), "disc.profile_errors.sine": (0.0,) * 4}
     crown = {"pin_wheel.pin_profile.crown_drop": 0.002}
     drives = [with_fields(paper_cases["CS-1"], waves | crown | {"crank.eccentricity_error": e}) for e in (0.0, 0.01)]
-    batch = HalfSpaceCompliance.of_drives(drives, 1)
+    batch = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], 1)
     pose = np.zeros((2, 4))
     pose[:, 3] = -0.003  # wound up beyond the backlash, so that pins carry
     together = batch.respond(np.full(2, 0.3), pose)
@@ -188,10 +189,11 @@ def test_radii_between_samples_and_on_other_lobes_are_in_the_table_of_crowned_pi
     """A crowned pin at the sharpest place of a flank was "asked for 2.85237" mm of a table from 2.85238 mm on."""
     drive = load_drive(Path(__file__).parents[2] / "contract" / "drive.toml").cases["nominal"]
     drive = with_fields(drive, {"pin_wheel.pin_profile.crown_drop": 0.001})
-    for model in (HalfSpaceCompliance.of_drive(drive), HalfSpaceCompliance.of_drives([drive, drive], 1)):
-        profile = (
-            model.geometry.profile.take(np.array([0])) if model.geometry.placement.is_batch else model.geometry.profile
-        )
+    for model in (
+        HalfSpaceCompliance.of_drive(drive),
+        stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in [drive, drive]], 1),
+    ):
+        profile = take_rows(model.geometry.profile, np.array([0]))
         turn = np.linspace(0.0, 2.0 * np.pi, 60_001)[None]
         radii = model.geometry.placement.wheel_pin_radii
         for radius in (radii.min(), radii.max()):

@@ -9,6 +9,7 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
+from ltca.arrays import stack_drives
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
@@ -204,7 +205,7 @@ def test_grids_press_holes_like_tables(drive):
 def test_holes_in_batches(drive):
     """Row by row what each drive has alone, radii of its own included."""
     drives = [drive, with_fields(drive, {"pin_shaft.pin_radius": 9.9, "clearance.pin_hole": 0.0})]
-    batch = HalfSpaceCompliance.of_drives(drives, ANGLES.size)
+    batch = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], ANGLES.size)
     moments = np.repeat([own.wheel_moment() for own in drives], ANGLES.size)
     found = batch.pressures(solve_equilibrium(Reducer(discs=(batch,)), np.tile(ANGLES, 2), moments).response).holes
     alone = [analyse(own, ANGLES).pressures.holes for own in drives]

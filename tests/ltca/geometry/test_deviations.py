@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from ltca.analysis.loaded_analysis import analyse
+from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
@@ -214,7 +215,7 @@ def test_wrong_deviations_are_refused(paper_cases, fields, message):
 
 
 def _together_and_alone(drives, angles):
-    model = HalfSpaceCompliance.of_drives(drives, angles.size)
+    model = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], angles.size)
     moment = drives[0].wheel_moment()
     together = solve_equilibrium(Reducer(discs=(model,)), np.tile(angles, len(drives)), moment)
     pressures = model.pressures(together.response)
@@ -264,7 +265,9 @@ def test_flanks_of_a_batch_are_the_flanks_of_its_drives(paper_cases):
         for wave in waves
     ]
     angles, pose = np.array([0.2, 4.0]), np.zeros((6, 4))
-    batch = ContactGeometry.of_drives(drives, angles.size).flank(np.tile(angles, len(drives)), pose)
+    batch = stack_drives([ContactGeometry.of_drive(each) for each in drives], angles.size).flank(
+        np.tile(angles, len(drives)), pose
+    )
     for number, drive in enumerate(drives):
         own = slice(number * angles.size, (number + 1) * angles.size)
         alone = ContactGeometry.of_drive(drive).flank(angles, pose[own])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
+from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
 from ltca.drive.deviations import PlacementErrors, ProfileErrors, Runout
@@ -142,7 +143,7 @@ def test_a_batch_is_bounded_drive_by_drive(paper_cases):
         )
         for each in others
     ]
-    bounds = ContactGeometry.of_drives(shared, 2).reach_beyond(nominal)
+    bounds = stack_drives([ContactGeometry.of_drive(each) for each in shared], 2).reach_beyond(nominal)
     for number, each in enumerate(shared):
         alone = ContactGeometry.of_drive(each).reach_beyond(nominal)
         np.testing.assert_allclose(bounds[2 * number : 2 * number + 2], [alone, alone], rtol=1e-12)

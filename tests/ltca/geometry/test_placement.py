@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.arrays import stack_drives
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 from ltca.reading.changes import with_fields
@@ -42,7 +43,7 @@ def test_effective_radii_of_rollers_and_holes(vary):
     np.testing.assert_allclose(place.outer_effective_radii, radii * 29.5 / (29.5 - radii), rtol=1e-14)
     pin = drive.pin_shaft.pin_radius
     np.testing.assert_allclose(place.hole_effective_radii, pin * (pin + 4.02) / 4.02, rtol=1e-12)
-    both = Placement.stack([place, Placement.of_drive(vary())], positions=2)
+    both = stack_drives([place, Placement.of_drive(vary())], positions=2)
     np.testing.assert_allclose(both.inner_effective_radii[:, 9], [5.005 * 19.5 / 24.505] * 2 + [5 * 19.5 / 24.5] * 2)
     assert both.outer_effective_radii.shape == (4, 11)
 
