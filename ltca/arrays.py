@@ -184,14 +184,16 @@ def batch_layout(model: Any, known: dict[int, Hashable] | None = None) -> Hashab
 
 def _layout(value: Any, axes: int | None, known: dict[int, Hashable]) -> Hashable:
     if axes is not None:
-        return np.shape(value)
+        shape: tuple[int, ...] = np.shape(value)
+        return shape
     kind = type(value)
     if kind is tuple:
         return tuple(_layout(item, None, known) for item in value)
     if kind is np.ndarray:
         return value.shape, value.tobytes()
     if not (names := _declared(kind)):
-        return value if isinstance(value, Hashable) else id(value)
+        named: Hashable = value if isinstance(value, Hashable) else id(value)
+        return named
     if id(value) not in known:
         known[id(value)] = (kind, *(_layout(getattr(value, name), own, known) for name, own in names))
     return known[id(value)]

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.mesh.body_mesh import BodyMesh, IntArray
+from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.mesh_file import element_nodes
-from ltca.arrays import ComplexArray
+from ltca.arrays import ComplexArray, IntArray
 
 POINTS_PER_EDGE = 5
 """Points drawn along a curved edge."""

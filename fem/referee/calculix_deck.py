@@ -46,9 +46,9 @@ from fem.body.surface import OppositeZone
 from fem.contact.coupling import Pose
 from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair, DriveModel
-from fem.mesh.body_mesh import BodyMesh, IntArray
+from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.mesh_file import element_nodes
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
 from ltca.output.files import whole_file

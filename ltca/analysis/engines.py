@@ -29,11 +29,8 @@ from ltca.drive.plane_strain import (
 )
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
-from ltca.equilibrium.shared_pins import SharedPins
-from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.reading.arguments import refuse_idle_options
 
@@ -92,13 +89,14 @@ class Engine(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _OnTables:
-    """Equilibrium on a model whose loads come cheaply from anywhere."""
+class OnTables:
+    """Equilibrium on a model whose loads come cheaply from anywhere; several drives may be balanced as one batch."""
 
     drive: Drive
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
+        """Return balanced positions at an output torque, N·mm, from poses near by if given."""
         return solve_at_output(self.model, self.drive, crank_angle, torque, start)
 
 
@@ -117,14 +115,9 @@ class _FromTables:
         return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
 
 
-def _on_tables(drive: Drive, *, in_batch: bool = False) -> Reducer:
+def _on_tables(drive: Drive, singles: Sequence[Drive], *, in_batch: bool = False) -> Reducer:
     """Return the model of a warm drive on tabulated laws."""
-    return Reducer(
-        discs=tuple(HalfSpaceCompliance.of_drive(single, in_batch=in_batch) for single in single_discs(drive)),
-        supports=support_stiffness(drive),
-        pins=SharedPins.of_drive(drive),
-        friction=TurningFriction.of_drive(drive),
-    )
+    return Reducer.of_drive(drive, [HalfSpaceCompliance.of_drive(single, in_batch=in_batch) for single in singles])
 
 
 def _method(name: str) -> Callable[[Drive, Reducer, Reducer], PreparedEngine]:
@@ -192,7 +185,7 @@ class HalfSpace:
             require_frictionless(drive, f"method {self.method}")
             require_fixed_pins(drive, f"method {self.method}")
         singles = single_discs(drive)
-        tables = model = _on_tables(drive)
+        tables = model = _on_tables(drive, singles)
         if self.contacts == "grids":
             grids = tuple(GridCompliance.of_drive(single) for single in singles)
             model = replace(tables, discs=grids, pins=None, friction=None)
@@ -200,11 +193,12 @@ class HalfSpace:
             return _method("paper")(drive, tables, model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
-        return _OnTables(drive=drive, model=tables)
+        return OnTables(drive=drive, model=tables)
 
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the tables of a drive."""
-        return _on_tables(warm_drive(drive), in_batch=in_batch)
+        drive = warm_drive(drive)
+        return _on_tables(drive, single_discs(drive), in_batch=in_batch)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -274,7 +268,7 @@ class _Coupled:
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
-        """Return the coupled compliance of a drive.
+        """Return the coupled compliance of a drive; coefficients of several drives do not mix in a batch.
 
         Raises
         ------
@@ -282,23 +276,27 @@ class _Coupled:
             When the coefficients are those of another number of discs.
         """
         drive = warm_drive(drive)
-        found, singles = self.with_coefficients(drive)._of_discs, single_discs(drive)
+        return self._model(drive, single_discs(drive))
+
+    def _model(self, drive: Drive, singles: Sequence[Drive]) -> Reducer:
+        found = self.with_coefficients(drive)._of_discs
         if len(found) not in (1, len(singles)):
             raise DriveError(
                 [f"coefficients: are those of {len(found)} discs, must be those of {len(singles)} (or of one, for all)"]
             )
         near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
         each = found if len(found) == len(singles) else found * len(singles)
-        discs = tuple(
+        discs = [
             CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)
             for single, own in zip(singles, each, strict=True)
-        )
-        return replace(_on_tables(drive), discs=discs)
+        ]
+        return Reducer.of_drive(drive, discs)
 
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive; finds or derives its coefficients."""
         drive = warm_drive(drive)
-        return _FromTables(drive=drive, tables=_on_tables(drive), model=self.model(drive))
+        singles = single_discs(drive)
+        return _FromTables(drive=drive, tables=_on_tables(drive, singles), model=self._model(drive, singles))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

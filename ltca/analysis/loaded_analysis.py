@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.engines import Engine, HalfSpace, OnTables, PreparedEngine
 from ltca.analysis.friction.losses import Losses, losses
 from ltca.analysis.half_width_guard import (
     check_half_widths,
@@ -17,7 +18,7 @@ from ltca.analysis.half_width_guard import (
     unborne_warning,
     wide_holes_warning,
 )
-from ltca.arrays import ComplexArray, FloatArray, freeze, take_positions
+from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ContactPressures
@@ -33,7 +34,12 @@ from ltca.equilibrium.balance import Equilibrium, equilibrium_of_disc
 from ltca.equilibrium.compliance_shares import PARTS, compliance_shares
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import cage_moments, crank_moments, solve_at_output
-from ltca.equilibrium.partial_balance import PartlyBalanced, balance_what_can_be, nothing_balanced
+from ltca.equilibrium.partial_balance import (
+    PartlyBalanced,
+    all_balanced,
+    balance_what_can_be,
+    nothing_balanced,
+)
 from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, disc_torques
 from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -41,6 +47,8 @@ from ltca.geometry.interference import lost_play, preload_warning
 
 SHARED = 24
 """Positions at which shares of the compliance are looked at: they change slowly over the turn."""
+MOST_ROWS = 20_000
+"""Positions of all cases that are balanced as one batch: more gain nothing and take memory."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -273,7 +281,6 @@ def seizing_words(written: Drive) -> str | None:
     return f"at {temperature_words(written.temperature)} {'; '.join(gone)}" if gone else None
 
 
-@names_unit_mistakes
 def analyse(
     drive: Drive, crank_angle: FloatArray, torque: float | None = None, engine: Engine | None = None
 ) -> LoadedAnalysis:
@@ -311,52 +318,142 @@ def analyse(
     >>> print(f"{result.bearing_tangential[0, 0, 0]:.0f} N")
     6738 N
     """
-    angle, torque = check_positions(crank_angle), check_torque(drive, torque)
-    written, drive = None if drive.temperature is None else drive, warm_drive(drive)
-    used: Engine = HalfSpace() if engine is None else engine
-    prepared = used.prepare(drive)
+    angle = check_positions(crank_angle)
+    return _analysed(drive, torque, _prepared(drive, torque, engine), angle)
+
+
+def analyse_cases(
+    cases: Mapping[str, Drive], crank_angle: FloatArray, torque: float | None = None, engine: Engine | None = None
+) -> Iterator[tuple[str, LoadedAnalysis | ConvergenceError]]:
+    """Analyse several drives as `analyse` does, those whose models agree in one batch.
+
+    Parameters
+    ----------
+    cases : mapping of str to Drive
+        Drives by name.
+    crank_angle, torque, engine
+        As for `analyse`.
+
+    Yields
+    ------
+    str, LoadedAnalysis or ConvergenceError
+        Name and analysis of each in their order; the error, with its ``partial``, where a position does not balance.
+
+    Raises
+    ------
+    DriveError
+        As `analyse` does.
+    """
+    angle, names = check_positions(crank_angle), list(cases)
+    many = max(1, MOST_ROWS // angle.size)
+    for part in (names[first : first + many] for first in range(0, len(names), many)):
+        prepared = [_prepared(cases[name], torque, engine) for name in part]
+        for name, case, known in zip(part, prepared, _balanced_together(prepared, angle), strict=True):
+            try:
+                yield name, _analysed(cases[name], torque, case, angle, known)
+            except ConvergenceError as error:
+                yield name, error
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Case:
+    """A drive at its temperatures, and as it was given where it has any, with its torque and the engine built for it."""
+
+    drive: Drive
+    written: Drive | None
+    torque: float
+    engine: Engine
+    prepared: PreparedEngine
+
+
+@names_unit_mistakes
+def _prepared(drive: Drive, torque: float | None, engine: Engine | None) -> _Case:
+    checked, used = check_torque(drive, torque), HalfSpace() if engine is None else engine
+    warm = warm_drive(drive)
+    written = None if drive.temperature is None else drive
+    return _Case(drive=warm, written=written, torque=checked, engine=used, prepared=used.prepare(warm))
+
+
+def _balanced_together(cases: Sequence[_Case], angle: FloatArray) -> list[tuple[Equilibrium, Equilibrium] | None]:
+    """Balance cases as rows of one batch at their torques and light torques; None for those to be balanced alone."""
+    found: list[tuple[Equilibrium, Equilibrium] | None] = [None] * len(cases)
+    groups: dict[Hashable, list[int]] = {}
+    for number, case in enumerate(cases):
+        if isinstance(case.prepared, OnTables):
+            groups.setdefault(batch_layout(case.prepared.model), []).append(number)
+    for members in (group for group in groups.values() if len(group) > 1):
+        drives = [cases[number].drive for number in members]
+        model = stack_drives([cases[number].prepared.model for number in members], angle.size)
+        angles = np.tile(angle, len(members))
+        torques = np.repeat([cases[number].torque for number in members], angle.size)
+        light = np.repeat([drive.load.light_torque for drive in drives], angle.size)
+        try:
+            states = solve_at_output(model, drives, angles, torques)
+            lights = solve_at_output(model, drives, angles, light, states.pose)
+        except (ConvergenceError, DriveError):  # one by one they tell which and why
+            continue
+        for place, number in enumerate(members):
+            rows = np.arange(place * angle.size, (place + 1) * angle.size)
+            found[number] = take_positions(states, rows), take_positions(lights, rows)
+    return found
+
+
+@names_unit_mistakes
+def _analysed(
+    drive: Drive,
+    torque: float | None,
+    case: _Case,
+    angle: FloatArray,
+    known: tuple[Equilibrium, Equilibrium] | None = None,
+) -> LoadedAnalysis:
+    """The analysis of a case, from its balanced positions where these are known."""
+    prepared, light_torque = case.prepared, case.drive.load.light_torque
 
     def at_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
-        return prepared.balance(angle[rows], torque, start)
+        return prepared.balance(angle[rows], case.torque, start)
 
     def at_light_torque(rows: NDArray[np.intp], start: FloatArray | None) -> Equilibrium:
-        return prepared.balance(angle[rows], drive.load.light_torque, start)
+        return prepared.balance(angle[rows], light_torque, start)
 
-    full = balance_what_can_be(at_torque, angle.size)
+    full = balance_what_can_be(at_torque, angle.size) if known is None else all_balanced(known[0])
     pressures = prepared.model.pressures(full.found.response)
     try:
-        check_half_widths(drive, full.found.response, pressures, torque)
+        check_half_widths(case.drive, full.found.response, pressures, case.torque)
     except DriveError as error:
-        seized = None if written is None else seizing_words(written)
+        seized = None if case.written is None else seizing_words(case.written)
         if seized is None:
             raise
         raise DriveError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
     start = np.full((angle.size, full.found.pose.shape[1]), np.nan)
     start[full.rows] = full.found.pose
-    try:
-        same = drive.load.light_torque == torque
-        light = full if same else balance_what_can_be(at_light_torque, angle.size, start)
-    except ConvergenceError as error:
-        light = nothing_balanced(full.found, angle.size, error)
-    back = _turned_back(prepared.model, drive, full, angle, torque)
+    light = full
+    if light_torque != case.torque:
+        try:
+            light = balance_what_can_be(at_light_torque, angle.size, start) if known is None else all_balanced(known[1])
+        except ConvergenceError as error:
+            light = nothing_balanced(full.found, angle.size, error)
+    back = _turned_back(prepared.model, case.drive, full, angle, case.torque)
     if light.failure is not None and light is not full:
-        light.failure.add(f"load.light_torque = {drive.load.light_torque:g} N·mm")
+        light.failure.add(f"load.light_torque = {light_torque:g} N·mm")
     push = bearing_forces(prepared.model, angle[full.rows], full.found.response)
+    walls = _wall_stresses(prepared.model, full.found, pressures)
+    spread = full.spread((full.found, pressures, push.real, push.imag, walls))
+    of_full, of_pressures, radial, tangential, of_walls = freeze((replace(spread[0], crank_angle=angle), *spread[1:]))
     analysis = LoadedAnalysis(
-        drive=drive,
-        torque=torque,
-        engine=used,
-        full=freeze(replace(full.spread(full.found), crank_angle=angle)),
+        drive=case.drive,
+        torque=case.torque,
+        engine=case.engine,
+        full=of_full,
         light=freeze(replace(light.spread(light.found), crank_angle=angle)),
         model=prepared.model,
-        pressures=freeze(full.spread(pressures)),
-        bearing_radial=freeze(full.spread(push.real)),
-        bearing_tangential=freeze(full.spread(push.imag)),
-        wall_stresses=freeze(full.spread(_wall_stresses(prepared.model, full.found, pressures))),
+        pressures=of_pressures,
+        bearing_radial=radial,
+        bearing_tangential=tangential,
+        wall_stresses=of_walls,
         balanced=freeze(full.balanced),
         balanced_light=freeze(light.balanced),
         back=None if back is None else freeze(back),
-        written=written,
+        written=case.written,
     )
     for failure in (full.failure, light.failure):
         if failure is not None:

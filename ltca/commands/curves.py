@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from ltca.analysis.pressure_safety import PressureSafety
     from ltca.analysis.torque_curve import TorqueCurve
     from ltca.analysis.transmission_error_orders import Order, Spectrum
+    from ltca.arrays import FloatArray
     from ltca.drive.members.limits import Limit
     from ltca.drive.parts import Drive
-    from ltca.geometry.pairs import FloatArray
     from ltca.page.study_page import Section
     from ltca.reading.drive_file import DriveFile
 

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
     from ltca.analysis.engines import Engine
     from ltca.analysis.loaded_analysis import LoadedAnalysis
+    from ltca.arrays import FloatArray
     from ltca.drive.members.judgement import Check
     from ltca.drive.members.limits import Limits
     from ltca.drive.parts import Drive
-    from ltca.geometry.pairs import FloatArray
     from ltca.page.compared import Compared
     from ltca.reading.drive_file import DriveFile
 
@@ -297,18 +297,18 @@ def _analyse(
     cases: dict[str, Drive], angles: FloatArray, torque: float | None, engine: Engine, title: str
 ) -> tuple[dict[str, LoadedAnalysis], dict[str, ConvergenceError]]:
     """Analyses of all cases; those without an answer at some positions, and why."""
-    from ltca.analysis.loaded_analysis import analyse
+    from ltca.analysis.loaded_analysis import analyse_cases
+    from ltca.errors import ConvergenceError
     from ltca.output.progress import progress
 
     analyses, failures = {}, {}
     with progress(title, len(cases)) as advance:
-        for name, drive in cases.items():
-            try:
-                analyses[name] = analyse(drive, angles, torque, engine)
-            except ConvergenceError as error:
-                failures[name] = error
-                if error.partial is not None:
-                    analyses[name] = error.partial
+        for name, found in analyse_cases(cases, angles, torque, engine):
+            if isinstance(found, ConvergenceError):
+                failures[name] = found
+                found = found.partial
+            if found is not None:
+                analyses[name] = found
             advance(name)
     if not analyses:
         raise next(iter(failures.values()))

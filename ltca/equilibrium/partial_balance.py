@@ -57,6 +57,12 @@ class PartlyBalanced:
         return value if self.failure is None else spread_positions(value, self.rows, self.positions)
 
 
+def all_balanced(found: Equilibrium) -> PartlyBalanced:
+    """Return positions that all have an answer."""
+    positions = found.crank_angle.size
+    return PartlyBalanced(positions=positions, rows=np.arange(positions), found=found, failure=None)
+
+
 def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceError) -> PartlyBalanced:
     """Return positions of which none has an answer.
 

@@ -26,8 +26,10 @@ from ltca.compliance.response import (
     bearing_pushes,
     split_shifts,
 )
-from ltca.equilibrium.friction.turning import Rubbing
+from ltca.drive.parts import Drive
+from ltca.equilibrium.friction.turning import Rubbing, TurningFriction
 from ltca.equilibrium.shared_pins import SharedPins
+from ltca.equilibrium.supports import support_stiffness
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.pair_motion import KnownPins
 from ltca.geometry.pairs import ContactGeometry
@@ -74,6 +76,16 @@ class Reducer:
     pins: SharedPins | None = None
     friction: JointFriction | None = None
     by_position: bool = field(init=False, repr=False)
+
+    @classmethod
+    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel], *, rubs: bool = True) -> Reducer:
+        """Return the reducer of a drive whose discs yield by these models; without friction where nothing `rubs`."""
+        return cls(
+            discs=tuple(discs),
+            supports=support_stiffness(drive, discs[0].geometry),
+            pins=SharedPins.of_drive(drive),
+            friction=TurningFriction.of_drive(drive) if rubs else None,
+        )
 
     def __post_init__(self) -> None:
         """Look once whether positions differ."""

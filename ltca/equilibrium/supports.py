@@ -11,7 +11,6 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
-from ltca.drive.single_discs import single_discs
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import shaft_pin_beam
@@ -33,13 +32,15 @@ def crank_stiffness(drive: Drive) -> FloatArray | None:
     )
 
 
-def support_stiffness(drive: Drive) -> FloatArray | None:
+def support_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray | None:
     """Return the stiffness matrix of all supports by the coordinates of the drive; None where nothing yields.
 
     Parameters
     ----------
     drive : Drive
         Of any number of discs.
+    geometry : ContactGeometry
+        Of one of its discs, for the tips of shaft pins that a ring ties.
 
     Returns
     -------
@@ -61,14 +62,14 @@ def support_stiffness(drive: Drive) -> FloatArray | None:
         places = np.arange(coordinates.size)[coordinates.wheel_place]
         matrix[places, places] += wheel
     if coordinates.ring:
-        matrix[coordinates.ring_place, coordinates.ring_place] += _ring_stiffness(drive)
+        matrix[coordinates.ring_place, coordinates.ring_place] += _ring_stiffness(drive, geometry)
     return matrix
 
 
-def _ring_stiffness(drive: Drive) -> FloatArray:
+def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:
     """Forces on the ring by its x, y and rotation, shape (3, 3): Σ k vᵀ v over the tips it moves by v."""
     beam = shaft_pin_beam(drive)
     if beam is None:
         raise AssertionError("a ring ties beams")
-    tips = ContactGeometry.of_drive(single_discs(drive)[0]).tips_by_ring
+    tips = geometry.tips_by_ring
     return np.asarray(beam.tip_stiffness * (tips.conjugate().T @ tips).real)

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ltca.arrays import FloatArray
 from ltca.figures.curve_panels import (
     BESIDE,
     DASHES,
-    FloatArray,
     case_names,
     degrees,
     label_all,

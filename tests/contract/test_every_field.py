@@ -8,6 +8,7 @@ alone stands in `EXCEPTIONS`, with its reason. Full finite elements and the comm
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,6 @@ from ltca.drive.reference.engine_support import refusal
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
-from ltca.equilibrium.supports import support_stiffness
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
@@ -60,10 +60,9 @@ def direct(drive):
     HalfSpace(method="direct").prepare(drive)  # which refuses what grids cannot say
     drive = warm_drive(drive)
     singles = single_discs(drive)
-    supports = support_stiffness(drive)
-    tables = Reducer(discs=tuple(HalfSpaceCompliance.of_drive(single) for single in singles), supports=supports)
+    tables = Reducer.of_drive(drive, [HalfSpaceCompliance.of_drive(single) for single in singles])
     near = solve_at_output(tables, drive, ANGLES[:1], drive.load.torque)
-    model = Reducer(discs=tuple(GridCompliance.of_drive(single, cells=4) for single in singles), supports=supports)
+    model = replace(tables, discs=tuple(GridCompliance.of_drive(single, cells=4) for single in singles))
     found = solve_at_output(model, drive, ANGLES[:1], drive.load.torque, near.pose)
     pressures = model.pressures(found.response)
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)

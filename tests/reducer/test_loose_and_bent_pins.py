@@ -259,7 +259,9 @@ def test_bodies_that_feel_nothing_are_half_spaces(joint, name):
         CoupledCompliance.of_drive(single, without_coupling(single), "half-space", hole_near_field=False)
         for single in single_discs(drive)
     ]
-    model = Reducer(discs=tuple(discs), supports=support_stiffness(drive), pins=SharedPins.of_drive(drive))
+    model = Reducer(
+        discs=tuple(discs), supports=support_stiffness(drive, discs[0].geometry), pins=SharedPins.of_drive(drive)
+    )
     found = solve_at_output(model, drive, ANGLES[:2], drive.load.torque)
     expected = analyse(drive, ANGLES[:2]).full
     np.testing.assert_allclose(found.pose[:, WHEEL_ANGLE], expected.pose[:, WHEEL_ANGLE], rtol=0.0, atol=1e-11)

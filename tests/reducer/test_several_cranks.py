@@ -15,7 +15,7 @@ from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import equal_parts
 from ltca.equilibrium.output_torque import crank_moments, solve_at_output
 from ltca.equilibrium.reducer import bearing_forces
-from ltca.equilibrium.supports import crank_stiffness, support_stiffness
+from ltca.equilibrium.supports import crank_stiffness
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
 from ltca.geometry.placement import position_angles
@@ -319,7 +319,7 @@ def test_shares_of_the_compliance(rv, name):
     found = analyse(drive, ANGLES)
     shares, step = found.compliance_shares, 1e-4
     np.testing.assert_allclose(sum(shares.values()), 1.0, rtol=1e-12)
-    tangent, whole = found.full.response.tangent, support_stiffness(drive)
+    tangent, whole = found.full.response.tangent, found.model.supports
     columns = np.zeros(tangent.shape[1], dtype=bool)
     columns[found.model.coordinates.wheel_place] = True
 
