@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 
 from ltca.analysis.engines import Engine, engine_named
 from ltca.analysis.extremes import sampling_warning
-from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse as analyse_positions
+from ltca.analysis import loaded_analysis
+from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
 from ltca.compliance.coefficients import InfluenceCoefficients
@@ -256,7 +257,7 @@ def analyse(
         compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
     )
     try:
-        return AnalysisResult(case=name, loaded=analyse_positions(drive, np.asarray(crank_angle), torque, engine))
+        return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, np.asarray(crank_angle), torque, engine))
     except ConvergenceError as error:
         if isinstance(error.partial, LoadedAnalysis):
             error.partial = AnalysisResult(case=name, loaded=error.partial)
