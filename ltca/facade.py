@@ -12,9 +12,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from ltca.analysis import loaded_analysis
 from ltca.analysis.engines import Engine, engine_named
 from ltca.analysis.extremes import sampling_warning
-from ltca.analysis import loaded_analysis
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import refined_value, summarise
