@@ -3,8 +3,8 @@
 Modules in the order data passes:
 
 =====================  ============================================================
-contact_law            What the mechanics needs of a load–approach law, whoever provides it: a table, a grid, a
-                       finite-element fit
+contact_law            Base class of the laws: load, stiffness, energy, pressure, half-width, approach at a load
+spring                 A contact that yields like a linear spring
 slenderness_curve      Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast
                        to evaluate
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
@@ -17,7 +17,6 @@ conforming             A pin in a bore that is hardly larger: arc, pressure and 
                        on its pin
 beam                   Round shafts and pins as beams: how far they yield at some planes under the forces of discs at these
                        planes
-series                 Springs, and the approach at a given load
 backed                 A contact backed by what carries its part: the seat of a loose pin or sleeve, and the bending of the pin
 =====================  ============================================================
 """

@@ -9,6 +9,7 @@ from ltca.contact.generator import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
 
 
 def law_for_profile(
@@ -35,8 +36,5 @@ def law_for_profile(
     generator = generator_profile(profile, length, radius)
     if generator is None:
         return LineContactLaw(length, contact_modulus)
-    # Tables of profiles build for a second or so: cylinders do without their module.
-    from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
-
     smallest, largest = float(np.min(effective_radii)), float(np.max(effective_radii))
     return ProfiledLineContactLaw.for_radii(generator, contact_modulus, smallest, largest)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.arrays import FloatArray
+from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import SlendernessCurve
 
 LONGEST = 1.0e5
@@ -72,7 +73,7 @@ def line_contact_table() -> LineContactTable:
 
 
 @dataclass(frozen=True, slots=True)
-class LineContactLaw:
+class LineContactLaw(ContactLaw):
     """Load, stiffness, energy, pressure and half-width of uncrowned cylinders of one length and modulus.
 
     Every method takes approach and effective radius in mm, broadcasts them and returns arrays; an open contact

@@ -20,13 +20,14 @@ from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
+from ltca.laws.contact_law import ContactLaw
 
 SELF_ENERGY = 0.25
 """−⟨ln|x − x′|⟩ over a semi-elliptic pressure of half-width b is −ln(b/2) + 1/4."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneContactLaw:
+class PlaneContactLaw(ContactLaw):
     """Plane-strain law of one line contact.
 
     Attributes
@@ -43,13 +44,16 @@ class PlaneContactLaw:
     contact_modulus: float
     datum: float
 
-    def approach_and_compliance(self, load: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return the approach at a load and its derivative, mm and mm/N (infinite slope at no load)."""
-        force = np.asarray(load, dtype=float)
+    def approach_at_load(
+        self, load: FloatArray, effective_radius: ArrayLike, start: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the approach at a load and its derivative, mm and mm/N, in closed form; zero where there is no load."""
+        force, radius = np.broadcast_arrays(np.asarray(load, dtype=float), np.asarray(effective_radius, dtype=float))
+        loaded = force > 0.0
         scale = 2.0 / (np.pi * self.contact_modulus * self.thickness)
-        half_width = self._half_width_of(np.maximum(force, 1e-300), effective_radius)
+        half_width = self._half_width_of(np.maximum(force, 1e-300), radius)
         logarithm = np.log(2.0 * self.datum / half_width)
-        return scale * force * (logarithm + 0.5), scale * logarithm
+        return np.where(loaded, scale * force * (logarithm + 0.5), 0.0), np.where(loaded, scale * logarithm, 0.0)
 
     def _half_width_of(self, load: FloatArray, effective_radius: ArrayLike) -> FloatArray:
         return np.asarray(

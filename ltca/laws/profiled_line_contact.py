@@ -21,6 +21,7 @@ from ltca.arrays import FloatArray
 from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
+from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
 
 LIGHTEST = 2.0e4
@@ -192,7 +193,7 @@ def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[FloatArray]:
 
 
 @dataclass(frozen=True, slots=True)
-class ProfiledLineContactLaw:
+class ProfiledLineContactLaw(ContactLaw):
     """Load, stiffness, energy, pressure and half-width of profiled cylinders.
 
     The methods are those of `ltca.laws.line_contact.LineContactLaw`. Radii outside the range the table was built for
