@@ -12,7 +12,6 @@ generator       Generator of a roller or pin as the drive defines it: crown, log
 grid_ladder     Ladder of the contact grids: their shapes, and which of them a contact is solved on
 tracked_grid    One contact on its own grid, solved again and again while the bodies move
 end_pressure    The largest pressure of a contact and how much it exceeds the one at mid-width
-free_end        Free ends: bodies that stop where the contact stops are no half-spaces
 subsurface      Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929)
 hertz           Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical
                 point contact

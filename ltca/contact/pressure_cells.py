@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.contact.influence import assemble_influence_matrix
@@ -64,35 +64,20 @@ class PatchGrid:
         Edges along the width, mm; from 0 when ``symmetric_y``.
     symmetric_x, symmetric_y : bool
         Whether the edges give the positive half of a symmetric patch.
-    end_plane, end_factor : float
-        Free ends of the bodies at y = ±``end_plane``, mm, and the weight of their images (`ltca.contact.free_end`).
     """
 
     x_edges: FloatArray
     y_edges: FloatArray
     symmetric_x: bool = True
     symmetric_y: bool = True
-    end_plane: float = 0.0
-    end_factor: float = 0.0
 
     @classmethod
-    def fitted(
-        cls,
-        length: float,
-        half_width: float,
-        *,
-        cells: int,
-        grading: float,
-        y_cells: int | None = None,
-        end_factor: float = 0.0,
-    ) -> PatchGrid:
-        """Quarter grid with ``cells`` cells over the expected half-width and room for the ends to bulge."""
+    def fitted(cls, length: float, half_width: float, *, cells: int, grading: float) -> PatchGrid:
+        """Return a quarter grid: `cells` over the expected half-width, with room for bulging ends, and over half the length."""
         count = int(np.ceil(_ROOM * cells))
         return cls(
             x_edges=np.asarray(half_width / cells * np.arange(count + 1.0)),
-            y_edges=graded_edges(length, cells if y_cells is None else y_cells, grading),
-            end_plane=0.5 * length,
-            end_factor=end_factor,
+            y_edges=graded_edges(length, cells, grading),
         )
 
     def whole(self) -> PatchGrid:
@@ -142,12 +127,7 @@ class PatchGrid:
     def influence(self) -> FloatArray:
         """Area-weighted influence matrix without its factor 1/(π E*), see `ltca.contact.influence`."""
         return assemble_influence_matrix(
-            self.x_edges,
-            self.y_edges,
-            symmetric_x=self.symmetric_x,
-            symmetric_y=self.symmetric_y,
-            end_plane=self.end_plane,
-            end_factor=self.end_factor,
+            self.x_edges, self.y_edges, symmetric_x=self.symmetric_x, symmetric_y=self.symmetric_y
         )
 
     def cell_means(self, function: Separation) -> FloatArray:
@@ -200,13 +180,13 @@ class PatchSolution:
         """Cell centres along x and the pressure there at mid-width y = 0, mm and MPa."""
         return self.grid.x_centres, self._at_mid_width(self.pressure)
 
-    def whole_field(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Cell centres along x and y and the pressure over the whole patch, images unfolded; mm, mm, MPa."""
-        x, y, pressure = self.grid.x_centres, self.grid.y_centres, self.pressure
+    def unfolded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the edges of the cells along x and y and the pressure over the whole patch, images included; mm, mm, MPa."""
+        x, y, pressure = self.grid.x_edges, self.grid.y_edges, self.pressure
         if self.grid.symmetric_x:
-            x, pressure = np.concatenate([-x[::-1], x]), np.concatenate([pressure[::-1], pressure])
+            x, pressure = np.concatenate([-x[:0:-1], x]), np.concatenate([pressure[::-1], pressure])
         if self.grid.symmetric_y:
-            y, pressure = np.concatenate([-y[::-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
+            y, pressure = np.concatenate([-y[:0:-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
         return x, y, pressure
 
     @property
@@ -340,10 +320,8 @@ def solve_cylinder_patch(
     *,
     relief: ReliefFunction | None = None,
     cells: int = 16,
-    y_cells: int | None = None,
     half_width: float | None = None,
     grading: float | None = None,
-    end_factor: float = 0.0,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
     """Contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
@@ -360,14 +338,12 @@ def solve_cylinder_patch(
         Approach at mid-width, mm, positive.
     relief : callable, optional
         z(y) ≥ 0, mm, symmetric: what the profile takes away along the width.
-    cells, y_cells : int
-        Cells over the half-width and over half the length (default: the same number).
+    cells : int
+        Cells over the half-width and over half the length.
     half_width : float, optional
         Where to put the edge, mm; found on a grid of half as many cells when not given.
     grading : float, optional
         Exponent of the cells along y, see `graded_edges`.
-    end_factor : float, optional
-        Weight of the images in free ends at ±length/2, see `ltca.contact.free_end`; 0 is the half-space.
     start : PatchSolution, optional
         A solution on the grid of half as many cells to take the first guess of the contact cells from.
 
@@ -378,12 +354,12 @@ def solve_cylinder_patch(
     slenderness = length / float(np.sqrt(effective_radius * approach))
     exponent = end_grading(slenderness) if grading is None else grading
 
-    def solve_on(edge: float, count: int, count_y: int, before: PatchSolution | None) -> PatchSolution:
+    def solve_on(edge: float, count: int, before: PatchSolution | None) -> PatchSolution:
         fitted = edge * (1.0 + _SHORT_EDGE / slenderness)
-        grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent, y_cells=count_y, end_factor=end_factor)
+        grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent)
         x = grid.x_edges
         means = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * effective_radius)
-        along = np.zeros(count_y) if relief is None else _means_along(relief, grid)
+        along = np.zeros(count) if relief is None else _means_along(relief, grid)
         guess = None
         if before is not None:
             guess = np.repeat(np.repeat(before.contact, 2, axis=0), 2, axis=1)
@@ -391,33 +367,20 @@ def solve_cylinder_patch(
                 guess = None
         return solve_patch(grid, means[:, None] + along[None, :], contact_modulus, approach, start=guess)
 
-    count_y = cells if y_cells is None else y_cells
     if half_width is None:
         half_width = expected_half_width(length, effective_radius, approach)
         for _ in range(3):
-            start = solve_on(half_width, max(cells // 2, 6), max(count_y // 2, 6), None)
+            start = solve_on(half_width, max(cells // 2, 6), None)
             if start.half_width <= 0.0:
                 break
             settled = abs(start.half_width / half_width - 1.0) < 2e-3
             half_width = start.half_width
             if settled:
                 break
-    return solve_on(half_width, cells, count_y, start)
+    return solve_on(half_width, cells, start)
 
 
 def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:
     """Mean relief of every y cell by Gauss points."""
     y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS
     return np.asarray(relief(y) @ _GAUSS_WEIGHTS / 2.0)
-
-
-def parabolic_separation(effective_radius: float, relief: ReliefFunction | None = None) -> Separation:
-    """h(x, y) = x²/(2ρ) + z(y) as a function for `PatchGrid.cell_means`."""
-
-    def separation(x: ArrayLike, y: ArrayLike) -> FloatArray:
-        across = np.asarray(x, dtype=float)
-        along = np.asarray(y, dtype=float)
-        extra = np.zeros_like(along) if relief is None else relief(along)
-        return np.asarray(across**2 / (2.0 * effective_radius) + extra)
-
-    return separation

@@ -180,10 +180,7 @@ def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> Subs
 LINE_SHEAR = 0.3002831
 """Largest shear stress below a Hertz line contact by its peak pressure: the largest of ζ (1 − ζ/√(1 + ζ²))."""
 LINE_SHEAR_DEPTH = 0.7861514
-"""Where it lies, in half-widths."""
-
-LINE_DEPTH = 0.7861514
-"""Its depth ζ in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
+"""Depth ζ of that stress in half-widths, √((√5 − 1)/2): the positive root of ζ⁴ + ζ² = 1."""
 
 
 def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> FloatArray:

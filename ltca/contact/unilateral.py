@@ -19,6 +19,8 @@ from ltca.errors import ConvergenceError
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+MAX_ITERATIONS = 500
+"""Factorisations."""
 _BLOCK_TRIALS = 4
 
 
@@ -54,7 +56,6 @@ def solve_unilateral_contact(
     *,
     start: Mask | None = None,
     load_direction: Array | None = None,
-    max_iterations: int = 500,
 ) -> UnilateralSolution:
     """Solve p ≥ 0, A p − penetration ≥ 0, p·(A p − penetration) = 0 exactly by block principal pivoting.
 
@@ -68,8 +69,6 @@ def solve_unilateral_contact(
         Cells to start with; default where ``penetration`` is positive.
     load_direction : ndarray, shape (n,) or (n, directions), optional
         Direction of the penetration's change for the tangent ``rate``, or several.
-    max_iterations : int
-        Factorisations allowed.
 
     Returns
     -------
@@ -94,7 +93,7 @@ def solve_unilateral_contact(
     history: list[int] = []
     fewest, trials = count + 1, _BLOCK_TRIALS
     scale = float(np.max(np.abs(penetration), initial=0.0))
-    for _ in range(max_iterations):
+    for _ in range(MAX_ITERATIONS):
         inside = np.nonzero(active)[0]
         pressure[:] = 0.0
         opening = -penetration

@@ -29,6 +29,8 @@ from ltca.geometry.rotation import integer_power, small_turn, unit
 
 SETTLED = 1e-8
 """Step of Newton's method, rad, that leaves a contact point wrong by less than round-off: convergence is quadratic."""
+MAX_ITERATIONS = 100
+"""Newton steps to a contact point."""
 THERE = 1e-13
 """Step, rad, that is round-off itself: the curve is that of the place before it."""
 
@@ -118,11 +120,6 @@ class FlankProfile:
             centre=runout.amount * complex(unit(runout.angle)),
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
-
-    @property
-    def is_batch(self) -> bool:
-        """Whether every position has a flank of its own."""
-        return has_rows(self)
 
     def of_points(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
         """Return the flanks of points that belong to these positions: itself for one drive."""
@@ -255,18 +252,11 @@ class FlankProfile:
         """Return the effective radius of curvature of flank and pin: 1/ρ = 1/r_pin + κ_flank, mm."""
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
-    def nearest_parameter(self, point: ComplexArray, start: FloatArray, *, limit: int = 100) -> FloatArray:
+    def nearest_parameter(self, point: ComplexArray, start: FloatArray) -> FloatArray:
         """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
-        return self.nearest_point(point, start, limit=limit).parameter
+        return self.nearest_point(point, start).parameter
 
-    def nearest_point(
-        self,
-        point: ComplexArray,
-        start: FloatArray,
-        *,
-        limit: int = 100,
-        across_root: bool = True,
-    ) -> NearestPoint:
+    def nearest_point(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
         """Find the flank point whose normal passes through a point.
 
         Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
@@ -280,10 +270,6 @@ class FlankProfile:
             Points in the disc frame, mm.
         start : array of float, same shape
             First guess of θ, rad.
-        limit : int
-            Iterations.
-        across_root : bool
-            Whether to look at the other side of a sharp root as well.
 
         Returns
         -------
@@ -296,10 +282,9 @@ class FlankProfile:
             When a point does not settle; the history holds the largest steps.
         """
         theta = np.array(np.broadcast_to(start, np.shape(point)), dtype=float)
-        found = self._settle(point, theta, limit)
-        return self._nearer_side(point, found) if across_root else found
+        return self._nearer_side(point, self._settle(point, theta))
 
-    def _settle(self, point: ComplexArray, start: FloatArray, limit: int) -> NearestPoint:
+    def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
         """Find the foot next to every start; points that have settled are left alone as soon as they are most of them."""
         flank, theta, direction = self, start, unit(start)
         every, settled, left = theta, direction, np.arange(theta.size)
@@ -307,7 +292,7 @@ class FlankProfile:
         low, high = np.full(theta.shape, -np.inf), np.full(theta.shape, np.inf)
         last = slope_before = np.zeros(theta.shape)
         history: list[float] = []
-        for iteration in range(limit):
+        for iteration in range(MAX_ITERATIONS):
             curve = flank.contact_curve(direction)
             away = curve.point - point
             tangent = curve.tangent
@@ -365,10 +350,10 @@ class FlankProfile:
         if not np.any(doubtful):
             return found
         # The doubtful points alone; of a batch of flanks the positions that have some.
-        rows = np.nonzero(np.any(doubtful, axis=1))[0] if self.is_batch else doubtful
+        rows = np.nonzero(np.any(doubtful, axis=1))[0] if has_rows(self) else doubtful
         flank = self.of_points(rows)
         point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
-        other = flank.nearest_point(point, start, across_root=False)
+        other = flank._settle(point, start)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
 
         def chosen(here: NDArray[Any], there: NDArray[Any]) -> NDArray[Any]:

@@ -259,12 +259,6 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     return pose
 
 
-def rigid_play(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
-    """Return the play of the wheel with the crank held and one disc floating, rad, shape (positions,)."""
-    forward = rigid_poses(geometry, crank_angle, 1)[:, WHEEL_ANGLE]
-    return forward - rigid_poses(geometry, crank_angle, -1)[:, WHEEL_ANGLE]
-
-
 def _reach(geometry: ContactGeometry) -> float:
     """Lever of the rotations, e z_P, mm."""
     return float(geometry.placement.eccentricity.max()) * geometry.placement.reduction_ratio

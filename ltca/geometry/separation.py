@@ -13,6 +13,9 @@ from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank import FlankProfile
 
+MAX_ITERATIONS = 40
+"""Newton steps to a point of the flank at a distance along the tangent."""
+
 
 def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
     """Return r − √(r² − l²), how far a circle has left its tangent, mm (Eq. 17).
@@ -35,9 +38,7 @@ def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
     return np.asarray(np.copysign(departure, radius))
 
 
-def flank_departure(
-    profile: FlankProfile, parameter: float, tangent_distance: FloatArray, *, limit: int = 40
-) -> FloatArray:
+def flank_departure(profile: FlankProfile, parameter: float, tangent_distance: FloatArray) -> FloatArray:
     """Return how far the flank has left its tangent at a contact point (Eq. 18–19).
 
     Parameters
@@ -48,8 +49,6 @@ def flank_departure(
         Its contact point θ, rad.
     tangent_distance : array
         l along the tangent in the sense of growing θ, mm.
-    limit : int
-        Newton iterations.
 
     Returns
     -------
@@ -68,7 +67,7 @@ def flank_departure(
     theta = np.full(tangent_distance.shape, float(parameter))
     bound = 0.4 * np.pi / profile.reduction_ratio
     history: list[float] = []
-    for _ in range(limit):
+    for _ in range(MAX_ITERATIONS):
         rate = (profile.flank_tangent(theta) * np.conj(tangent)).real
         away = ((profile.flank(theta) - origin) * np.conj(tangent)).real - tangent_distance
         floor = 0.05 * np.abs(profile.locus(theta).tangent)
