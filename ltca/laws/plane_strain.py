@@ -1,8 +1,8 @@
 r"""Load–approach law of a line contact in plane strain, with a datum.
 
-A half-plane has no datum of its own: the approach of two bodies in plane strain counts from a depth that the rest of
-the bodies, their body part, has to know as well. Here the approach is the one of bodies whose displacement follows
-the half-planes' logarithm down to the distance D, the datum distance:
+A half-plane alone defines no approach: it has to be measured relative to some depth, the same for the law and for the
+flexibility of the rest of the body. Here the approach is that of bodies whose displacement follows the logarithm of the
+half-plane down to the distance D, the datum distance:
 
 .. math:: \delta = \frac{2 q}{\pi E^*} \left( \ln\frac{2D}{b} + \tfrac12 \right), \qquad
           b^2 = \frac{4 q \rho}{\pi E^*},
@@ -23,7 +23,7 @@ from ltca.errors import ConvergenceError
 from ltca.laws.contact_law import ContactLaw
 
 SELF_ENERGY = 0.25
-"""−⟨ln|x − x′|⟩ over a semi-elliptic pressure of half-width b is −ln(b/2) + 1/4."""
+"""Of a semi-elliptic pressure of half-width b: −⟨ln|x − x′|⟩ = −ln(b/2) + 1/4."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +37,7 @@ class PlaneContactLaw(ContactLaw):
     contact_modulus : float
         E*, MPa.
     datum : float
-        D, mm; large against every half-width.
+        D, mm; large compared with every half-width.
     """
 
     thickness: float
@@ -61,16 +61,16 @@ class PlaneContactLaw(ContactLaw):
         )
 
     def _load(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Invert the law by Newton's method: load and ln(2D/b) there; concave, so it rises to the root from below.
+        """Return the load and ln(2D/b) by Newton's method.
 
-        With λ(F) = ln(2D/b) the approach is F (λ + 1/2) in its unit and its slope λ: the step ends at
-        (δ − F/2)/λ, one logarithm each.
+        The approach is a concave function of the load, so iterates rise to the root. With λ(F) = ln(2D/b) the approach is F (λ
+        + 1/2) in units of 2/(π E* L), and its slope is λ: a step leads to (δ − F/2)/λ and costs one logarithm.
         """
         delta = np.asarray(approach, dtype=float)
         closed = delta > 0.0
         pull = np.pi * self.contact_modulus * self.thickness
         at_unit_load = np.log(2.0 * self.datum) - 0.5 * np.log(4.0 * np.asarray(effective_radius, dtype=float) / pull)
-        # Open contacts take an approach at which the law surely holds.
+        # Open contacts are given an approach at which the law holds.
         target = np.where(closed, delta * (0.5 * pull), np.exp(2.0 * at_unit_load - 10.0))
         logarithm = at_unit_load - 0.5 * np.log(target / 10.0)
         load = target / (logarithm + 0.5)
