@@ -1,4 +1,4 @@
-"""Generator of a roller or pin as the drive defines it: crown, logarithmic relief and end relief added up."""
+"""Profile of a roller or pin along its length as the drive defines it: sum of crown, logarithmic relief and end relief."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class SummedProfile:
     ----------
     length : float
         Length, mm.
-    parts : tuple of ltca.contact.Relief
+    parts : tuple of ltca.contact.length_profile.Relief
         The terms, all of that length.
     """
 
@@ -42,15 +42,7 @@ class SummedProfile:
 
 
 def generator_profile(profile: LengthProfile, length: float, radius: float) -> SummedProfile | None:
-    """Return the generator profile of a roller or pin, None for a cylinder.
-
-    Parameters
-    ----------
-    profile : LengthProfile
-        The fields of the drive.
-    length, radius : float
-        Length of the contact and radius of the part, mm.
-    """
+    """Return the profile of a roller or pin of a contact length and radius in mm, None for a cylinder."""
     if profile.is_cylinder:
         return None
     parts: list[Relief] = []

@@ -24,11 +24,11 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
 # quadrature errs by less than 5e-6 of the coefficient, while second differences lose (distance/cell)⁴ digits.
 _FAR_LENGTHS = 1.5
 _FAR_WIDTHS = 4.0
-_TOGETHER = 1024  # far pairs of cells at once: their nodes stay in the cache
+_PAIRS_AT_ONCE = 1024  # distant pairs of cells: their nodes stay in the cache
 
 
 def _product_with_inverse_sinh(factor: FloatArray, ratio_of: FloatArray, to: FloatArray) -> FloatArray:
-    """``factor · asinh(ratio_of / |to|)``, zero where ``to`` is zero (its limit: the factor holds |to| or to²)."""
+    """``factor · asinh(ratio_of / |to|)``, zero where ``to`` is zero: its limit, since the factor contains |to| or to²."""
     size = np.abs(to)
     safe = np.where(size > 0.0, size, 1.0)
     return np.where(size > 0.0, factor * np.arcsinh(ratio_of / safe), 0.0)
@@ -87,7 +87,7 @@ def _mean_line_potential(lags: FloatArray, width: float, distance: FloatArray) -
 
 
 def _far_mean(lag: FloatArray, width: float, distance: FloatArray, receive: FloatArray, send: FloatArray) -> FloatArray:
-    """Mean of 1/r over two cells well apart, times their lengths in y: Gauss in y, moments in x; flat pairs."""
+    """Mean of 1/r over two distant cells, times their lengths in y: Gauss in y, moments in x; flat pairs."""
     nodes_receive = np.repeat(_GAUSS_POINTS, _GAUSS_POINTS.size)[:, None]
     nodes_send = np.tile(_GAUSS_POINTS, _GAUSS_POINTS.size)[:, None]
     y = distance + 0.5 * receive * nodes_receive - 0.5 * send * nodes_send
@@ -115,8 +115,8 @@ def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: flo
     longest = np.maximum(lengths[:, None], lengths[None, :])
     far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * width)
     m, i, j = np.nonzero(far)
-    for first in range(0, m.size, _TOGETHER):
-        few = m[first : first + _TOGETHER], i[first : first + _TOGETHER], j[first : first + _TOGETHER]
+    for first in range(0, m.size, _PAIRS_AT_ONCE):
+        few = m[first : first + _PAIRS_AT_ONCE], i[first : first + _PAIRS_AT_ONCE], j[first : first + _PAIRS_AT_ONCE]
         block[few] = _far_mean(lags[few[0]], width, distance[few], lengths[few[1]], lengths[few[2]])
     return np.asarray(block)
 

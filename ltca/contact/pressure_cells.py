@@ -2,12 +2,12 @@
 
 The patch lies at |y| ≤ length/2 along the width and is as wide as needed along the profile x. Pressure is constant
 in each cell; displacement and separation enter as cell means (Galerkin), so the discrete solution is the minimum
-of the exact potential over the discrete pressures: the energy errs with the square of the pressure error (its order
-is measured in ``tests/analytic``), far better than the pressures themselves.
+of the exact potential over the discrete pressures: the error of the energy is quadratic in that of the pressures (its order
+is measured in ``tests/analytic``).
 
-The x cells are uniform with the expected edge of the contact on a cell edge; the y cells shrink toward the ends,
-where the pressure of an unrelieved body grows like one over the square root of the distance and the contact
-bulges (the grid leaves room for that).
+The x cells are uniform with the expected edge of the contact on a cell edge; the y cells shrink toward the ends, where the
+pressure of an unrelieved body grows like one over the square root of the distance and the contact is wider, for which the
+grid has room.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 Separation = Callable[[FloatArray, FloatArray], FloatArray]
 ReliefFunction = Callable[[FloatArray], FloatArray]
 
-# Room beyond the expected edge: an unrelieved end bulges by up to 1.56 of the half-width at mid-width.
+# Width of the grid by the expected half-width: the contact of an unrelieved end is up to 1.56 times as wide as at mid-width.
 _ROOM = 1.6
 # The edge of a short patch lies beyond 2√⟨x²⟩ by this over λ (measured for λ from 0.25 to 1; negligible above).
 _SHORT_EDGE = 0.007
-# What constant cells do to a Hertz profile whose edge lies on a cell edge, per (cell width/half-width)², measured
-# with 6 to 64 cells: 2√⟨x²⟩ comes out too large, the first cell's pressure too small against the peak.
+# Errors of constant cells for a Hertz profile whose edge lies on a cell edge, per (cell width/half-width)², measured
+# with 6 to 64 cells: 2√⟨x²⟩ is too large, the pressure of the first cell too small compared with the peak.
 _HALF_WIDTH_BIAS = 0.150
 _PEAK_BIAS = 0.114
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
-    """Edges of half the width, 0 … length/2, cells shrinking toward the end like a power law.
+    """Return edges of half the width, 0 … length/2, mm, with cells that shrink toward the end like a power law.
 
     The last cell measures ``length/2 · cells**(-grading)``; grading 1 is uniform, 4 resolves the square-root
     singularity at an unrelieved end as well as the smooth middle.
@@ -48,7 +48,7 @@ def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
 
 
 def end_grading(slenderness: float) -> float:
-    """Grading exponent for a patch of length/√(ρδ) = ``slenderness``: longer ones need smaller end cells."""
+    """Return the grading exponent for a patch of length/√(ρδ) = ``slenderness``: longer ones need smaller end cells."""
     return 2.5 + 0.25 * float(np.log(max(slenderness, 1.0)))
 
 
@@ -63,7 +63,7 @@ class PatchGrid:
     y_edges : ndarray, shape (ny + 1,)
         Edges along the width, mm; from 0 when ``symmetric_y``.
     symmetric_x, symmetric_y : bool
-        Whether the edges give the positive half of a symmetric patch.
+        Whether the edges are those of the positive half of a symmetric patch.
     """
 
     x_edges: FloatArray
@@ -81,14 +81,14 @@ class PatchGrid:
         )
 
     def whole(self) -> PatchGrid:
-        """The same grid without symmetry."""
+        """Return the same grid without symmetry."""
         half = self.half()
         y = half.y_edges
         edges = np.concatenate([-y[:0:-1], y]) if half.symmetric_y else y
         return replace(half, y_edges=edges, symmetric_y=False)
 
     def half(self) -> PatchGrid:
-        """The same grid without symmetry along x: for flanks whose separation leans to one side."""
+        """Return the same grid without symmetry along x: for flanks, whose separation is not even."""
         x = self.x_edges
         edges = np.concatenate([-x[:0:-1], x]) if self.symmetric_x else x
         return replace(self, x_edges=edges, symmetric_x=False)
@@ -100,7 +100,7 @@ class PatchGrid:
 
     @property
     def images(self) -> int:
-        """How many times the grid stands for the whole patch: 1, 2 or 4."""
+        """Number of images of the grid in the whole patch: 1, 2 or 4."""
         return (2 if self.symmetric_x else 1) * (2 if self.symmetric_y else 1)
 
     @property
@@ -131,7 +131,7 @@ class PatchGrid:
         )
 
     def cell_means(self, function: Separation) -> FloatArray:
-        """Mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
+        """Return the mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
         x, y = (
             centres[:, None] + 0.5 * np.diff(edges)[:, None] * _GAUSS_POINTS
             for centres, edges in ((self.x_centres, self.x_edges), (self.y_centres, self.y_edges))
@@ -193,7 +193,7 @@ class PatchSolution:
     def half_width(self) -> float:
         """Contact half-width at mid-width, mm: 2 √⟨x²⟩ with the pressure as weight (exact for Hertz).
 
-        The origin of x is the centre of pressure when the patch is not symmetric.
+        x is measured from the centre of pressure when the patch is not symmetric.
         """
         x, p = self.grid.x_edges, self._at_mid_width(self.pressure)
         total = float(np.sum(p))
@@ -227,7 +227,7 @@ class PatchSolution:
         return float(np.max(self.pressure))
 
     def _at_mid_width(self, field: FloatArray) -> FloatArray:
-        """Values at y = 0 from the cell means next to it (parabola across mid-width)."""
+        """Values at y = 0 from the cell means next to it, by a parabola across mid-width."""
         y = self.grid.y_edges
         if self.grid.symmetric_y:
             if y.size < 3:
@@ -254,29 +254,11 @@ def solve_patch(
     *,
     start: NDArray[np.bool_] | None = None,
 ) -> PatchSolution:
-    """Pressure over a patch pressed together by ``approach``.
+    """Return the pressure over a patch at an approach of distant points, mm; nothing touches where the separation exceeds it.
 
-    Parameters
-    ----------
-    grid : PatchGrid
-        Whole, half or quarter grid.
-    separation : ndarray, shape (nx, ny)
-        Mean separation of the undeformed bodies over each cell, mm (`PatchGrid.cell_means`).
-    contact_modulus : float
-        E*, MPa.
-    approach : float
-        Approach of distant points, mm; nothing touches where the separation exceeds it.
-    start : ndarray of bool, shape (nx, ny), optional
-        Contact cells to start from; default where the undeformed bodies overlap.
-
-    Returns
-    -------
-    PatchSolution
-
-    Raises
-    ------
-    ltca.errors.ConvergenceError
-        If the contact set does not settle.
+    `separation` is the mean separation of the undeformed bodies over each cell, mm (`PatchGrid.cell_means`), `contact_modulus`
+    E*, MPa; `start` are initial contact cells, by default those where the undeformed bodies overlap. Arrays have the shape (nx,
+    ny). ConvergenceError if the contact set does not settle.
     """
     areas = grid.areas.ravel()
     scale = 1.0 / (np.pi * contact_modulus)
@@ -299,7 +281,7 @@ def solve_patch(
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
-    """First guess of the half-width at mid-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
+    """Return a first guess of the half-width at mid-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
 
     From δ = q/(π E*) (1 + 2 ln(length/b) + ln 4 …) for a Hertz strip of even load q, solved for b.
     """
@@ -324,7 +306,7 @@ def solve_cylinder_patch(
     grading: float | None = None,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
-    """Contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
+    """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
 
     Parameters
     ----------
@@ -337,19 +319,15 @@ def solve_cylinder_patch(
     approach : float
         Approach at mid-width, mm, positive.
     relief : callable, optional
-        z(y) ≥ 0, mm, symmetric: what the profile takes away along the width.
+        z(y) ≥ 0, mm, symmetric: relief of the profile along the width.
     cells : int
         Cells over the half-width and over half the length.
     half_width : float, optional
-        Where to put the edge, mm; found on a grid of half as many cells when not given.
+        Expected edge of the contact, mm; from a grid of half as many cells by default.
     grading : float, optional
         Exponent of the cells along y, see `graded_edges`.
     start : PatchSolution, optional
-        A solution on the grid of half as many cells to take the first guess of the contact cells from.
-
-    Returns
-    -------
-    PatchSolution
+        Solution on the grid of half as many cells, for the initial contact cells.
     """
     slenderness = length / float(np.sqrt(effective_radius * approach))
     exponent = end_grading(slenderness) if grading is None else grading
@@ -381,6 +359,6 @@ def solve_cylinder_patch(
 
 
 def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:
-    """Mean relief of every y cell by Gauss points."""
+    """Mean relief over every y cell by Gauss points."""
     y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS
     return np.asarray(relief(y) @ _GAUSS_WEIGHTS / 2.0)

@@ -1,11 +1,11 @@
-r"""A contact backed by what carries its part: the seat of a loose pin or sleeve, and the bending of the pin.
+r"""A contact in series with the seat of a loose pin or sleeve and with the bending of the pin.
 
-Contact, seat and beam carry the same load F in series,
+Contact, seat and beam carry the same load F,
 
 .. math:: \delta = \epsilon + s(F) + c F, \qquad F = f(\epsilon),
 
-with the contact's own law f, the approach s of the seat and the flexibility c of the pin. A pin that yields along the common
-normal leaves the place of the contact where it is, so this is exact.
+with the law f of the surfaces in contact, the approach s of the seat and the flexibility c of the pin. A pin that yields along
+the common normal leaves the place of the contact where it is, so this is exact.
 """
 
 from __future__ import annotations
@@ -171,23 +171,11 @@ class BackedLaw(ContactLaw):
 
 
 def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of the wheel pins of a drive of one disc with what is behind them.
+    """Return the law of the wheel pins of a drive of one disc (`ltca.drive.single_discs`): contact, seats and beams in series.
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc, at its own plane (`ltca.drive.single_discs`).
-    contact : ContactLaw
-        Of pins, or their sleeves, and flank.
-    play : array, shape (z_P,) or (positions, z_P)
-        Of each in its seat, mm.
-    depth : float, optional
-        Down to which `contact` counts a sleeve, mm; that of a half-space as long as the disc is thick by default.
-
-    Returns
-    -------
-    ContactLaw
-        That of the contact itself for fixed pins that do not bend.
+    `contact` is the law of pins, or their sleeves, and flank, returned as it is for fixed pins that do not bend; `play` is that
+    of each pin in its seat, shape (z_P,) or (positions, z_P), mm. `depth` is the depth in mm down to which `contact` counts a
+    sleeve, by default that of a half-space as long as the disc is thick.
     """
     beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
@@ -199,18 +187,11 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
 
 
 def back_shaft_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of shaft pins and holes with the sleeves behind it.
+    """Return the law of shaft pins and holes of a drive of one disc, with the sleeves behind it.
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc.
-    contact : ContactLaw
-        Of pins, or their sleeves, and holes.
-    play : array, shape (z_PS,) or (positions, z_PS)
-        Of the sleeves on their pins, mm.
-    depth : float, optional
-        Down to which `contact` counts a sleeve, mm; nowhere by default, where a spring stands for all outside.
+    `contact` is the law of pins, or their sleeves, and holes; `play` is that of the sleeves on their pins, shape (z_PS,) or
+    (positions, z_PS), mm. `depth` is the depth in mm down to which `contact` counts a sleeve; None where `contact` is a spring
+    that has nothing of the sleeve.
     """
     seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
     if seat is None or shaft is None:
@@ -220,13 +201,13 @@ def back_shaft_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
 
 
 def _datum(drive: Drive, part: PinWheel | PinShaft) -> float:
-    """Depth below which the law of a sleeve itself begins, mm: half its wall, from where on any yields; less in thin discs."""
+    """Depth below which the law of a sleeve begins, mm: half its wall; less in thin discs."""
     wall = part.pin_radius - (part.seat.bore_radius or 0.0)
     return min(0.5 * wall, HALF_SPACE_DATUM * drive.disc.thickness)
 
 
 def _overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
-    """What a half-plane of the sleeve yields between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
+    """Compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
     compliance = drive.materials.sleeve.plane_strain_compliance
     return float(2.0 * compliance * np.log(depth / _datum(drive, part)) / (np.pi * drive.disc.thickness))
 
@@ -269,7 +250,7 @@ def shaft_pin_beam(drive: Drive) -> PinBeam | None:
 
 
 def tip_share(drive: Drive) -> float:
-    """Return how far a shaft pin moves at the disc of a drive of one disc where a ring moves its tip by one; 0 without ring."""
+    """Return the displacement of a shaft pin at the disc per displacement of its tip by the ring; 0 without ring."""
     beam = shaft_pin_beam(drive)
     if beam is None or beam.ends[1] == "free":
         return 0.0
@@ -282,7 +263,7 @@ def from_start(beam: PinBeam, drive: Drive) -> FloatArray:
 
 
 def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
-    """Return what the pin of a drive of one disc yields by that disc alone, mm/N; 0 for no beam."""
+    """Return the deflection of the pin of a drive of one disc under unit load of that disc alone, mm/N; 0 without beam."""
     if beam is None:
         return 0.0
     return float(beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)[0, 0])

@@ -1,10 +1,10 @@
 r"""Load–approach law of a conforming seat: a round pin in a bore that is hardly larger, without friction, plane strain.
 
-At usual loads the arc of such a contact is no longer small against the radius and Hertz ends. Here the pressure acts
-on circles: a solid cylinder (force balanced by a uniform body force, displacement relative to its mean over the section)
-in a circular hole of an infinite body (displacement relative to the mean one of a concentric circle, the datum, in the
-direction of the load). Michell's solutions for the pressure :math:`p = p_0 + \sum p_n \cos n\theta` on the radius a give
-the radial displacements, κ = 3 − 4ν, μ the shear modulus:
+At usual loads the arc of such a contact is not small compared with the radius, and Hertz' solution does not hold. Here the
+pressure acts on circles: a solid cylinder (force balanced by a uniform body force, displacement relative to its mean over
+the section) in a circular hole of an infinite body (displacement relative to the mean one of a concentric circle, the datum,
+in the direction of the load). Michell's solutions for the pressure :math:`p = p_0 + \sum p_n \cos n\theta` on the radius a
+give the radial displacements, κ = 3 − 4ν, μ the shear modulus:
 
 =======  =================================================  ==================================================================
 n        pin, inward, per p_n a / 4μ                        bore, outward, per p_n a / 4μ
@@ -19,8 +19,8 @@ They fill the gap ΔR (1 − cos θ) − δ cos θ over the arc |θ| < α: `ltca
 only part that depends on the datum. docs/theory/seats.md has the whole derivation, with figures.
 
 Both circles are taken at :math:`a = \sqrt{r r_s}`, which keeps Hertz' curvature exact; where the play is wide the arc is
-small, and there the logarithms of both radii count. Left out: displacements small against the radius, friction, and what
-bounds the body with the bore.
+small, and there the logarithms of both radii count. Left out: finite displacements, friction, and the outer boundary of the
+body with the bore.
 """
 
 from __future__ import annotations
