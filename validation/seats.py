@@ -18,7 +18,6 @@ from ltca.arrays import FloatArray
 from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.series import approach_at_load
 from ltca.output.files import whole_file
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)
@@ -162,7 +161,7 @@ def sleeve_rows() -> Iterator[str]:
         share = sleeve.plane_strain_compliance * modulus
         travel = found.approach + share * width**2 / (8.0 * outer_radius)
         plane = 2.0 * load / LENGTH / (np.pi * modulus) * (np.log(2.0 * outer_radius / width) + 0.5)
-        line = float(approach_at_load(LineContactLaw(LENGTH, modulus), np.array([load]), outer_radius)[0][0])
+        line = float(LineContactLaw(LENGTH, modulus).approach_at_load(np.array([load]), outer_radius)[0][0])
         walled = share * plane + float(law.approach_and_compliance(load, play)[0])
         bare = float(no_wall.approach_and_compliance(load, play)[0])
         flank = (1.0 - share) * line

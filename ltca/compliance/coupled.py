@@ -47,9 +47,9 @@ from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import back_shaft_pins, of_pairs, shaft_pin_stiffness, tip_share
-from ltca.laws.contact_law import ContactLaw, EnergyLaw
-from ltca.laws.series import SpringLaw, approach_at_load
+from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.spring import SpringLaw
 
 ITERATIONS = 60
 CHUNK = 256
@@ -70,7 +70,7 @@ class CoupledCompliance:
         Body parts, rollers as long as they are.
     near_field : NearFieldLaws
         Laws of the near fields.
-    hole_law : EnergyLaw
+    hole_law : ContactLaw
         Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
     hole_spring : float
         What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
@@ -87,7 +87,7 @@ class CoupledCompliance:
     geometry: ContactGeometry
     coefficients: InfluenceCoefficients
     near_field: NearFieldLaws
-    hole_law: EnergyLaw
+    hole_law: ContactLaw
     hole_spring: float
     race: FloatArray
     outer_radius: FloatArray
@@ -190,8 +190,8 @@ class CoupledCompliance:
         """Return pressures and half-widths from the near fields."""
         laws, near = self.near_field, np.stack(list(response.warm_start))
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size
-        inner, _ = approach_at_load(laws.inner, response.rollers.inner_load, self.inner_radius)
-        hole, _ = approach_at_load(laws.hole, response.hole_load, self.hole_radius)
+        inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, self.inner_radius)
+        hole, _ = laws.hole.approach_at_load(response.hole_load, self.hole_radius)
 
         def read(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
             return pressures_of_law(law, kind if laws.has_ends else None, approach, radius)
@@ -232,7 +232,8 @@ class _Batch:
         self.effective_radius = np.take_along_axis(flank.effective_radius, on_flank, axis=1)
         self.outer_radius, self.inner_radius = model.outer_radius[in_bore], model.inner_radius[in_bore]
         self.hole_radius = model.hole_radius[in_holes]
-        self.pin_law, self.hole_law = of_pairs(model.near_field.pin, on_flank), of_pairs(model.hole_law, in_holes)
+        self.pin_law = model.near_field.pin.take(flank.approach.shape, (rows, on_flank))
+        self.hole_law = model.hole_law.take((rows.size, model.hole_radius.size), (rows, in_holes))
         self.inner_near = self.inner_compliance = self.inner_load = np.zeros(in_bore.shape)
         self.placed = False
         self.place_rollers(np.zeros((rows.size, rollers)))
@@ -282,8 +283,8 @@ class _Batch:
             inner_load = outer_load * self.cosine
             expected = self.inner_near + self.inner_compliance * (inner_load - self.inner_load)
             self.inner_load = inner_load
-            self.inner_near, self.inner_compliance = approach_at_load(
-                m.near_field.inner, inner_load, self.inner_radius, expected
+            self.inner_near, self.inner_compliance = m.near_field.inner.approach_at_load(
+                inner_load, self.inner_radius, expected
             )
             inner = self.of_all(self.inner_load, in_bore, m.race.shape[0]) @ m.race
             inner += self.of_all(self.inner_near + cross * outer_load, in_bore, m.race.shape[0])

@@ -26,7 +26,8 @@ from ltca.errors import DriveError
 from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
-from ltca.laws.series import SpringLaw
+from ltca.laws.contact_law import ContactLaw
+from ltca.laws.spring import SpringLaw
 
 PLACES = 4096
 """Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
@@ -44,7 +45,7 @@ class PositionContacts(NamedTuple):
     outer: tuple[Pieces, ...]
 
 
-class _KindGrids:
+class _KindGrids(ContactLaw):
     """The law of the contacts of one kind in a batch of positions, each on grids of its own.
 
     It lives as long as one response: the pieces of every contact are replaced as it is pressed again.

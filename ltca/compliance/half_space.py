@@ -15,9 +15,9 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import back_shaft_pins, back_wheel_pins, shaft_pin_stiffness, tip_share
-from ltca.laws.contact_law import ContactLaw, EnergyLaw
+from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
-from ltca.laws.series import SpringLaw
+from ltca.laws.spring import SpringLaw
 
 SAMPLES = 180
 """Places of each lobe at which the range of effective radii is looked for."""
@@ -38,7 +38,7 @@ class HalfSpaceCompliance:
         Law of wheel pin and flank.
     roller_laws : RollerLaws
         Laws of the rollers.
-    hole_law : EnergyLaw
+    hole_law : ContactLaw
         Law of shaft pins and holes: springs k_PS, with what is before them.
     kinds : ContactKinds
         The contacts as grids see them, for what no table holds.
@@ -47,7 +47,7 @@ class HalfSpaceCompliance:
     geometry: ContactGeometry
     pin_law: ContactLaw
     roller_laws: RollerLaws[ContactLaw]
-    hole_law: EnergyLaw
+    hole_law: ContactLaw
     kinds: ContactKinds
 
     @classmethod

@@ -19,7 +19,8 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.materials import Material
 from ltca.drive.members.pins import PinShaft, PinWheel, WheelPinBeam
 from ltca.drive.parts import Drive
-from ltca.laws.backed import MOST, BackedLaw, SeatLaw
+from ltca.laws.backed import MAX_OVERLAP, BackedLaw
+from ltca.laws.conforming import ConformingLaw
 from ltca.testing.actual_parts import ActualParts
 
 LOADS = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 300), np.linspace(1.02, 8.0, 60)])
@@ -40,7 +41,7 @@ class SeatEnergy:
 
     Parameters
     ----------
-    law : SeatLaw
+    law : ConformingLaw
         Approach at a load.
     play : array, shape (pins,)
         mm.
@@ -48,7 +49,7 @@ class SeatEnergy:
         Load about which energies are wanted, N.
     """
 
-    law: SeatLaw
+    law: ConformingLaw
     play: FloatArray
     largest: float
 
@@ -108,7 +109,7 @@ class ContactOfSleeves:
         radius = np.broadcast_to(np.asarray(effective_radius, dtype=float), delta.shape)
         total, closed = np.zeros(delta.shape), delta > 0.0
         whole, radius = delta[closed], radius[closed]
-        low, high = whole.copy(), whole / (1.0 - MOST)
+        low, high = whole.copy(), whole / (1.0 - MAX_OVERLAP)
         for _ in range(52):
             middle = 0.5 * (low + high)
             above = middle - self._off(middle, radius)[0] > whole

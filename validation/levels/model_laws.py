@@ -14,7 +14,6 @@ from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
-from ltca.laws.series import approach_at_load
 from validation.compare.comparison import ARCSECONDS, compare_positions
 from validation.compare.model_positions import answers_of
 from validation.rows import Row, positive_row
@@ -132,7 +131,7 @@ def pair_approaches(
     )
     pins = flank.parameter.shape[1]
     body = np.einsum("bii->bi", matrix)[0, :pins] + model.own.pin
-    near, _ = approach_at_load(model.near_field.pin, load, flank.effective_radius[0])
+    near, _ = model.near_field.pin.approach_at_load(load, flank.effective_radius[0])
     return np.asarray(near + body * load)
 
 

@@ -28,7 +28,6 @@ from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.errors import CycloError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
-from ltca.laws.series import approach_at_load
 from ltca.reading.drive_file import load_drive
 
 Answer = dict[str, Any]
@@ -177,7 +176,7 @@ class PressedRoller:
             law = LineContactLaw(self.length, self.modulus)
         else:
             law = ProfiledLineContactLaw.for_radii(self.relief, self.modulus, self.radius, self.radius)
-        approach = float(approach_at_load(law, np.array([self.load]), self.radius)[0][0])
+        approach = float(law.approach_at_load(np.array([self.load]), self.radius)[0][0])
         return float(law.mid_pressure(approach, self.radius)), approach
 
 
