@@ -100,6 +100,7 @@ def _solve_and_write(
     referee: Callable[[FullSolution, Path], None] | None,
 ) -> tuple[ReducerSolution, list[Check]]:
     from fem.drive.fields import recover_fields
+    from fem.options import SolutionOptions
     from fem.reducer.solution import solve_reducer
     from fem.reducer.solution_files import write_solution
     from ltca.drive.members.verdict_words import verdict_table
@@ -110,14 +111,12 @@ def _solve_and_write(
         solution = solve_reducer(
             drive,
             arguments.angle,
+            SolutionOptions(size=arguments.size, plane=arguments.plane, fine_walls=arguments.fine_walls),
             torque=arguments.torque,
-            scale=arguments.size,
-            state=arguments.plane,
-            fine_walls=arguments.fine_walls,
             progress=show,
         )
         show("files")
-        fields = [recover_fields(disc.model, disc.state, state=arguments.plane) for disc in solution.discs]
+        fields = [recover_fields(disc) for disc in solution.discs]
         checks = write_solution(solution, fields, case, out, limits)
     load = drive.load_words(arguments.torque)
     print(

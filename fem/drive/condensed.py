@@ -35,7 +35,7 @@ def condense_drive(
     contacts: ExpectedContacts,
     meshes: DriveMeshes,
     *,
-    state: PlaneState = "strain",
+    plane: PlaneState = "strain",
     known: tuple[RoundGroup, ...] = (),
 ) -> DriveModel:
     """Assemble, factorise and condense all bodies.
@@ -50,7 +50,7 @@ def condense_drive(
         Expected contacts; those with a half-width become candidates.
     meshes : DriveMeshes
         Meshes graded for them.
-    state : {"strain", "stress"}
+    plane : {"strain", "stress"}
         Plane strain or plane stress.
     known : tuple of RoundGroup
         Pins and rollers condensed before; those of the same make are taken as they are.
@@ -65,7 +65,7 @@ def condense_drive(
     MeshError
         When a boundary is missing or too coarse for a contact zone.
     """
-    place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=state)
+    place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=plane)
     materials, holes = drive.materials, contacts.holes
     outer, inner = contacts.rollers_outer, contacts.rollers_inner
     stock = {group.made_of: group for group in known}

@@ -66,10 +66,10 @@ class DiscStress:
 
 def recover_disc_stress(solution: FullSolution) -> DiscStress:
     """Return the stress in the disc of a full solution."""
-    model, state = solution.model, solution.plane_state
+    model = solution.model
     body, shape = model.meshes.disc, model.shapes.disc
     displacement = model.disc.displacement(solution.state.contact.pressure[: model.disc.compliance.shape[0]])
-    stress = recover_stress(body, displacement, model.drive.materials.disc, state=state)
+    stress = recover_stress(body, displacement, model.drive.materials.disc, state=solution.options.plane)
     loaded = [
         (pair, detail, *_centre_of_pressure(pair, detail))
         for pair, detail in zip(model.pairs, solution.contacts.details, strict=True)

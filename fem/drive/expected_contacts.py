@@ -28,6 +28,9 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
+FULL_FINITE_ELEMENTS = "full finite elements"
+"""What refusals call this analysis."""
+
 # Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
 SMALLEST_LOAD_SHARE = 0.05
 # A contact open by less than this share of the largest approach may close in the real solution: refine it too.
@@ -226,6 +229,13 @@ def on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray:
     return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
 
 
+def require_supported(drive: Drive, by: str = FULL_FINITE_ELEMENTS) -> None:
+    """Raise DriveError, naming `by`, where cranks or the wheel's axis yield, there is friction, or pins are not fixed."""
+    require_rigid_members(drive, by)
+    require_frictionless(drive, by)
+    require_fixed_pins(drive, by)
+
+
 def require_one_disc(drive: Drive) -> None:
     """Refuse a drive of several discs where each is a problem of its own.
 
@@ -320,9 +330,7 @@ def expect_contacts(
     """
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
     _refuse_wheel_axis(drive)
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require_supported(drive)
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length

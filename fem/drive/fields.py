@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.body.elasticity import PlaneState
 from fem.body.stress import Stress, recover_stress
 from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
+from fem.drive.full_solution import FullSolution
 from fem.drive.model import DriveModel, PairKind
 from fem.drive.pose import PoseSolution
 from fem.mesh.body_mesh import BodyMesh
@@ -66,23 +66,9 @@ class BodyField:
         return PlacedBody(body=self.body, centre=self.pose.centre, rotation=self.pose.rotation, kind=self.kind)
 
 
-def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneState = "strain") -> tuple[BodyField, ...]:
-    """Return the fields of disc, wheel pins, rollers and inner races.
-
-    Parameters
-    ----------
-    model : DriveModel
-        Condensed drive.
-    solution : PoseSolution
-        Its solution.
-    state : {"strain", "stress"}
-        As the model was condensed.
-
-    Returns
-    -------
-    tuple of BodyField
-        In the order of `fem.drive.meshes.DriveMeshes.bodies`, then the inner race of each crank.
-    """
+def recover_fields(full: FullSolution) -> tuple[BodyField, ...]:
+    """Return the fields of disc, wheel pins, rollers, elastic shaft pins, and then the inner race of each crank."""
+    model, solution = full.model, full.state
     pressure = solution.contact.pressure
     on_disc = model.disc.compliance.shape[0]
     meshes, materials, pose = model.meshes, model.drive.materials, solution.pose
@@ -98,7 +84,7 @@ def recover_fields(model: DriveModel, solution: PoseSolution, *, state: PlaneSta
             "inner_race": materials.inner_race,
             "shaft_pin": materials.shaft_pin,
         }[kind]
-        stress = turn_stress(recover_stress(body, elastic, material, state=state), at.rotation)
+        stress = turn_stress(recover_stress(body, elastic, material, state=full.options.plane), at.rotation)
         carried = np.zeros(body.node_count)
         if kind in ("disc", "inner_race"):
             carried = _pressure_on(model, pressure, body.node_count, crank if kind == "inner_race" else None)
@@ -199,8 +185,9 @@ def fit_rigid_motion(places: ComplexArray, displacement: ComplexArray, weight: F
     return complex(found[0], found[1]), float(found[2])
 
 
-def bore_motion(model: DriveModel, solution: PoseSolution) -> tuple[complex, float]:
+def bore_motion(full: FullSolution) -> tuple[complex, float]:
     """Return displacement (fixed axes, mm) and rotation (rad) of the disc fitted to its bore circle, or to all of them."""
+    model, solution = full.model, full.state
     body = model.meshes.disc
     chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
     nodes = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]

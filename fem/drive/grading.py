@@ -231,7 +231,7 @@ def _reach_to_bore(displacement: ComplexArray, place: Placement, rays: ComplexAr
     return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))
 
 
-def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) -> str:
+def find_shortcoming(model: DriveModel, solution: PoseSolution, size: float) -> str:
     """Return why the meshes do not serve a solution, "" when they do."""
     results = summarise_contacts(model, solution)
     for pair, detail in zip(model.pairs, results.details, strict=True):
@@ -241,11 +241,11 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, scale: float) ->
             return f"the pressure of {name} reaches the end of its zone"
         if (
             detail.share > FINE_SHARE
-            and detail.largest_edge > SLACK * scale * detail.half_width / ELEMENTS_PER_HALF_WIDTH
+            and detail.largest_edge > SLACK * size * detail.half_width / ELEMENTS_PER_HALF_WIDTH
         ):
             return (
                 f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "
-                f"not {ELEMENTS_PER_HALF_WIDTH / scale:.3g}"
+                f"not {ELEMENTS_PER_HALF_WIDTH / size:.3g}"
             )
     return _closed_without_zone(model, solution)
 

@@ -186,7 +186,7 @@ def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_F
     CycloError
         For plane stress, which the deck does not have; when the file cannot be written.
     """
-    if solution.plane_state != "strain":
+    if solution.options.plane != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
     model = solution.model
     deck = _Deck()

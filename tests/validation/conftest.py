@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 import validation.levels.flexible_disc
+from fem.options import SolutionOptions
 from ltca.compliance.coefficients import without_coupling
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from validation.compare.compared_positions import compare_case
 from validation.compare.disc_stresses import DiscStressAnswer
-from validation.compare.finite_element_positions import FullPosition, Settings
+from validation.compare.finite_element_positions import FullPosition
 from validation.compare.model_positions import answer_positions
 from validation.levels.flexible_disc import flexibility_rows, full_solution_rows, study_case
 from validation.levels.positions import compare_position_rows
@@ -92,7 +93,7 @@ def make_study(paper_cases):
                 reason="made by hand",
             )
         )
-    plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", settings=Settings())
+    plan = Plan(name="paper", drives=drives, crank_angles=ANGLES, level="quick", options=SolutionOptions())
     return Study(plan=plan, rows=tuple(rows), compared=compared, flexibility=flexibility, coefficients=coefficients)
 
 
@@ -122,7 +123,9 @@ def crank_study(crank_drive):
         )  # fmt: skip
         coefficients = replace(without_coupling(crank_drive), pin=1e-7)
         compared = compare_case(crank_drive, [full], coefficients)
-        plan = Plan(name="rv", drives={"nominal": crank_drive}, crank_angles=angles, level="quick", settings=Settings())
+        plan = Plan(
+            name="rv", drives={"nominal": crank_drive}, crank_angles=angles, level="quick", options=SolutionOptions()
+        )
         return Study(
             plan=plan, rows=tuple(compare_position_rows(compared[0])), compared={"nominal": compared},
             flexibility={"nominal": study_case(crank_drive, coefficients)}, coefficients={"nominal": coefficients},

@@ -10,6 +10,7 @@ import pytest
 
 from fem.body.wall_stress import WallStress
 from fem.drive.disc_stress import DiscStress
+from fem.options import SolutionOptions
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
@@ -29,7 +30,7 @@ from validation.compare.disc_stresses import (
     stress_content,
     stresses_of,
 )
-from validation.compare.finite_element_positions import Settings, answer_of_summary
+from validation.compare.finite_element_positions import answer_of_summary
 from validation.levels.closed_forms import _power
 from validation.levels.disc_stresses import disc_stress_rows
 from validation.levels.flexible_disc import (
@@ -301,7 +302,7 @@ def test_models_agree_without_shaft_pins(drive):
 
 def test_cranks_are_planned_and_supports_refused(drive):
     file = load_drive("paper")
-    plan = plan_study(replace(file, cases={"nominal": drive}), None, [ANGLE], "quick", Settings())
+    plan = plan_study(replace(file, cases={"nominal": drive}), None, [ANGLE], "quick", SolutionOptions())
     assert plan.drives == {"nominal": drive}
     support = parse_drive(shipped_drive("rv"), "rv").cases["nominal"].crank.support
     for refused, field in (
@@ -309,4 +310,4 @@ def test_cranks_are_planned_and_supports_refused(drive):
         (replace(drive, pin_wheel=replace(drive.pin_wheel, support_stiffness=5e5)), r"pin_wheel\.support_stiffness"),
     ):
         with pytest.raises(DriveError, match=field):
-            plan_study(replace(file, cases={"nominal": refused}), None, None, "quick", Settings())
+            plan_study(replace(file, cases={"nominal": refused}), None, None, "quick", SolutionOptions())

@@ -68,16 +68,16 @@ def execute(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out or default_folder(file.name, "validate")
     require_folder(out)
     from fem.errors import MemoryLimitError
+    from fem.options import SolutionOptions
     from fem.reducer.solution import require_solution_memory
     from ltca.errors import CycloError
-    from validation.compare.finite_element_positions import Settings
     from validation.study import plan_study
 
     angles = list(arguments.angles or [])
-    plan = plan_study(file, arguments.case, angles, arguments.level, Settings(size=arguments.size))
+    plan = plan_study(file, arguments.case, angles, arguments.level, SolutionOptions(size=arguments.size))
     try:
         for drive in plan.drives.values():
-            require_solution_memory(drive, plan.crank_angles[0], arguments.size)
+            require_solution_memory(drive, plan.crank_angles[0], plan.options)
     except MemoryLimitError as error:
         raise CycloError(f"--size {arguments.size:g}: {error}") from error
     with claimed_folder(out, "validate", writes=("report.html", "validation.json", "rows.csv"), beside=("kept",)):

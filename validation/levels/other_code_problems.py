@@ -19,6 +19,7 @@ import numpy as np
 
 from fem.drive.full_solution import FullSolution
 from fem.drive.solution import solve_drive
+from fem.options import SolutionOptions
 from fem.referee.calculix import ask_calculix
 from fem.referee.calculix_deck import PENALTY_FACTOR, find_calculix, pair_name, write_deck
 from ltca.arrays import FloatArray
@@ -98,7 +99,7 @@ def define_drive() -> dict[str, Any]:
 
 def our_drive() -> Answer:
     """Solve the drive by our finite elements."""
-    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, SolutionOptions(size=SIZE))
     contacts = solution.contacts
     return {
         "pin_load": contacts.pin_load.tolist(),
@@ -111,7 +112,7 @@ def our_drive() -> Answer:
 
 def their_drive() -> Answer:
     """Let CalculiX solve it on the same mesh."""
-    solution = solve_drive(coarse_drive(), CRANK_ANGLE, scale=SIZE)
+    solution = solve_drive(coarse_drive(), CRANK_ANGLE, SolutionOptions(size=SIZE))
     with tempfile.TemporaryDirectory(prefix="cyclo-validate-") as folder:
         answer = ask_calculix(solution, write_deck(solution, Path(folder) / "drive.inp"), find_calculix())
     return {**_by_part(solution, answer.load), "wheel_angle": answer.wheel_angle}

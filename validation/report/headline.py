@@ -82,7 +82,7 @@ def validation_content(study: Study) -> dict[str, Any]:
         "cases": {case: drive.fingerprint() for case, drive in plan.drives.items()},
         "crank_angles_rad": [rounded(angle) for angle in plan.crank_angles],
         "depth": plan.level,
-        "element_size": plan.settings.size,
+        "element_size": plan.options.size,
         "levels": {str(level): title for level, title in LEVELS.items()},
         "headline": headline(study),
         "verdict": verdict_content(study),

@@ -88,7 +88,7 @@ def _context(study: Study) -> dict[str, Any]:
         "cases": list(plan.drives),
         "angles": [_angle(angle) for angle in plan.crank_angles],
         "depth": plan.level,
-        "size": plan.settings.size,
+        "size": plan.options.size,
         "torque": f"{first.load.torque / 1000.0:g}",
         "headline": head,
         "worst": [_worst_line(model, head["worst_difference_from_full_fe"][model]) for model in MODELS],

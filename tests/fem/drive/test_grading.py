@@ -8,6 +8,7 @@ from fem.drive.expected_contacts import expect_contacts
 from fem.drive.grading import grade_contacts, measure_gaps
 from fem.drive.meshes import wall_refinements
 from fem.drive.solution import solve_disc
+from fem.options import SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
@@ -112,7 +113,7 @@ def test_elements_lie_where_a_soft_disc_presses(drive):
 def test_a_plastic_disc_is_answered():
     """Failed after five gradings, the pressure at the end of a zone that lay where the undeformed flank is."""
     drive, angle = practical_drive(5)
-    found = solve_disc(single_discs(drive)[0], angle, drive.wheel_moment() / 2.0, scale=4.0)
+    found = solve_disc(single_discs(drive)[0], angle, drive.wheel_moment() / 2.0, SolutionOptions(size=4.0))
     assert drive.materials.disc.youngs_modulus == 2600.0
     # The pose is iterated until loads change by a tenth of a newton; the wheel carries 2,700 N at the pin circle.
     assert found.contacts.equilibrium_residual < 1e-4 * found.contacts.pin_load.sum()
