@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem.contact.hertz import hertz_half_width, hertz_peak_pressure
 from fem.testing.seated_pin import SleeveOnPin, press_pin_into_bore, squeeze_sleeve
 from ltca.arrays import FloatArray
+from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.line_contact import LineContactLaw
@@ -76,8 +76,8 @@ def hertz_rows() -> Iterator[str]:
     law = _bore_law(*SEATS[1])
     play, radius = 0.004, 4.0 * 4.004 / 0.004
     for load in (10.0, 30.0, 100.0, 300.0, 1150.0, 3000.0, 20_000.0):
-        width = float(hertz_half_width(load / LENGTH, radius, law.contact_modulus))
-        peak = float(hertz_peak_pressure(load / LENGTH, radius, law.contact_modulus))
+        width = float(line_half_width(load / LENGTH, radius, law.contact_modulus))
+        peak = float(line_peak_pressure(load / LENGTH, radius, law.contact_modulus))
         # The law's own logarithm continued from loads where both agree, with Hertz' arc in it.
         light = 1e-9
         at_light = float(law.approach_and_compliance(light, play)[0]) / light
@@ -146,7 +146,7 @@ def sleeve_rows() -> Iterator[str]:
         )
         no_wall = _bore_law(pin_radius, bore_radius, outer_radius, load, sleeve)
         modulus = contact_modulus(STEEL, sleeve)
-        width = float(hertz_half_width(load / LENGTH, outer_radius, modulus))
+        width = float(line_half_width(load / LENGTH, outer_radius, modulus))
         seat = SleeveOnPin(
             pin=STEEL,
             sleeve=sleeve,

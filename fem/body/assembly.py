@@ -20,12 +20,6 @@ from fem.mesh.body_mesh import BodyMesh, IntArray
 from ltca.arrays import FloatArray
 
 
-def element_nodes(body: BodyMesh) -> IntArray:
-    """Return the nodes of every element, vertices first, then mid-side nodes; shape (3 or 6, elements)."""
-    mesh = body.mesh
-    return np.asarray(np.vstack([mesh.t, mesh.nvertices + mesh.t2f]) if body.order == 2 else mesh.t, dtype=np.int64)
-
-
 def shape_functions(body: BodyMesh, quadrature: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return shape functions (points, nodes), their gradients (points, nodes, 2) and weights at quadrature points.
 
@@ -46,7 +40,7 @@ def shape_functions(body: BodyMesh, quadrature: int) -> tuple[FloatArray, FloatA
 
 def jacobians(body: BodyMesh, elements: IntArray, slopes: FloatArray) -> FloatArray:
     """Return J = ∂x_a/∂ξ_c, shape (points, 2 (c), 2 (a), elements), for gradients of shape (points, nodes, 2)."""
-    places = body.mesh.doflocs[:, element_nodes(body)[:, elements]]
+    places = body.mesh.doflocs[:, body.element_nodes.T[:, elements]]
     return np.asarray(np.einsum("qnc,ane->qcae", slopes, places, optimize=True))
 
 
@@ -114,7 +108,7 @@ def sum_by_nodes(body: BodyMesh, elements: IntArray, blocks: FloatArray) -> sp.c
     csc_matrix, shape (unknowns, unknowns)
         With sorted indices.
     """
-    nodes = element_nodes(body)[:, elements]
+    nodes = body.element_nodes.T[:, elements]
     count = body.node_count
     keys = (nodes[None, :, :] * count + nodes[:, None, :]).ravel()  # by column, then by row
     order = np.argsort(keys)

@@ -24,7 +24,6 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
-from fem.body.assembly import element_nodes
 from fem.body.elasticity import area_loads, rigid_modes
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from ltca.arrays import FloatArray
@@ -116,7 +115,7 @@ def order_nodes(body: BodyMesh) -> IntArray:
 def _nested_dissection(body: BodyMesh) -> IntArray:
     import pymetis
 
-    graph = _graph(element_nodes(body), body.node_count)
+    graph = _graph(body.element_nodes.T, body.node_count)
     graph.setdiag(0.0)
     graph.eliminate_zeros()
     order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))

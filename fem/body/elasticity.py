@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from skfem import ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
 from skfem.models.elasticity import lame_parameters
 
-from fem.body.assembly import elastic_blocks, element_nodes, jacobians, shape_functions, sum_by_nodes
+from fem.body.assembly import elastic_blocks, jacobians, shape_functions, sum_by_nodes
 from fem.mesh.body_mesh import BodyMesh, IntArray
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
@@ -133,7 +133,7 @@ def area_loads(body: BodyMesh, centre: complex = 0j) -> FloatArray:
     array, shape (2 nodes, 3)
         mm², mm², mm³ for each unit of body force.
     """
-    nodes = element_nodes(body)
+    nodes = body.element_nodes.T
     values, slopes, weights = shape_functions(body, CURVED_QUADRATURE)
     jacobian = jacobians(body, np.arange(nodes.shape[1]), slopes)
     area = weights[:, None] * (jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0])

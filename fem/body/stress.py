@@ -15,7 +15,6 @@ from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
 from fem.body.elasticity import PlaneState
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.mesh_file import element_nodes
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
 
@@ -100,7 +99,7 @@ def recover_stress(
     spread = np.column_stack([np.ones(corners.shape[1]), corners.T]) @ np.linalg.inv(
         np.column_stack([np.ones(3), x, y])
     )
-    nodes = element_nodes(body)
+    nodes = body.element_nodes
     weight = np.repeat(np.abs(np.asarray(basis.dx)).sum(axis=1)[:, None], nodes.shape[1], axis=1).ravel()
     total = np.bincount(nodes.ravel(), weights=weight, minlength=body.node_count)
 

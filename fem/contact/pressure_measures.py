@@ -7,6 +7,8 @@ import numpy as np
 from ltca.arrays import FloatArray
 
 PEAK_WINDOW = 0.5
+"""Part of the half-width about the largest pressure over which the parabola for the peak is fitted: single values wiggle by some
+tenths of a per cent and the largest of them lies beside the peak."""
 
 
 def pressure_moments(arc: FloatArray, pressure: FloatArray) -> tuple[float, float, float]:

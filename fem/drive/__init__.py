@@ -3,6 +3,7 @@
 Modules in the order data passes:
 
 =================  ============================================================
+contact_kinds      The kinds of contacts, and what each is called in results, tables and pictures
 expected_contacts  Where contacts are to be expected at a crank angle, with which load and half-width: a guess, for
                    grading meshes
 meshes             Meshes of all bodies of a drive, graded for the contacts expected at a crank angle

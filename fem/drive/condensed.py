@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from fem.body.condensation import CondensedBody, condense_body
 from fem.body.elasticity import PlaneState, assemble_stiffness, unknowns_of_boundary
 from fem.body.surface import OppositeZone, PressureZone
+from fem.drive.contact_kinds import PairKind
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes, RoundMesh
-from fem.drive.model import ContactPair, DriveModel, PairKind, RoundBody, RoundGroup
+from fem.drive.model import ContactPair, DriveModel, RoundBody, RoundGroup
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve, DriveShapes
 from ltca.arrays import ComplexArray, FloatArray

@@ -68,7 +68,7 @@ def recover_disc_stress(solution: FullSolution) -> DiscStress:
     """Return the stress in the disc of a full solution."""
     model = solution.model
     body, shape = model.meshes.disc, model.shapes.disc
-    displacement = model.disc.displacement(solution.state.contact.pressure[: model.disc.compliance.shape[0]])
+    displacement = model.disc_displacement(solution.state.contact.pressure)
     stress = recover_stress(body, displacement, model.drive.materials.disc, state=solution.options.plane)
     loaded = [
         (pair, detail, *_centre_of_pressure(pair, detail))

@@ -11,10 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.contact.hertz import hertz_half_width
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import (
     hole_modulus,
@@ -59,40 +57,93 @@ class ContactGroup:
     half_width: FloatArray
     direction: FloatArray
 
-    @classmethod
-    def of_loads(
-        cls,
-        load: FloatArray,
-        candidate: NDArray[np.bool_],
-        direction: ComplexArray,
-        *,
-        smallest_share: float,
-        length: float,
-        effective_radius: FloatArray,
-        modulus: float,
-    ) -> ContactGroup:
-        """Return contacts with the half-widths that Hertz gives their loads.
 
-        Parameters
-        ----------
-        load : array
-            N.
-        candidate : array of bool
-            Which of them get a half-width.
-        direction : array of complex
-            Toward the contact, of any length.
-        smallest_share : float
-            Share of the largest load for which candidates get a half-width at least.
-        length : float
-            Of the line contacts, mm.
-        effective_radius : array
-            mm.
-        modulus : float
-            E*, MPa.
-        """
-        graded = np.maximum(load, smallest_share * float(load.max(initial=0.0)))
-        width = hertz_half_width(graded / length, effective_radius, modulus)
-        return cls(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HertzContacts:
+    """Half-widths of all contacts of a drive by the formula of Hertz.
+
+    Attributes
+    ----------
+    drive : Drive
+        For materials and lengths.
+    profile : FlankProfile
+        For the curvature of the flank.
+    placement : Placement
+        For the radii.
+    smallest_share : float
+        Candidates get the half-width of at least this share of the largest load of their kind.
+    """
+
+    drive: Drive
+    profile: FlankProfile
+    placement: Placement
+    smallest_share: float
+
+    @property
+    def pin_modulus(self) -> float:
+        """E* of wheel pin and flank, MPa."""
+        return contact_modulus(self.drive.materials.disc, self.drive.materials.wheel_pin)
+
+    @property
+    def outer_modulus(self) -> float:
+        """E* of roller and bore, MPa."""
+        return contact_modulus(self.drive.materials.disc, self.drive.materials.roller)
+
+    @property
+    def inner_modulus(self) -> float:
+        """E* of roller and inner race, MPa."""
+        return contact_modulus(self.drive.materials.inner_race, self.drive.materials.roller)
+
+    def on_flank(
+        self, load: FloatArray, candidate: BoolArray, theta: FloatArray, direction: ComplexArray
+    ) -> ContactGroup:
+        """Return the contacts of wheel pins with the flank at θ; directions toward them, of any length."""
+        radius = self.profile.effective_radius(theta, self.placement.wheel_pin_radii)
+        return self._group(load, candidate, direction, radius, self.pin_modulus, self.drive.disc.thickness)
+
+    def on_bore(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
+        """Return the contacts of rollers with the bores."""
+        roller, bore = self.placement.roller_radii, self.placement.bore_radius
+        radius, length = roller * bore / (bore - roller), self.drive.crank_bearing.roller_length
+        return self._group(load, candidate, direction, radius, self.outer_modulus, length)
+
+    def on_race(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
+        """Return the contacts of rollers with the inner races."""
+        roller, race = self.placement.roller_radii, self.placement.inner_race_radius
+        radius, length = roller * race / (race + roller), self.drive.crank_bearing.roller_length
+        return self._group(load, candidate, direction, radius, self.inner_modulus, length)
+
+    def in_holes(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
+        """Return the contacts of shaft pins with the holes."""
+        pin, hole = self.placement.shaft_pin_radii, self.placement.hole_radii
+        modulus = hole_modulus(self.drive, rigid_shaft_pins=not shaft_pins_yield(self.drive))
+        return self._group(load, candidate, direction, pin * hole / (hole - pin), modulus, self.drive.disc.thickness)
+
+    def _group(
+        self,
+        load: FloatArray,
+        candidate: BoolArray,
+        direction: ComplexArray,
+        radius: FloatArray,
+        modulus: float,
+        length: float,
+    ) -> ContactGroup:
+        graded = np.maximum(load, self.smallest_share * float(load.max(initial=0.0)))
+        width = hertz_half_width(graded / length, radius, modulus)
+        return ContactGroup(load=load, half_width=np.where(candidate, width, 0.0), direction=np.angle(direction))
+
+
+def hertz_half_width(line_load: FloatArray, radius: FloatArray, modulus: float) -> FloatArray:
+    r"""Return the half-width of a line contact, mm: :math:`\sqrt{4 q R/(\pi E^*)}` (Johnson, 1985, Eq. 4.43).
+
+    q is the load by length, N/mm, R the effective radius, mm, and E* the contact modulus, MPa.
+
+    Examples
+    --------
+    >>> round(float(hertz_half_width(100.0, 10.0, 113187.0)), 5)
+    0.10606
+    """
+    return np.asarray(np.sqrt(4.0 * line_load * radius / (np.pi * modulus)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -332,17 +383,11 @@ def expect_contacts(
     _refuse_wheel_axis(drive)
     require_supported(drive)
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
-    materials, thickness = drive.materials, drive.disc.thickness
-    roller_length = drive.crank_bearing.roller_length
-    pin_modulus = contact_modulus(materials.disc, materials.wheel_pin)
-    outer_modulus = contact_modulus(materials.disc, materials.roller)
-    inner_modulus = contact_modulus(materials.inner_race, materials.roller)
-    at_hole = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
-
+    hertz = HertzContacts(drive=drive, profile=profile, placement=placement, smallest_share=SMALLEST_LOAD_SHARE)
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)
-    flank_stiffness = np.pi * pin_modulus * thickness / APPROACH_LOGARITHM
-    roller_modulus = 1.0 / (1.0 / outer_modulus + 1.0 / inner_modulus)
-    roller_stiffness = np.pi * roller_modulus * roller_length / APPROACH_LOGARITHM
+    flank_stiffness = np.pi * hertz.pin_modulus * drive.disc.thickness / APPROACH_LOGARITHM
+    roller_modulus = 1.0 / (1.0 / hertz.outer_modulus + 1.0 / hertz.inner_modulus)
+    roller_stiffness = np.pi * roller_modulus * drive.crank_bearing.roller_length / APPROACH_LOGARITHM
     counts = [pins, rollers, len(placement.hole_radii)]
     stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.hole_stiffness], counts)
     moment = drive.wheel_moment(torque) if wheel_moment is None else wheel_moment
@@ -354,22 +399,6 @@ def expect_contacts(
     theta = rigid.flank_parameters(pose)
     n = profile.normal(theta) * np.exp(1j * pose[DISC_ROTATION])
     rays, hole_rays = rigid.roller_rays(), rigid.hole_rays(pose)
-    radius, hole_radius = placement.roller_radii, placement.hole_radii
-    hole_effective = placement.shaft_pin_radii * hole_radius / (hole_radius - placement.shaft_pin_radii)
-    outer_effective = radius * placement.bore_radius / (placement.bore_radius - radius)
-    inner_effective = radius * placement.inner_race_radius / (placement.inner_race_radius + radius)
-
-    def group(kind: int, effective: FloatArray, modulus: float, length: float, ray: ComplexArray) -> ContactGroup:
-        return ContactGroup.of_loads(
-            loads[kind],
-            nearly[kind],
-            ray,
-            smallest_share=SMALLEST_LOAD_SHARE,
-            length=length,
-            effective_radius=effective,
-            modulus=modulus,
-        )
-
     turn_back = np.exp(-1j * pose[DISC_ROTATION])
     hole_direction = hole_rays / np.abs(hole_rays)
     return ExpectedContacts(
@@ -378,12 +407,12 @@ def expect_contacts(
         disc_y=float(pose[Y]),
         disc_rotation=float(pose[DISC_ROTATION]),
         wheel_angle=float(pose[WHEEL_ANGLE]),
-        pins=group(0, profile.effective_radius(theta, placement.wheel_pin_radii), pin_modulus, thickness, -n),
+        pins=hertz.on_flank(loads[0], nearly[0], theta, -n),
         flank_points=profile.flank(theta),
-        rollers_outer=group(1, outer_effective, outer_modulus, roller_length, rays),
-        rollers_inner=group(1, inner_effective, inner_modulus, roller_length, -rays),
+        rollers_outer=hertz.on_bore(loads[1], nearly[1], rays),
+        rollers_inner=hertz.on_race(loads[1], nearly[1], -rays),
         bore_points=placement.bore_centres[placement.roller_cranks] + placement.bore_radius * rays * turn_back,
         race_points=placement.inner_race_radius * rays,
-        holes=group(2, hole_effective, at_hole, thickness, hole_direction),
-        hole_points=placement.hole_centres + hole_radius * hole_direction * turn_back,
+        holes=hertz.in_holes(loads[2], nearly[2], hole_direction),
+        hole_points=placement.hole_centres + placement.hole_radii * hole_direction * turn_back,
     )

@@ -9,8 +9,9 @@ import numpy as np
 from fem.body.stress import Stress, recover_stress
 from fem.contact.coupling import Pose
 from fem.contact.pressure_measures import vertex_means
+from fem.drive.contact_kinds import PairKind
 from fem.drive.full_solution import FullSolution
-from fem.drive.model import DriveModel, PairKind
+from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.placed_body import PlacedBody
@@ -52,7 +53,7 @@ class BodyField:
     @property
     def places(self) -> ComplexArray:
         """Nodes of the rigid body in the loaded pose, mm."""
-        return self.pose.place(self.body.mesh.doflocs[0] + 1j * self.body.mesh.doflocs[1])
+        return self.pose.place(self.body.places)
 
     @property
     def placed_mesh(self) -> BodyMesh:
@@ -70,13 +71,12 @@ def recover_fields(full: FullSolution) -> tuple[BodyField, ...]:
     """Return the fields of disc, wheel pins, rollers, elastic shaft pins, and then the inner race of each crank."""
     model, solution = full.model, full.state
     pressure = solution.contact.pressure
-    on_disc = model.disc.compliance.shape[0]
     meshes, materials, pose = model.meshes, model.drive.materials, solution.pose
     ideal = model.start_pose((0.0, 0.0, 0.0, 0.0))
     fields = []
 
     def add(kind: str, body: BodyMesh, at: Pose, nominal: Pose, elastic: FloatArray, crank: int = 0) -> None:
-        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+        local = body.places
         material = {
             "disc": materials.disc,
             "pin": materials.wheel_pin,
@@ -100,7 +100,7 @@ def recover_fields(full: FullSolution) -> tuple[BodyField, ...]:
             )
         )
 
-    add("disc", meshes.disc, model.disc_pose(pose), model.disc_pose(ideal), model.disc.displacement(pressure[:on_disc]))
+    add("disc", meshes.disc, model.disc_pose(pose), model.disc_pose(ideal), model.disc_displacement(pressure))
     round_displacements = _round_displacements(model, solution)
     centres: tuple[tuple[str, PairKind, tuple[BodyMesh, ...]], ...] = (
         ("pin", "pin", meshes.wheel_pins),
@@ -190,8 +190,8 @@ def bore_motion(full: FullSolution) -> tuple[complex, float]:
     model, solution = full.model, full.state
     body = model.meshes.disc
     chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
-    nodes = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
-    u = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
+    nodes = body.places
+    u = model.disc_displacement(solution.contact.pressure)
     elastic = u[0::2] + 1j * u[1::2]
     weight = np.zeros(len(nodes))
     length = np.abs(nodes[chain[:, 2]] - nodes[chain[:, 0]])

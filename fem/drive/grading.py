@@ -12,14 +12,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.contact_results import DeformedContacts, summarise_contacts
-from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements, on_turned_flank
+from fem.drive.expected_contacts import (
+    ContactGroup,
+    ExpectedContacts,
+    HertzContacts,
+    bore_displacements,
+    on_turned_flank,
+)
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import hole_modulus, shaft_pins_yield
+from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 
@@ -131,37 +137,16 @@ def grade_contacts(
     """
     gaps = measure_gaps(drive, crank_angle, displacement, rotation, wheel_angle)
     profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
-    materials, thickness = drive.materials, drive.disc.thickness
     rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
-    bore, race, radius = place.bore_radius, place.inner_race_radius, place.roller_radii
     turn_back = np.exp(-1j * rotation)
-
-    pin_gaps, roller_gaps, hole_gaps = _gaps_left(gaps, deformed)
-
-    def group(
-        load: FloatArray, gap: FloatArray, effective: FloatArray, modulus: float, direction: ComplexArray
-    ) -> ContactGroup:
-        return ContactGroup.of_loads(
-            load,
-            (load > 0.0) | (gap < margin),
-            direction,
-            smallest_share=smallest_share,
-            length=thickness,
-            effective_radius=effective,
-            modulus=modulus,
-        )
-
-    hole_effective = place.shaft_pin_radii * place.hole_radii / (place.hole_radii - place.shaft_pin_radii)
-    outer_effective, inner_effective = radius * bore / (bore - radius), radius * race / (race + radius)
-    pin_modulus = contact_modulus(materials.disc, materials.wheel_pin)
-    outer_modulus = contact_modulus(materials.disc, materials.roller)
-    inner_modulus = contact_modulus(materials.inner_race, materials.roller)
+    hertz = HertzContacts(drive=drive, profile=profile, placement=place, smallest_share=smallest_share)
     pins, rollers, holes = loads
-    at_hole = hole_modulus(drive, rigid_shaft_pins=not shaft_pins_yield(drive))
+    pin_near, roller_near, hole_near = (
+        (load > 0.0) | (gap < margin) for load, gap in zip(loads, _gaps_left(gaps, deformed), strict=True)
+    )
 
     def pin_group(theta: FloatArray) -> ContactGroup:
-        effective = profile.effective_radius(theta, place.wheel_pin_radii)
-        return group(pins, pin_gaps, effective, pin_modulus, -profile.normal(theta) * np.exp(1j * rotation))
+        return hertz.on_flank(pins, pin_near, theta, -profile.normal(theta) * np.exp(1j * rotation))
 
     theta = gaps.flank_parameters
     flank_points = profile.flank(theta)
@@ -170,8 +155,8 @@ def grade_contacts(
         + _bore_points(_of_rollers(place, crank_angle, displacement, rotation), place, rays) * turn_back
     )
     hole_points = place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back
-    outer = group(rollers, roller_gaps, outer_effective, outer_modulus, rays)
-    on_holes = group(holes, hole_gaps, hole_effective, at_hole, gaps.hole_directions)
+    outer = hertz.on_bore(rollers, roller_near, rays)
+    on_holes = hertz.in_holes(holes, hole_near, gaps.hole_directions)
     if deformed is not None:
         shifted = _is_shifted(flank_points, deformed.flank_points, pin_group(theta))
         theta = np.where(
@@ -191,9 +176,9 @@ def grade_contacts(
         pins=pin_group(theta),
         flank_points=flank_points,
         rollers_outer=outer,
-        rollers_inner=group(rollers, roller_gaps, inner_effective, inner_modulus, -rays),
+        rollers_inner=hertz.on_race(rollers, roller_near, -rays),
         bore_points=bore_points,
-        race_points=race * rays,
+        race_points=place.inner_race_radius * rays,
         holes=on_holes,
         hole_points=hole_points,
     )
@@ -236,7 +221,7 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, size: float) -> 
     results = summarise_contacts(model, solution)
     for pair, detail in zip(model.pairs, results.details, strict=True):
         own = solution.contact.pressure[pair.unknowns]
-        name = f"{pair.kind.replace('_', ' ')} {pair.index}"
+        name = CONTACT_KINDS[pair.kind].name.format(pair.index)
         if own[0] > 0.0 or own[-1] > 0.0:
             return f"the pressure of {name} reaches the end of its zone"
         if (
@@ -253,25 +238,28 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, size: float) -> 
 def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
     pose, place = solution.pose, model.placement
     gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-    elastic = model.disc.displacement(solution.contact.pressure[: model.disc.compliance.shape[0]])
+    elastic = model.disc_displacement(solution.contact.pressure)
     moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
-    nodes = model.meshes.disc.mesh.doflocs[0] + 1j * model.meshes.disc.mesh.doflocs[1]
+    nodes = model.meshes.disc.places
     turn = np.exp(1j * pose.disc_rotation)
     rays = model.roller_rays
     flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
     bore = place.bore_centres[place.roller_cranks] + place.bore_radius * rays / turn
     holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
     candidates = {(pair.kind, pair.index) for pair in model.pairs}
-    for kind, gap, points, normals in (
-        ("pin", gaps.pins, flank, gaps.pin_normals),
-        ("roller_outer", gaps.rollers, bore, -rays),
-        ("hole", gaps.holes, holes, -gaps.hole_directions),
-    ):
+    kinds: dict[PairKind, tuple[FloatArray, ComplexArray, ComplexArray]] = {
+        "pin": (gaps.pins, flank, gaps.pin_normals),
+        "roller_outer": (gaps.rollers, bore, -rays),
+        "hole": (gaps.holes, holes, -gaps.hole_directions),
+    }
+    for kind, (gap, points, normals) in kinds.items():
         for index in range(len(gap)):
             if (kind, index) in candidates:
                 continue
             nearest = int(np.argmin(np.abs(nodes - points[index])))
             left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
             if left < 0.0:
-                return f"{kind.replace('_outer', '')} {index} closes by {-1e3 * left:.3g} µm and has no contact zone"
+                return (
+                    f"{CONTACT_KINDS[kind].name.format(index)} closes by {-1e3 * left:.3g} µm and has no contact zone"
+                )
     return ""

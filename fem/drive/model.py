@@ -7,7 +7,6 @@ rollers. Pins and rollers that share a mesh share one factorisation and one comp
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from fem.body.elasticity import PlaneState
 from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.unilateral import ContactProblem
+from fem.drive.contact_kinds import PairKind
 from fem.drive.expected_contacts import ExpectedContacts, bore_displacements
 from fem.drive.meshes import DriveMeshes, RoundGrading
 from fem.mesh.body_mesh import BodyMesh
@@ -24,8 +24,6 @@ from fem.shapes import DriveShapes
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.placement import Placement
-
-PairKind = Literal["pin", "roller_outer", "roller_inner", "hole"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -223,6 +221,10 @@ class DriveModel:
         """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
         own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
         return self.race_loads[own.start - first : own.stop - first]
+
+    def disc_displacement(self, pressure: FloatArray) -> FloatArray:
+        """Return the nodal displacements of the disc in its own frame, mm, at all pressures of the drive, MPa."""
+        return self.disc.displacement(pressure[: self.disc.compliance.shape[0]])
 
     def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
         """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""

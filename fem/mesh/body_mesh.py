@@ -8,7 +8,7 @@ import numpy as np
 from skfem import MeshTri1, MeshTri2
 
 from fem.errors import MeshError
-from ltca.arrays import FloatArray, IntArray
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,12 +51,17 @@ class BodyMesh:
         """Number of displacement unknowns."""
         return 2 * self.node_count
 
-    def facets_of(self, name: str) -> IntArray:
-        """Return the facets of a boundary in the order in which `boundary_nodes` walks along it.
+    @property
+    def places(self) -> ComplexArray:
+        """Places of the nodes in the frame of the body, mm."""
+        return np.asarray(self.mesh.doflocs[0] + 1j * self.mesh.doflocs[1])
 
-        The rows of both match; the walk starts at the rightmost vertex, so it is the same after a file.
-        """
-        return self._chain(name)[0]
+    @property
+    def element_nodes(self) -> IntArray:
+        """Nodes of each element, shape (elements, 3 or 6): vertices, then mid-sides of (0,1), (1,2), (2,0)."""
+        mesh = self.mesh
+        nodes = np.vstack([mesh.t, mesh.nvertices + mesh.t2f]) if self.order == 2 else mesh.t
+        return np.asarray(nodes, dtype=np.int64).T
 
     def boundary_nodes(self, name: str) -> IntArray:
         """Return the nodes of a closed boundary, edge by edge, with the body on the left.
@@ -69,17 +74,15 @@ class BodyMesh:
         Returns
         -------
         array of int, shape (edges, 3) or (edges, 2) for order 1
-            First vertex, mid-side node, last vertex of each edge; the last vertex of an edge is the first of
-            the next one, cyclically. The outward normal points to the right of the direction of travel.
+            First vertex, mid-side node, last vertex of each edge, from the rightmost vertex on (the same after a file);
+            the last vertex of an edge is the first of the next one, cyclically. The outward normal points to the right
+            of the direction of travel.
 
         Raises
         ------
         MeshError
             When the mesh has no such boundary, or it is not one closed line.
         """
-        return self._chain(name)[1]
-
-    def _chain(self, name: str) -> tuple[IntArray, IntArray]:
         facets = self.require_boundary(name)
         mesh = self.mesh
         elements = mesh.f2t[0, facets]
@@ -104,8 +107,8 @@ class BodyMesh:
         if len(np.unique(order)) != len(facets):
             raise MeshError(f"boundary {name!r} of {self.name} is not one closed line")
         if self.order == 1:
-            return facets[order], np.column_stack([first, last])[order]
-        return facets[order], np.column_stack([first, mesh.nvertices + facets, last])[order]
+            return np.column_stack([first, last])[order]
+        return np.column_stack([first, mesh.nvertices + facets, last])[order]
 
     def require_boundary(self, name: str) -> IntArray:
         """Return the facets of a boundary as stored.
@@ -147,10 +150,6 @@ class BodyMesh:
             name=self.name if name is None else name,
             mesh=replace(self.mesh, doflocs=np.ascontiguousarray(rotation @ self.mesh.doflocs)),
         )
-
-    def renamed(self, name: str) -> BodyMesh:
-        """Return the same mesh under another name."""
-        return BodyMesh(name=name, mesh=self.mesh)
 
 
 def triangle_mesh(

@@ -60,15 +60,6 @@ def body_stem(name: str, disc: int, discs: int) -> str:
     return f"disc_{disc}" if name == "disc" else f"disc_{disc}_{name}"
 
 
-def element_nodes(body: BodyMesh) -> IntArray:
-    """Return the nodes of each element, shape (elements, 3 or 6): vertices, then mid-sides of (0,1), (1,2), (2,0)."""
-    mesh = body.mesh
-    if body.order == 1:
-        return np.asarray(mesh.t.T, dtype=np.int64)
-    middles = mesh.nvertices + mesh.t2f[[0, 1, 2]]
-    return np.vstack([mesh.t, middles]).T.astype(np.int64)
-
-
 def _boundary_lines(body: BodyMesh, name: str) -> IntArray:
     nodes = body.boundary_nodes(name)
     return nodes if body.order == 1 else nodes[:, [0, 2, 1]]
@@ -102,7 +93,7 @@ def write_msh(body: BodyMesh, path: str | Path) -> Path:
 
     names = sorted(body.boundary_names)
     triangles, lines = ("triangle", "line") if body.order == 1 else ("triangle6", "line3")
-    cells: list[tuple[str, IntArray]] = [(triangles, element_nodes(body))]
+    cells: list[tuple[str, IntArray]] = [(triangles, body.element_nodes)]
     cells += [(lines, _boundary_lines(body, name)) for name in names]
     tags = [np.full(len(block), BODY_TAG + index, dtype=np.int32) for index, (_, block) in enumerate(cells)]
     groups = {body.name: np.array([BODY_TAG, 2])}
@@ -147,7 +138,7 @@ def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatAr
         if len(values) != body.node_count:
             raise MeshError(f"field {key!r} has {len(values)} values, but {body.name} has {body.node_count} nodes")
     cell = "triangle" if body.order == 1 else "triangle6"
-    content = meshio.Mesh(_points(body), [(cell, element_nodes(body))], point_data=fields)
+    content = meshio.Mesh(_points(body), [(cell, body.element_nodes)], point_data=fields)
     path = Path(path)
     with whole_file(path) as part:
         meshio.vtu.write(part, content, binary=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.fields import BodyField
 from fem.drive.full_solution import FullSolution
 from fem.pictures.scene import Lines, Panel, Triangles, render
@@ -22,12 +23,6 @@ DEFORMED_SHARE = 0.04
 ZOOM_HALF_WIDTHS = 3.5
 # The peak pressure is drawn as long as this many half-widths.
 PRESSURE_HALF_WIDTHS = 1.5
-NAMES = {
-    "pin": "pin {} on the flank",
-    "roller_outer": "roller {} on the bore",
-    "roller_inner": "roller {} on the race",
-    "hole": "shaft pin {} in its hole",
-}
 
 
 def draw_solution(
@@ -175,7 +170,7 @@ def _zooms(solution: FullSolution, fields: Sequence[BodyField]) -> list[Panel]:
         panels.append(
             Panel(
                 title=(
-                    f"{NAMES[pair.kind].format(pair.index)}: {detail.load:.0f} N\n"
+                    f"{CONTACT_KINDS[pair.kind].title.format(pair.index)}: {detail.load:.0f} N\n"
                     f"white: pressure, peak {detail.peak_pressure:.0f} MPa, half-width {1e3 * detail.half_width:.1f} µm"
                 ),
                 centre=middle,

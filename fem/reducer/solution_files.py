@@ -14,6 +14,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from fem.contact.pressure_measures import vertex_means
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.disc_stress import recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.full_solution import FullSolution
@@ -35,11 +36,7 @@ from ltca.reading.writing import drive_text
 if TYPE_CHECKING:
     import xarray as xr
 
-ARRAYS = (
-    "pin_load", "roller_load", "roller_load_inner", "pin_shaft_load",
-    "pin_pressure_mid", "roller_pressure_mid_outer", "roller_pressure_mid_inner", "pin_shaft_pressure_mid",
-    "pin_half_width", "roller_half_width_outer", "roller_half_width_inner", "pin_shaft_half_width",
-)  # fmt: skip
+ARRAYS = tuple(getattr(kind, name) for name in ("load", "pressure", "half_width") for kind in CONTACT_KINDS.values())
 """What of `fem.drive.contact_results.ContactResults` files hold, by name in ``fem.nc``."""
 MULTI_BLOCK = "fem.vtm"
 

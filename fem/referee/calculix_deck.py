@@ -47,7 +47,6 @@ from fem.contact.coupling import Pose
 from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair, DriveModel
 from fem.mesh.body_mesh import BodyMesh, IntArray
-from fem.mesh.mesh_file import element_nodes
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
@@ -143,9 +142,8 @@ class _Deck:
 
     def add_body(self, name: str, body: BodyMesh, at: Pose, material: Material, thickness: float) -> None:
         """Write a body at its place."""
-        local = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
-        nodes = self.add_nodes(at.centre + local * np.exp(1j * at.rotation))
-        elements = self.add_elements("CPE6", name, nodes + 1 + element_nodes(body), material, thickness)
+        nodes = self.add_nodes(at.centre + body.places * np.exp(1j * at.rotation))
+        elements = self.add_elements("CPE6", name, nodes + 1 + body.element_nodes, material, thickness)
         self.placed[name] = (body, nodes, elements)
 
     def equate(self, terms: list[tuple[int, int, float]]) -> None:
@@ -407,7 +405,7 @@ def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, Float
     """
     areas = area_loads(body)[::2, 0]
     areas = areas / np.sum(areas)
-    places = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    places = body.places
     number = np.arange(count)
     # A sunflower's seeds have equal areas.
     seeds = np.abs(places).max() * np.sqrt((number + 0.5) / count) * np.exp(1j * np.pi * (3.0 - np.sqrt(5.0)) * number)
@@ -423,6 +421,6 @@ def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, Float
 
 def _nodes_beside_centre(body: BodyMesh, direction: complex) -> tuple[int, int]:
     """Return the nodes nearest to 0.3 of the radius on both sides of the centre of a round body."""
-    places = body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    places = body.places
     reach = 0.3 * float(np.abs(places).max()) * direction
     return int(np.argmin(np.abs(places + reach))), int(np.argmin(np.abs(places - reach)))

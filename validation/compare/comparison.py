@@ -13,15 +13,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from ltca.arrays import FloatArray
 
-Kind = Literal["pin", "roller_outer", "roller_inner", "hole"]
-KINDS: tuple[Kind, ...] = get_args(Kind)
+Kind = PairKind
+KINDS: tuple[Kind, ...] = tuple(CONTACT_KINDS)
 
 COMPARED_SHARE = 0.05
 """Pressures and half-widths are compared above this part of the largest load of a kind."""
@@ -129,11 +129,6 @@ class KindDifference:
         """Contact with the largest pressure difference, and that difference; (−1, nan) without any."""
         return worst(self.pressure)
 
-    @property
-    def worst_half_width(self) -> tuple[int, float]:
-        """Contact with the largest half-width difference, and that difference; (−1, nan) without any."""
-        return worst(self.half_width)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PositionDifference:
@@ -199,8 +194,7 @@ def contact_name(kind: Kind, number: int, rollers: int | None = None) -> str:
     >>> contact_name("roller_outer", 11), contact_name("roller_outer", 11, 9)
     ('roller 11 bore', 'crank 1 roller 2 bore')
     """
-    names = {"pin": "pin {}", "roller_outer": "roller {} bore", "roller_inner": "roller {} race"}
-    name = names.get(kind, "shaft pin {}")
+    name = CONTACT_KINDS[kind].name
     if rollers is None or kind not in ("roller_outer", "roller_inner"):
         return name.format(number)
     return f"crank {number // rollers} " + name.format(number % rollers)

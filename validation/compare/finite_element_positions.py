@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.disc_stress import recover_disc_stress
 from fem.drive.fields import recover_fields
 from fem.drive.full_solution import FullSolution
@@ -24,12 +25,14 @@ from fem.options import SolutionOptions
 from fem.pictures.solution_pictures import draw_solution
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import summarise
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 from ltca.output.files import write_json
 from ltca.output.provenance import code_hash, code_version
 from ltca.output.regular_files import read_regular
+from ltca.quantities import QUANTITIES
 from validation.compare.comparison import KindAnswer, PositionAnswer
 from validation.compare.disc_stresses import DiscStressAnswer, answer_of_content, stress_content
 
@@ -221,12 +224,8 @@ def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> Posi
         Its number.
     """
 
-    def kind(load: str, pressure: str, width: str) -> KindAnswer:
-        return KindAnswer(
-            load=np.array(summary[f"{load}_N"][disc], dtype=float),
-            pressure=np.array(summary[f"{pressure}_MPa"][disc], dtype=float),
-            half_width=np.array(summary[f"{width}_mm"][disc], dtype=float),
-        )
+    def of_disc(name: str) -> FloatArray:
+        return np.array(summary[QUANTITIES[name].older_fem_key][disc], dtype=float)
 
     discs = len(summary["pin_load_N"])
 
@@ -239,10 +238,10 @@ def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> Posi
     along = complex(shift["x_mm"], shift["y_mm"]) * complex(direction).conjugate()
     return PositionAnswer(
         kinds={
-            "pin": kind("pin_load", "pin_pressure_max", "pin_half_width"),
-            "roller_outer": kind("roller_load_outer", "roller_pressure_max_outer", "roller_half_width_outer"),
-            "roller_inner": kind("roller_load_inner", "roller_pressure_max_inner", "roller_half_width_inner"),
-            "hole": kind("pin_shaft_load", "pin_shaft_pressure_max", "pin_shaft_half_width"),
+            kind: KindAnswer(
+                load=of_disc(names.load), pressure=of_disc(names.pressure), half_width=of_disc(names.half_width)
+            )
+            for kind, names in CONTACT_KINDS.items()
         },
         bearing_radial=np.array(own("bearing_radial_N"), dtype=float, ndmin=1),
         bearing_tangential=np.array(own("bearing_tangential_N"), dtype=float, ndmin=1),

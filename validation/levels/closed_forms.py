@@ -58,7 +58,7 @@ def _solve_ring(
     load = traction_load(body, boundary, traction, thickness=1.0)  # type: ignore[arg-type]
     u = condense_body(body, stiffness, sp.csc_matrix(load[:, None])).displacement(np.array([1.0]))
     stress = recover_stress(body, u, STEEL)
-    return stress.xx, stress.yy, stress.xy, body.mesh.doflocs[0] + 1j * body.mesh.doflocs[1]
+    return stress.xx, stress.yy, stress.xy, body.places
 
 
 def _ring() -> list[Row]:

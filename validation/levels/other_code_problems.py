@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.full_solution import FullSolution
 from fem.drive.solution import solve_drive
 from fem.options import SolutionOptions
@@ -100,14 +101,8 @@ def define_drive() -> dict[str, Any]:
 def our_drive() -> Answer:
     """Solve the drive by our finite elements."""
     solution = solve_drive(coarse_drive(), CRANK_ANGLE, SolutionOptions(size=SIZE))
-    contacts = solution.contacts
-    return {
-        "pin_load": contacts.pin_load.tolist(),
-        "roller_load": contacts.roller_load.tolist(),
-        "roller_load_inner": contacts.roller_load_inner.tolist(),
-        "pin_shaft_load": contacts.pin_shaft_load.tolist(),
-        "wheel_angle": solution.pose.wheel_angle,
-    }
+    loads = {kind.load: getattr(solution.contacts, kind.load).tolist() for kind in CONTACT_KINDS.values()}
+    return {**loads, "wheel_angle": solution.pose.wheel_angle}
 
 
 def their_drive() -> Answer:
@@ -119,16 +114,10 @@ def their_drive() -> Answer:
 
 
 def _by_part(solution: FullSolution, load: dict[str, float]) -> Answer:
-    contacts = solution.contacts
-    found = {
-        "pin": ("pin_load", np.zeros_like(contacts.pin_load)),
-        "roller_outer": ("roller_load", np.zeros_like(contacts.roller_load)),
-        "roller_inner": ("roller_load_inner", np.zeros_like(contacts.roller_load_inner)),
-        "hole": ("pin_shaft_load", np.zeros_like(contacts.pin_shaft_load)),
-    }
+    found = {kind.load: np.zeros_like(getattr(solution.contacts, kind.load)) for kind in CONTACT_KINDS.values()}
     for pair in solution.model.pairs:
-        found[pair.kind][1][pair.index] = load.get(pair_name(pair), 0.0)
-    return {name: values.tolist() for name, values in found.values()}
+        found[CONTACT_KINDS[pair.kind].load][pair.index] = load.get(pair_name(pair), 0.0)
+    return {name: values.tolist() for name, values in found.items()}
 
 
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)

@@ -20,12 +20,13 @@ from typing import Any
 
 import numpy as np
 
+from fem.drive.contact_kinds import CONTACT_KINDS
 from ltca.errors import CycloError
 from ltca.output.files import write_json
 from ltca.output.processes import supervised
 from ltca.output.provenance import code_hash
 from ltca.output.regular_files import read_regular
-from validation.compare.comparison import ARCSECONDS, Kind, contact_name
+from validation.compare.comparison import ARCSECONDS, contact_name
 from validation.levels.other_code_problems import CASE, CODES, CRANK_ANGLE, ROLLERS, Answer
 from validation.rows import Row
 
@@ -171,12 +172,9 @@ def _drive_rows(ours: Answer, theirs: Answer, against: str) -> list[Row]:
     place: dict[str, Any] = {
         "case": CASE, "crank_angle": CRANK_ANGLE, "model": "finite elements, coarse", "against": against,
     }  # fmt: skip
-    kinds: dict[str, Kind] = {
-        "pin_load": "pin", "roller_load": "roller_outer", "roller_load_inner": "roller_inner", "pin_shaft_load": "hole",
-    }  # fmt: skip
     rows = []
-    for name, kind in kinds.items():
-        own, other = np.array(ours[name]), np.array(theirs[name])
+    for kind, names in CONTACT_KINDS.items():
+        own, other = np.array(ours[names.load]), np.array(theirs[names.load])
         for part in np.flatnonzero((own > 0.0) | (other > 0.0)).tolist():
             value, reference = float(own[part]), float(other[part])
             difference = (value - reference) / float(other.max())
