@@ -139,14 +139,9 @@ def range_row(
     reason: str,
     **place: Any,
 ) -> Row:
-    """Return a row whose value must lie in a range about the reference.
+    """Return a row whose value must lie in a range that holds the reference.
 
     The difference is value less reference; its limit is the distance of the reference from the bound on that side.
-
-    Raises
-    ------
-    ValueError
-        When the reference lies outside the range.
     """
     if not lowest <= reference <= highest:
         raise ValueError(f"{quantity}: reference {reference:g} outside {lowest:g} to {highest:g}")

@@ -55,15 +55,7 @@ def persson_load(half_width: ArrayLike) -> FloatArray:
 
 
 def persson_pressure(angle: ArrayLike, half_width: ArrayLike) -> FloatArray:
-    """Return p a L/F of equal materials.
-
-    Parameters
-    ----------
-    angle : array
-        From the line of load, rad, within the arc.
-    half_width : array
-        b = tan(α/2).
-    """
+    """Return p a L/F of equal materials at an angle from the line of load, rad, within the arc; b = tan(α/2)."""
     b, y = np.asarray(half_width, dtype=float), np.tan(0.5 * np.asarray(angle, dtype=float))
     root, edge = np.sqrt(b**2 - y**2), np.sqrt(b**2 + 1.0)
     logarithm = np.log((edge + root) / (edge - root))
@@ -180,13 +172,7 @@ def sleeve_rows() -> Iterator[str]:
 
 
 def draw(path: Path) -> None:
-    """Draw arc and peak pressure over the load and the pressure over the arc, against Persson and Hertz.
-
-    Parameters
-    ----------
-    path : Path
-        SVG file.
-    """
+    """Draw arc and peak pressure over the load and the pressure over the arc, against Persson and Hertz, as SVG."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

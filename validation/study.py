@@ -222,15 +222,7 @@ def _model_rows(
 
 
 def first_disc(drive: Drive, case: str) -> tuple[str, Drive]:
-    """Return the first disc alone under an equal part of the torque, and what rows call it: the drive itself if it is all.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name.
-    """
+    """Return a label and the first disc alone under an equal part of the torque; the drive itself if it has no other disc."""
     single, *others = single_discs(drive)
     if not others:
         return case, single

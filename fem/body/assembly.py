@@ -23,12 +23,7 @@ from ltca.arrays import FloatArray
 def shape_functions(body: BodyMesh, quadrature: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return shape functions (points, nodes), their gradients (points, nodes, 2) and weights at quadrature points.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Of order 1 or 2.
-    quadrature : int
-        Degree of the polynomials that are integrated exactly.
+    Polynomials of degree `quadrature` are integrated exactly.
     """
     element = ElementTriP2() if body.order == 2 else ElementTriP1()
     points, weights = get_quadrature(element, quadrature)
@@ -47,27 +42,11 @@ def jacobians(body: BodyMesh, elements: IntArray, slopes: FloatArray) -> FloatAr
 def elastic_blocks(
     body: BodyMesh, elements: IntArray, quadrature: int, *, lam: float, mu: float, straight: bool
 ) -> FloatArray:
-    r"""Return the stiffness of elements.
+    r"""Return the stiffness of some elements, shape (nodes (i), nodes (j), 2 (a), 2 (b), elements), N/mm by mm of thickness.
 
     .. math:: \int \lambda N_{i,a} N_{j,b} + \mu (N_{i,b} N_{j,a} + \delta_{ab} \nabla N_i \cdot \nabla N_j)\,dA
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    elements : array of int
-        Which elements.
-    quadrature : int
-        Degree of the quadrature.
-    lam, mu : float
-        Lamé's constants, MPa.
-    straight : bool
-        Whether J is the same all over each of them.
-
-    Returns
-    -------
-    array, shape (nodes (i), nodes (j), 2 (a), 2 (b), elements)
-        N/mm for each mm of thickness.
+    `lam` and `mu` are Lamé's constants, MPa, `quadrature` the degree of the rule; `straight` elements have a constant Jacobian.
     """
     _, slopes, weights = shape_functions(body, quadrature)
     nodes = slopes.shape[1]
@@ -92,21 +71,10 @@ def elastic_blocks(
 
 
 def sum_by_nodes(body: BodyMesh, elements: IntArray, blocks: FloatArray) -> sp.csc_matrix:
-    """Return the sum of element matrices.
+    """Return the sum of element matrices as a matrix of shape (unknowns, unknowns) with sorted indices.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    elements : array of int
-        Which elements, in the order of the last axis of the blocks.
-    blocks : array, shape (nodes (i), nodes (j), 2 (a), 2 (b), elements)
-        Component a of the force on node i for a unit of component b at node j.
-
-    Returns
-    -------
-    csc_matrix, shape (unknowns, unknowns)
-        With sorted indices.
+    Blocks have the shape (nodes (i), nodes (j), 2 (a), 2 (b), elements): component a of the force on node i for a unit of
+    component b at node j, in the order of `elements`.
     """
     nodes = body.element_nodes.T[:, elements]
     count = body.node_count

@@ -63,17 +63,10 @@ class CondensedBody:
         return int(self._factor.lower.nnz) + self.compliance.size + self._trailing.size
 
     def displacement(self, amounts: FloatArray) -> FloatArray:
-        """Return the nodal displacement under amounts of the unit loads.
+        """Return the nodal displacement under amounts of the unit loads, mm.
 
-        Parameters
-        ----------
-        amounts : array, shape (m,) or (m, k)
-            Amount of each load shape; k load cases.
-
-        Returns
-        -------
-        array, shape (unknowns,) or (unknowns, k)
-            mm; for a free body relative to its area-mean rigid motion.
+        That of a free body is relative to its area-mean rigid motion. Amounts have the shape (m,), or (m, k) for k load
+        cases; the displacement (unknowns,) or (unknowns, k).
         """
         amounts = np.asarray(amounts, dtype=float)
         columns = amounts[:, None] if amounts.ndim == 1 else amounts

@@ -73,19 +73,9 @@ class LoadInfluence:
     _carried: sp.csc_matrix
 
     def block(self, measuring: slice, loading: slice, datum: int = 0) -> FloatArray:
-        """Return what some loads measure under others, both balanced by a datum.
+        """Return what some loads measure under others, both balanced by a datum: displacement for a unit of each load.
 
-        Parameters
-        ----------
-        measuring, loading : slice
-            Of the loads; symmetric to the last bit where both are the same.
-        datum : int
-            Number of the datum.
-
-        Returns
-        -------
-        array, shape (measuring, loading)
-            Displacement for a unit of each load.
+        The shape is (measuring, loading); symmetric to the last bit where both slices are the same.
         """
         rows = self._carried[measuring]
         found = sum_products(rows, rows if measuring == loading else self._carried[loading])
@@ -118,17 +108,9 @@ class LoadInfluence:
 
 
 def sum_products(rows: sp.csc_matrix, columns: sp.csc_matrix) -> FloatArray:
-    """Return rows · columnsᵀ of sparse factors with few long columns as a dense matrix.
+    """Return rows · columnsᵀ of sparse factors with few long columns, shapes (p, n) and (q, n), as a dense matrix.
 
-    Parameters
-    ----------
-    rows, columns : csc_matrix, shapes (p, n) and (q, n)
-        The factors; the product is symmetric to the last bit when they are the same object.
-
-    Returns
-    -------
-    array, shape (p, q)
-        The product.
+    The product is symmetric to the last bit when both are the same object.
     """
     total = np.zeros((rows.shape[0], columns.shape[0]))
     same = rows is columns
@@ -170,25 +152,10 @@ def influence_of_loads(
     datums: list[FloatArray],
     sampled: IntArray,
 ) -> LoadInfluence:
-    """Factorise a free body with many loads behind it.
+    """Factorise a free body with many loads behind it; the factor of the stiffness is not kept.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    stiffness : csc_matrix, shape (unknowns, unknowns)
-        From `fem.body.elasticity.assemble_stiffness`.
-    loads : sparse matrix, shape (unknowns, m)
-        Nodal forces of each unit load.
-    datums : list of array, shape (unknowns, 3)
-        Force shapes of each datum, with a regular Gram matrix with the rigid modes.
-    sampled : array of int
-        Loads under which the displacement is solved for.
-
-    Returns
-    -------
-    LoadInfluence
-        Without the factor of the stiffness, which is let go.
+    `loads` are nodal forces, shape (unknowns, m). Each datum is three force shapes, shape (unknowns, 3), whose Gram matrix
+    with the rigid modes is regular. Under the `sampled` loads the displacement is solved for.
     """
     loads = sp.csc_matrix(loads)
     factor, kept = _factorise(body, stiffness, loads)

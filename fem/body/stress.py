@@ -71,24 +71,7 @@ def stress_of_strain(
 def recover_stress(
     body: BodyMesh, displacement: FloatArray, material: Material, *, state: PlaneState = "strain"
 ) -> Stress:
-    """Return averaged stresses at the nodes.
-
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    displacement : array, shape (2 nodes,)
-        Node by node, mm.
-    material : Material
-        Of the body.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-
-    Returns
-    -------
-    Stress
-        Arrays of shape (nodes,).
-    """
+    """Return stresses at the nodes, averaged over elements, shape (nodes,), of nodal displacements of shape (2 nodes,), mm."""
     order = body.order
     basis = Basis(body.mesh, ElementVector(ElementTriP2() if order == 2 else ElementTriP1()), quadrature=SAMPLES)
     gradient = np.asarray(basis.interpolate(displacement).grad)

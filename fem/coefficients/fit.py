@@ -27,26 +27,10 @@ class _Fit:
 
 
 def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple[Check, ...]:
-    """Check that coefficients belong to the bodies of a drive.
+    """Check that coefficients belong to the bodies of a drive: places and normals of the stations.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        Of the right schema.
-    drive : Drive
-        The drive in the case they are for.
-    source : str
-        Name of the file, for the message.
-
-    Returns
-    -------
-    tuple of Check
-        Places and normals of the stations.
-
-    Raises
-    ------
-    CycloError
-        When the numbers that its bodies are made of are not the drive's, or the numbers of boundaries differ.
+    CycloError, naming the file `source`, when the numbers that its bodies are made of are not the drive's, or the numbers of
+    boundaries differ.
     """
     nominal = _served_by(dataset, drive, source)
     fit = _fit(dataset, nominal)

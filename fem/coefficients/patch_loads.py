@@ -56,13 +56,7 @@ class BoundaryArc:
 
     @classmethod
     def of_boundary(cls, body: BodyMesh, curve: Curve) -> BoundaryArc:
-        """Return the boundary of a quadratic mesh that follows a curve.
-
-        Raises
-        ------
-        MeshError
-            When the mesh is of first order or has no such boundary.
-        """
+        """Return the boundary of a quadratic mesh that follows a curve; MeshError for a mesh of first order."""
         if body.order != 2:
             raise MeshError(f"mesh of {body.name} has straight elements; patches need second-order ones")
         nodes = body.boundary_nodes(curve.name)
@@ -174,11 +168,17 @@ def patch_loads(
         normals = curve.normals(curve.parameter_of(np.sum(boundary.places[edge].T * shapes, axis=0)))
     # p t ds = (2/π) cos²φ dφ
     force = -2.0 / np.pi * np.cos(phi) ** 2 * weight * normals
-    nodes = boundary.nodes[edge].T
+    return sum_at_nodes(boundary.nodes[edge].T, force * shapes, owner, (body.unknowns, len(parameters)))
+
+
+def sum_at_nodes(nodes: IntArray, vectors: ComplexArray, owner: IntArray, shape: tuple[int, int]) -> sp.csc_matrix:
+    """Return the sums of vectors at nodes, a column for each patch: x in the even rows, y in the odd ones.
+
+    `nodes` and `vectors` have the shape (3, points); `owner` is the patch of each point.
+    """
     rows = np.concatenate([(2 * nodes).ravel(), (2 * nodes + 1).ravel()])
-    values = np.concatenate([(force.real * shapes).ravel(), (force.imag * shapes).ravel()])
-    columns = np.tile(owner, 6)
-    return sp.csc_matrix(sp.coo_matrix((values, (rows, columns)), shape=(body.unknowns, len(parameters))))
+    values = np.concatenate([vectors.real.ravel(), vectors.imag.ravel()])
+    return sp.csc_matrix(sp.coo_matrix((values, (rows, np.tile(owner, 6))), shape=shape))
 
 
 def divide_patches(
@@ -186,18 +186,9 @@ def divide_patches(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Divide patches at the vertices they cover.
 
-    Parameters
-    ----------
-    boundary : BoundaryArc
-        The boundary.
-    middle, width : array, shape (n,)
-        Arc length of the middle of each patch, and its half-width, mm.
-
-    Returns
-    -------
-    phi, weight, owner : array
-        Gauss points between neighbouring vertices, s = b sin φ from the middle of the patch, their weights for ∫ dφ, and
-        the patch of each.
+    `middle` and `width` are the arc length of the middle of each patch and its half-width, mm. Returned are Gauss points φ
+    between neighbouring vertices (s = b sin φ from the middle of the patch), their weights for ∫ dφ, and the patch of each
+    point.
     """
     nodes, weights = GAUSS
     phis, steps, owners = [], [], []

@@ -27,15 +27,7 @@ def disc_prefix(disc: int, discs: int) -> str:
 
 
 def body_files(ending: str, discs: int) -> list[str]:
-    """Return the names of all files of bodies, those of pins and rollers as patterns.
-
-    Parameters
-    ----------
-    ending : str
-        Of the files.
-    discs : int
-        How many discs have such files.
-    """
+    """Return the names of all files of bodies with an ending, those of pins and rollers as patterns."""
     names = BODIES if discs == 1 else ("disc_[0-9]*",)
     return [f"{name}.{ending}" for name in names]
 
@@ -55,13 +47,7 @@ def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
 
 
 def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
-    """Return the drive file, the name of the case and its drive.
-
-    Raises
-    ------
-    CycloError
-        When the file is broken or has no such case.
-    """
+    """Return the drive file, the name of the case and its drive."""
     from ltca.reading.arguments import tell_unit_mistakes
     from ltca.reading.drive_file import load_drive
 

@@ -136,12 +136,9 @@ def solve_floating_contact(problem: ContactProblem, start: BoolArray, *, limit: 
 
 
 def find_active_set(problem: ContactProblem) -> BoolArray:
-    """Return the active set that an interior-point method finds, whatever the start.
+    """Return the active set by an interior-point method, from any start.
 
-    Raises
-    ------
-    ConvergenceError
-        When no pressures balance the external load; the history holds the relative imbalance.
+    ConvergenceError when no pressures balance the external load; the history holds the relative imbalance.
     """
     unit = 1.0 / np.sqrt(np.diag(problem.compliance))
     stiffness = problem.compliance * np.outer(unit, unit)

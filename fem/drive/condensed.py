@@ -39,32 +39,10 @@ def condense_drive(
     plane: PlaneState = "strain",
     known: tuple[RoundGroup, ...] = (),
 ) -> DriveModel:
-    """Assemble, factorise and condense all bodies.
+    """Assemble, factorise and condense all bodies on meshes graded for the expected contacts.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    shapes : DriveShapes
-        Its shapes.
-    contacts : ExpectedContacts
-        Expected contacts; those with a half-width become candidates.
-    meshes : DriveMeshes
-        Meshes graded for them.
-    plane : {"strain", "stress"}
-        Plane strain or plane stress.
-    known : tuple of RoundGroup
-        Pins and rollers condensed before; those of the same make are taken as they are.
-
-    Returns
-    -------
-    DriveModel
-        Ready for any load and pose near the expected one.
-
-    Raises
-    ------
-    MeshError
-        When a boundary is missing or too coarse for a contact zone.
+    Contacts with an expected half-width become candidates. Pins and rollers condensed before (`known`) are reused where grading,
+    material, thickness and plane state are the same. MeshError when a boundary is missing or too coarse for a contact zone.
     """
     place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=plane)
     materials, holes = drive.materials, contacts.holes
@@ -105,14 +83,9 @@ def condense_drive(
 
 
 def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> tuple[RoundGroup, ...]:
-    """Return the condensed pins and rollers to go on with: those just used last, the oldest of others dropped.
+    """Return the condensed pins and rollers to keep for further solutions.
 
-    Parameters
-    ----------
-    known : tuple of RoundGroup
-        Those so far.
-    used : tuple of RoundGroup
-        Of the last model.
+    Those just used are last; the oldest of the others are dropped beyond `ENTRIES_KEPT` numbers in all.
     """
     just_used = {group.made_of for group in used}
     room = ENTRIES_KEPT - sum(group.entries for group in used)
@@ -172,20 +145,7 @@ def _condense_round(
 
 
 def condense_round_body(made_of: RoundBody, body: BodyMesh) -> RoundGroup:
-    """Condense a pin or roller to unit forces on the nodes of its zones.
-
-    Parameters
-    ----------
-    made_of : RoundBody
-        What it is made of.
-    body : BodyMesh
-        Its mesh, first contact at polar angle 0.
-
-    Returns
-    -------
-    RoundGroup
-        For all bodies of that make.
-    """
+    """Condense a pin or roller, its first contact at polar angle 0, to unit forces on the nodes of its zones."""
     grading = made_of.grading
     zones = tuple(
         OppositeZone.on_circle(body, "surface", complex(side * grading.radius), OPPOSITE_REACH * end.half_width)

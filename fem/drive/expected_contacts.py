@@ -250,32 +250,18 @@ class _RigidDrive:
 def bore_displacements(
     placement: Placement, crank_angle: float, displacement: complex, rotation: float
 ) -> ComplexArray:
-    """Return where the centre of each bore stands from that of the inner race in it, fixed axes, mm, shape (cranks,).
+    """Return the displacement of the centre of each bore from that of the inner race in it, fixed axes, mm, shape (cranks,).
 
-    Parameters
-    ----------
-    placement : Placement
-        Places of the parts.
-    crank_angle : float
-        φ_C, rad.
-    displacement : complex
-        Of the disc from its nominal place, fixed axes, mm.
-    rotation : float
-        Of the disc, rad.
+    `displacement` (mm) and `rotation` (rad) are those of the disc from its nominal place, in fixed axes.
     """
     races = placement.race_centres(np.asarray(crank_angle))
     return np.asarray(races.mean() - races + displacement + placement.bore_centres * np.exp(1j * rotation))
 
 
 def on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray:
-    """Return about which θ of the flank lies in a direction of the disc frame: θ counts from a root, which may be turned.
+    """Return roughly the θ of the flank in a direction of the disc frame (polar angle, rad).
 
-    Parameters
-    ----------
-    profile : FlankProfile
-        The flank.
-    direction : array
-        Polar angle in the frame of the disc, rad.
+    θ counts from a root, which may be turned.
     """
     return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
 
@@ -288,13 +274,7 @@ def require_supported(drive: Drive, by: str = FULL_FINITE_ELEMENTS) -> None:
 
 
 def require_one_disc(drive: Drive) -> None:
-    """Refuse a drive of several discs where each is a problem of its own.
-
-    Raises
-    ------
-    DriveError
-        Naming their number.
-    """
+    """Raise DriveError for a drive of several discs, where each disc is a problem by itself."""
     count = drive.disc.number_of_discs
     if count != 1:
         raise DriveError([f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc alone"])

@@ -168,15 +168,7 @@ def turn_stress(stress: Stress, angle: float) -> Stress:
 
 
 def fit_rigid_motion(places: ComplexArray, displacement: ComplexArray, weight: FloatArray) -> tuple[complex, float]:
-    """Return the translation of the origin (mm) and rotation (rad) that fit displacements best.
-
-    Parameters
-    ----------
-    places, displacement : array of complex, shape (n,)
-        Points about the origin and their displacements, mm.
-    weight : array, shape (n,)
-        Of each point.
-    """
+    """Return the translation of the origin (mm) and rotation (rad) that fit weighted displacements best (least squares)."""
     x, y, one = places.real, places.imag, np.ones(len(places))
     rows = np.vstack([np.column_stack([one, 0 * one, -y]), np.column_stack([0 * one, one, x])])
     root = np.sqrt(np.concatenate([weight, weight]))

@@ -65,23 +65,10 @@ class RigidGaps:
 def measure_gaps(
     drive: Drive, crank_angle: float, displacement: complex, rotation: float, wheel_angle: float
 ) -> RigidGaps:
-    """Measure all gaps between rigid bodies.
+    """Return all gaps between rigid bodies at a pose, exact, from flank and circles.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    crank_angle : float
-        φ_C, rad.
-    displacement : complex
-        Of the disc from its nominal place, fixed axes, mm.
-    rotation, wheel_angle : float
-        Of the disc, and of the wheel beyond φ_C/u, rad.
-
-    Returns
-    -------
-    RigidGaps
-        Exact, from flank and circles.
+    `displacement` (mm) and `rotation` (rad) are those of the disc from its nominal place, fixed axes; `wheel_angle` is the
+    deviation of the wheel from φ_C/u, rad.
     """
     profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
     turn, wheel = np.exp(1j * rotation), crank_angle / place.reduction_ratio + wheel_angle
@@ -114,26 +101,11 @@ def grade_contacts(
     smallest_share: float,
     deformed: DeformedContacts | None = None,
 ) -> ExpectedContacts:
-    """Return the contacts to grade meshes for.
+    """Return the contacts to grade meshes for, with the pose of `measure_gaps` and the loads of pins, rollers and holes, N.
 
-    Parameters
-    ----------
-    drive, crank_angle, displacement, rotation, wheel_angle
-        As for `measure_gaps`.
-    loads : tuple of three arrays
-        Loads of pins, rollers and holes, N; zero where open.
-    margin : float
-        A contact without load whose gap is below this becomes a candidate, mm.
-    smallest_share : float
-        Candidates get elements for at least this share of the largest load of their kind.
-    deformed : DeformedContacts, optional
-        Gaps and places of pressure of a solution at this pose: they count, where known and far enough from those of the
-        rigid bodies (`SHIFT`).
-
-    Returns
-    -------
-    ExpectedContacts
-        With this pose and these loads.
+    A contact without load whose gap is below `margin`, mm, becomes a candidate, with elements for at least `smallest_share`
+    of the largest load of its kind. Gaps and places of pressure of a `deformed` solution at this pose replace those of the
+    rigid bodies where they are known and far enough from them (`SHIFT`).
     """
     gaps = measure_gaps(drive, crank_angle, displacement, rotation, wheel_angle)
     profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)

@@ -270,10 +270,7 @@ class DriveModel:
     def start_pose(self, start: tuple[float, float, float, float] | None = None) -> DrivePose:
         """Return a pose with rollers midway between race and bore and shaft pins unloaded.
 
-        Parameters
-        ----------
-        start : tuple of four floats, optional
-            Disc x, y (mm), disc rotation, wheel angle (rad); those the meshes were graded for by default.
+        `start` is disc x, y (mm), disc rotation and wheel angle (rad); by default the pose the meshes were graded for.
         """
         contacts, place = self.contacts, self.placement
         x, y, rotation, wheel = start or (

@@ -34,23 +34,10 @@ _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 
 
 def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
-    """Write a part as a binary STL file in mm and return how many triangles it has.
+    """Write a part of straight bodies as a binary STL file in mm and return the number of triangles.
 
-    Parameters
-    ----------
-    part : Part
-        From `ltca.export.parts.make_parts`, of straight bodies; its walls are no bodies and left out.
-    path : Path
-        The file.
-    chord : float
-        Largest distance of a triangle from the exact surface, mm.
-
-    Raises
-    ------
-    MeshError
-        When gmsh cannot be loaded or fill a section.
-    FaultError
-        When the file cannot be written.
+    `chord` is the largest distance of a triangle from the exact surface, mm. Walls of the part bound no body and are left out.
+    MeshError when gmsh cannot be loaded or fill a section.
     """
     with gmsh_model(part.name) as gmsh:
         corners = [body_facets(gmsh, body, chord) for body in part.bodies]
@@ -67,17 +54,7 @@ def write_facets(part: Part, path: Path, chord: float = DEFAULT_CHORD) -> int:
 
 
 def body_facets(gmsh: ModuleType, body: Body, chord: float) -> FloatArray:
-    """Return the triangles of a body, corners counter-clockwise seen from outside, shape (n, 3, 3).
-
-    Parameters
-    ----------
-    gmsh : module
-        With an open model.
-    body : Body
-        The body.
-    chord : float
-        mm.
-    """
+    """Return the triangles of a body within a chord, mm, corners counter-clockwise seen from outside, shape (n, 3, 3)."""
     loops = [divide(body.outer, chord), *(divide(circle, chord) for circle in body.inner)]
     # What the file can hold is 32 bits: rounded before, so that corners of neighbours are equal.
     loops = [loop.astype(np.complex64).astype(complex) for loop in loops]

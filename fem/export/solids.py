@@ -35,21 +35,9 @@ _OCCURRENCE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[0-9]+','[^']*'")
 
 
 def write_solids(part: Part, path: Path) -> None:
-    """Write a part as a STEP file in mm.
+    """Write a part of straight bodies as a STEP file in mm.
 
-    Parameters
-    ----------
-    part : Part
-        From `ltca.export.parts.make_parts`, of straight bodies.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    MeshError
-        When gmsh cannot be loaded, or makes a solid of a wrong volume.
-    FaultError
-        When the file cannot be written.
+    MeshError when gmsh cannot be loaded or makes a solid of a wrong volume.
     """
     with gmsh_model(part.name) as gmsh:
         for body in part.bodies:

@@ -64,24 +64,11 @@ class BodyMesh:
         return np.asarray(nodes, dtype=np.int64).T
 
     def boundary_nodes(self, name: str) -> IntArray:
-        """Return the nodes of a closed boundary, edge by edge, with the body on the left.
+        """Return the nodes of a closed boundary edge by edge, body on the left, shape (edges, 3), or (edges, 2) for order 1.
 
-        Parameters
-        ----------
-        name : str
-            Name of the boundary.
-
-        Returns
-        -------
-        array of int, shape (edges, 3) or (edges, 2) for order 1
-            First vertex, mid-side node, last vertex of each edge, from the rightmost vertex on (the same after a file);
-            the last vertex of an edge is the first of the next one, cyclically. The outward normal points to the right
-            of the direction of travel.
-
-        Raises
-        ------
-        MeshError
-            When the mesh has no such boundary, or it is not one closed line.
+        First vertex, mid-side node and last vertex of each edge, from the rightmost vertex on (the same after a file); the
+        last vertex of an edge is the first of the next one, cyclically. The outward normal points to the right of the
+        direction of travel. MeshError when the mesh has no such boundary, or it is not one closed line.
         """
         facets = self.require_boundary(name)
         mesh = self.mesh
@@ -111,13 +98,7 @@ class BodyMesh:
         return np.column_stack([first, mesh.nvertices + facets, last])[order]
 
     def require_boundary(self, name: str) -> IntArray:
-        """Return the facets of a boundary as stored.
-
-        Raises
-        ------
-        MeshError
-            When the mesh has no such boundary.
-        """
+        """Return the facets of a boundary as stored; MeshError when the mesh has no such boundary."""
         boundaries = self.mesh.boundaries or {}
         if name not in boundaries or len(boundaries[name]) == 0:
             known = ", ".join(boundaries) or "none"
@@ -125,13 +106,7 @@ class BodyMesh:
         return np.asarray(boundaries[name], dtype=np.int64)
 
     def require_complete_boundaries(self) -> None:
-        """Check that every outer facet belongs to exactly one named boundary.
-
-        Raises
-        ------
-        MeshError
-            With the number of facets that belong to none or to several.
-        """
+        """Raise MeshError unless every outer facet belongs to exactly one named boundary."""
         count = np.zeros(self.mesh.nfacets, dtype=np.int64)
         for name in self.boundary_names:
             np.add.at(count, self.require_boundary(name), 1)
@@ -155,28 +130,10 @@ class BodyMesh:
 def triangle_mesh(
     vertices: FloatArray, triangles: IntArray, boundary_edges: dict[str, IntArray], *, order: int
 ) -> MeshTri1:
-    """Return a straight-sided mesh with named boundaries.
+    """Return a straight-sided mesh with named boundaries; for order 2 the mid-side nodes lie at the middle of the edges.
 
-    Parameters
-    ----------
-    vertices : array, shape (2, vertices)
-        mm.
-    triangles : array of int, shape (3, triangles)
-        Counter-clockwise.
-    boundary_edges : dict of str to array of int, shape (edges, 2)
-        Vertex pairs of each boundary.
-    order : int
-        1 or 2; for 2 the mid-side nodes lie at the middle of the edges.
-
-    Returns
-    -------
-    MeshTri1 or MeshTri2
-        With boundaries; facets of boundary k are in the order of its edges.
-
-    Raises
-    ------
-    MeshError
-        When a boundary edge is no edge of a triangle.
+    `vertices` has the shape (2, vertices), mm, `triangles` (3, triangles), counter-clockwise, and each of `boundary_edges`
+    (edges, 2), pairs of vertices. Facets of a boundary are in the order of its edges.
     """
     if order not in (1, 2):
         raise MeshError(f"element order {order}: must be 1 or 2")
@@ -190,13 +147,7 @@ def triangle_mesh(
 
 
 def facets_of_edges(mesh: MeshTri1, edges: IntArray, name: str) -> IntArray:
-    """Return the facet index of each vertex pair.
-
-    Raises
-    ------
-    MeshError
-        When a pair is no edge of the mesh, or an edge inside it.
-    """
+    """Return the facet index of each vertex pair; MeshError when a pair is no edge of the mesh, or an edge inside it."""
     stride = np.int64(mesh.nvertices)
     facets = np.sort(mesh.facets.astype(np.int64), axis=0)
     keys = facets[0] * stride + facets[1]

@@ -41,14 +41,7 @@ _PARSER_ERRORS = (
 
 
 def body_stem(name: str, disc: int, discs: int) -> str:
-    """Return what files of a body are called: of several discs with the number of the disc.
-
-    Parameters
-    ----------
-    name : str
-        Of the body.
-    disc, discs : int
-        Which disc of how many it belongs to.
+    """Return the stem of the files of a body: of several discs with the number of the disc.
 
     Examples
     --------
@@ -70,25 +63,7 @@ def _points(body: BodyMesh) -> FloatArray:
 
 
 def write_msh(body: BodyMesh, path: str | Path) -> Path:
-    """Write a mesh with its named boundaries as gmsh 2.2 text, coordinates in full precision.
-
-    Parameters
-    ----------
-    body : BodyMesh
-        Order 1 or 2.
-    path : str or Path
-        Ends in ``.msh``.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
-    """
+    """Write a mesh with its named boundaries as gmsh 2.2 text (``.msh``), coordinates in full precision; return the path."""
     import meshio
 
     names = sorted(body.boundary_names)
@@ -108,28 +83,9 @@ def write_msh(body: BodyMesh, path: str | Path) -> Path:
 
 
 def write_vtu(body: BodyMesh, path: str | Path, point_data: Mapping[str, FloatArray] | None = None) -> Path:
-    """Write a mesh, and fields on its nodes, for ParaView: quadratic cells for order 2.
+    """Write a mesh, and fields on its nodes, for ParaView (``.vtu``): quadratic cells for order 2; return the path.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    path : str or Path
-        Ends in ``.vtu``.
-    point_data : mapping of str to array, shape (nodes,) or (nodes, components), optional
-        Fields on the nodes.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    MeshError
-        When a field does not fit the nodes.
-    CycloError
-        When the file cannot be written.
+    Fields have the shape (nodes,) or (nodes, components); MeshError when one does not fit the nodes.
     """
     import meshio
 

@@ -134,30 +134,9 @@ def draw_drive_mesh(
     shaft_pins: Sequence[tuple[complex, float]],
     title: str,
 ) -> str:
-    """Draw the mesh of a drive, zooms on the right.
+    """Draw the mesh of a drive as PNG, with up to four zooms on the right; return why matplotlib drew it, "" when pyvista did.
 
-    Parameters
-    ----------
-    path : str or Path
-        PNG file.
-    placed : sequence of PlacedBody
-        Bodies in the fixed frame.
-    zooms : sequence of Zoom
-        Up to four windows.
-    shaft_pins : sequence of (complex, float)
-        Centres (fixed frame) and radii of rigid shaft pins, drawn as outlines, mm.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    str
-        "" when pyvista drew it, else why matplotlib did.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
+    `shaft_pins` are centres (fixed frame) and radii of rigid shaft pins, mm, drawn as outlines.
     """
     import matplotlib as mpl
 

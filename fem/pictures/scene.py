@@ -105,27 +105,7 @@ class Panel:
 
 
 def render(path: Path, panels: Sequence[Panel], *, side: int = 1100) -> str:
-    """Render panels side by side into a PNG file.
-
-    Parameters
-    ----------
-    path : Path
-        The file; it appears only when complete.
-    panels : sequence of Panel
-        From left to right.
-    side : int
-        Pixels of each panel.
-
-    Returns
-    -------
-    str
-        "" when pyvista drew it, else why matplotlib did.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be written.
-    """
+    """Render panels of `side` pixels side by side into a PNG file; return why matplotlib drew it, "" when pyvista did."""
     import matplotlib as mpl
 
     problem = rendering_problem()
@@ -152,16 +132,9 @@ def _clip(panel: Panel) -> Panel:
 
 
 def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any, int], None]) -> Figure:
-    """Return panels side by side: title above, scales of mm, the colours' scale beside the field.
+    """Return panels side by side: title above, axes in mm, colour bar beside the field.
 
-    Parameters
-    ----------
-    panels : sequence of Panel
-        From left to right.
-    side : int
-        Pixels of each panel.
-    paint : callable
-        Draws a panel into axes by a norm of colours, at so many pixels.
+    `paint` draws a panel into axes by a norm of colours, with `side` pixels.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.cm import ScalarMappable

@@ -34,27 +34,9 @@ def draw_solution(
     side: int = 1600,
     prefix: str = "",
 ) -> str:
-    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``.
+    """Draw ``von_mises.png``, ``contacts.png`` and ``deformed.png``; return why matplotlib drew them, "" when pyvista did.
 
-    Parameters
-    ----------
-    solution : FullSolution
-        The solution.
-    fields : sequence of BodyField
-        Its fields.
-    headline : str
-        Drive, case and angle.
-    folder : Path
-        Where to.
-    side : int
-        Pixels of each picture of the whole drive; texts keep their size, so they read larger on a smaller one.
-    prefix : str
-        Put before the names of the files.
-
-    Returns
-    -------
-    str
-        "" when pyvista drew them, else why matplotlib did.
+    The pictures of the whole drive have `side` pixels; text keeps its size. `prefix` is put before the names of the files.
     """
     everything = np.concatenate([field.places for field in fields])
     reach = 1.03 * float(np.max(np.abs(everything)))

@@ -70,32 +70,12 @@ def share_moment(
     angle_tolerance: float = ANGLE_TOLERANCE,
     rounds: int = ROUNDS,
 ) -> Shares:
-    """Find the moments of all discs.
+    """Find the moments under which all discs turn the wheel to one angle.
 
-    Parameters
-    ----------
-    answer : callable
-        What the discs do under moments, shape (discs,), N·mm.
-    moment : array, shape (discs,)
-        First guess, N·mm; its sum has the sign of the wheel's moment.
-    slope : array, shape (discs,)
-        First guess of dθ/dM, rad/(N·mm).
-    rise : float
-        By how much the moment left over grows with the sum of the moments.
-    angle_tolerance : float
-        Largest difference of the wheel angles, rad.
-    rounds : int
-        Rounds at most.
-
-    Returns
-    -------
-    Shares
-        Those of the last answer.
-
-    Raises
-    ------
-    ConvergenceError
-        When a disc would carry nothing, or the angles do not agree; the history holds their differences, rad.
+    `answer` gives wheel angles for moments of shape (discs,), N·mm. `moment` and `slope` (dθ/dM, rad/(N·mm)) are first
+    estimates; the moments must add up to the sign of the wheel's moment. `rise` is the derivative of the moment left over by
+    the sum of the moments. ConvergenceError when a disc would carry nothing or the angles do not agree; the history holds
+    their differences, rad.
     """
     moment, slope = np.array(moment, dtype=float), np.array(slope, dtype=float)
     sign, size = np.sign(moment.sum()), abs(moment.sum())

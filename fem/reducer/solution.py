@@ -262,21 +262,9 @@ def solve_reducer(
 
 
 def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tuple[FloatArray, FloatArray]:
-    """Guess the moment that each disc carries, by springs between rigid bodies; equal ones where those leave a disc idle.
+    """Estimate the moment that each disc carries, N·mm, and dθ/dM there, rad/(N·mm), from springs between rigid bodies.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive in one case.
-    crank_angle : float
-        φ_C, rad.
-    wheel_moment : float
-        External moment on the wheel, N·mm.
-
-    Returns
-    -------
-    moment, slope : arrays, shape (discs,)
-        N·mm, and dθ/dM of each disc there, rad/(N·mm).
+    Equal moments where the springs leave a disc without load.
     """
     singles = single_discs(drive)
 

@@ -55,12 +55,9 @@ class RefereeAnswer:
 
 
 def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tuple[str, float]:
-    """Run ccx on a deck in a folder of its own; return the text of its .dat file and the seconds it took.
+    """Run ccx on a deck in a temporary folder; return the text of its .dat file and the seconds it took.
 
-    Raises
-    ------
-    CycloError
-        When ccx fails, does not end in time or leaves no results.
+    CycloError when ccx fails, does not end within `limit` seconds or leaves no results.
     """
     with tempfile.TemporaryDirectory(prefix="cyclo-ccx-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
@@ -91,12 +88,9 @@ def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tup
 
 
 def last_output(text: str) -> str:
-    """Return what a .dat file says about the last increment: from its contact stresses on.
+    """Return the part of a .dat file on the last increment, from its contact stresses on.
 
-    Raises
-    ------
-    CycloError
-        When nothing was printed, or contact points still pull by more than `PULLING_SHARE` of the largest pressure.
+    CycloError when nothing was printed, or contact points still pull by more than `PULLING_SHARE` of the largest pressure.
     """
     place = text.rfind(CONTACT_STRESS)
     if place < 0:
@@ -152,13 +146,7 @@ def read_wheel_turn(text: str) -> float:
 
 
 def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAnswer:
-    """Let CalculiX solve the deck of a solution and read its answer.
-
-    Raises
-    ------
-    CycloError
-        When it fails.
-    """
+    """Let CalculiX solve the deck of a solution and read its answer."""
     text, seconds = run_calculix(deck, program)
     with whole_file(deck.with_suffix(".dat")) as part:
         part.write_text(text, encoding="utf-8")
@@ -179,21 +167,9 @@ def ask_calculix(solution: FullSolution, deck: Path, program: str) -> RefereeAns
 
 
 def compare_with_calculix(solution: FullSolution, deck: Path, program: str) -> list[str]:
-    """Run CalculiX and return a table of both answers, line by line.
+    """Write the deck of a solution (``.inp``), run CalculiX and return a table of both answers, line by line.
 
-    Parameters
-    ----------
-    solution : FullSolution
-        Ours.
-    deck : Path
-        Where to write it, ends in ``.inp``; what CalculiX prints stands beside it in ``.dat``.
-    program : str
-        From `fem.referee.calculix_deck.find_calculix`.
-
-    Raises
-    ------
-    CycloError
-        When CalculiX fails.
+    What CalculiX prints is written beside the deck as ``.dat``.
     """
     return tabulate_answers(solution, ask_calculix(solution, write_deck(solution, deck), program))
 

@@ -64,13 +64,7 @@ SUPPORTS = 100
 
 
 def find_calculix() -> str:
-    """Return the program ``ccx``.
-
-    Raises
-    ------
-    CycloError
-        When it is not installed.
-    """
+    """Return the path of the program ``ccx``; CycloError when it is not installed."""
     program = shutil.which("ccx")
     if program is None:
         raise CycloError("--referee calculix: the program ccx is not installed (Debian: apt install calculix-ccx)")
@@ -163,26 +157,9 @@ def _faces(body: BodyMesh, middles: IntArray, elements: int) -> list[str]:
 
 
 def write_deck(solution: FullSolution, path: Path, *, penalty: float = PENALTY_FACTOR) -> Path:
-    """Write a complete input deck of the problem that a full solution solved.
+    """Write a complete input deck (``.inp``) of the problem that a full solution in plane strain solved; return the path.
 
-    Parameters
-    ----------
-    solution : FullSolution
-        Plane strain.
-    path : Path
-        Ends in ``.inp``.
-    penalty : float
-        Penalty stiffness times expected half-width over E.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    CycloError
-        For plane stress, which the deck does not have; when the file cannot be written.
+    `penalty` is the penalty stiffness times the expected half-width over E.
     """
     if solution.options.plane != "strain":
         raise CycloError("the CalculiX deck is plane strain; solve with --plane strain")
@@ -387,21 +364,9 @@ def _carry_shaft_pin(deck: _Deck, solution: FullSolution, pair: ContactPair) -> 
 
 
 def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, FloatArray]:
-    """Return some nodes of a round body, and forces on them that stand for one spread evenly over its area.
+    """Return up to `count` nodes of a circle about the origin, evenly spread, and the share of a force on each.
 
-    Parameters
-    ----------
-    body : BodyMesh
-        Circle about the origin.
-    count : int
-        About so many nodes.
-
-    Returns
-    -------
-    nodes : array of int, shape (k,)
-        Evenly spread; no more than `count`.
-    shares : array, shape (k,)
-        Of the force: areas nearest to each node, resultant through the origin. They sum to one.
+    Shares are the areas nearest to each node, corrected so that their resultant passes through the origin; they sum to one.
     """
     areas = area_loads(body)[::2, 0]
     areas = areas / np.sum(areas)

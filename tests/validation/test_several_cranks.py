@@ -274,16 +274,16 @@ def test_the_page_draws_every_bore_and_race(compared, drive):
 
 def test_what_a_disc_without_shaft_pins_changes_leaves_them_out(crank_study, tmp_path):
     effect, compared = crank_study.flexibility["nominal"], crank_study.compared["nominal"]
-    assert np.isnan(effect.turn["fe"].shaft_load)
-    assert set(effect.by_torque[1.0]) == {"pin_load", "roller_load"}
+    assert np.isnan(effect.turn["fe"].max_pin_shaft_load)
+    assert set(effect.by_torque[1.0]) == {"max_pin_load", "max_roller_load"}
     rows = flexibility_rows("nominal", effect)
     assert len(rows) == 2 * 7 + 2
     assert not any("shaft" in row.quantity for row in rows)
     assert set(full_solution_changes(compared)) == {"pin_load", "roller_load"}
-    assert not any("pin-shaft" in sentence for sentence in judge_half_space({"nominal": effect}))
-    assert turn_content(effect)["fe"]["shaft_load"] is None
+    assert not any("shaft pin" in sentence for sentence in judge_half_space({"nominal": effect}))
+    assert turn_content(effect)["fe"]["max_pin_shaft_load"] is None
     page = write_report(crank_study, tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "largest pin-shaft load" not in page
+    assert "largest load of a shaft pin" not in page
     assert "bearing of crank 2" in page
 
 

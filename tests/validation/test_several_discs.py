@@ -98,7 +98,7 @@ def test_parts_stand_on_the_eccentric_of_their_disc(compared, drive):
 def test_report_of_several_discs(compared, drive, coefficients, tmp_path):
     analysis = analyse(drive, np.array(ANGLES))
     figures = turn_figures(analysis)
-    assert figures.pin_load == max(own.full.response.pin_load.max() for own in analysis.discs)
+    assert figures.max_pin_load == max(own.full.response.pin_load.max() for own in analysis.discs)
     effect = FlexibilityEffect(turn=dict.fromkeys(("half-space", "fe", "hybrid"), figures), by_torque={})
     rows = tuple(row for item in compared for row in compare_position_rows(item))
     plan = Plan(name="two", drives={"CS-3": drive}, crank_angles=ANGLES, level="quick", options=SolutionOptions())

@@ -50,22 +50,7 @@ class ComparedPosition:
 def compare_case(
     drive: Drive, positions: Sequence[FullPosition], coefficients: DiscCoefficients
 ) -> list[ComparedPosition]:
-    """Answer the positions of one case with all models and compare disc by disc.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    positions : sequence of FullPosition
-        Full solutions, of several discs each by itself.
-    coefficients : InfluenceCoefficients or tuple of them
-        Of the disc, or of each of several.
-
-    Returns
-    -------
-    list of ComparedPosition
-        In the order of `positions`.
-    """
+    """Answer the positions of one case with all models and compare them disc by disc, in the order of `positions`."""
     angles = list(dict.fromkeys(position.crank_angle for position in positions))
     analyses = {model: analyse(drive, np.array(angles), engine=engine_of(model, coefficients)) for model in MODELS}
     of_discs = coefficients if isinstance(coefficients, tuple) else (coefficients,)

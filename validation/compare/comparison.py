@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from ltca.arrays import FloatArray
+from ltca.drive.units.quantities import ARCSEC
 
 Kind = PairKind
 KINDS: tuple[Kind, ...] = tuple(CONTACT_KINDS)
@@ -31,8 +32,6 @@ LOADED_SHARE = 0.01
 
 COUNTED_SHARE = 1e-3
 """A contact counts as loaded above this part of the largest load of its kind, as in `ltca.analysis.results`."""
-
-ARCSECONDS = float(np.degrees(1.0) * 3600.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,16 +177,7 @@ class PositionDifference:
 
 
 def contact_name(kind: Kind, number: int, rollers: int | None = None) -> str:
-    """Return the name of a contact as rows and report give it.
-
-    Parameters
-    ----------
-    kind : Kind
-        What touches what.
-    number : int
-        Which of its kind, rollers counted crank after crank.
-    rollers : int, optional
-        Of each crank, where there are several: the name then says which.
+    """Return the name of a contact as rows and report give it; of several cranks with `rollers` each, crank and roller.
 
     Examples
     --------
@@ -214,22 +204,9 @@ def worst(difference: FloatArray) -> tuple[int, float]:
 
 
 def compare_kind(model: KindAnswer, reference: KindAnswer) -> KindDifference:
-    """Compare the contacts of one kind.
+    """Return the differences of the contacts of one kind, model less reference.
 
-    Parameters
-    ----------
-    model, reference : KindAnswer
-        With arrays of the same length.
-
-    Returns
-    -------
-    KindDifference
-        Model less reference.
-
-    Raises
-    ------
-    ValueError
-        When the arrays differ in length, or the reference carries nothing while the model does.
+    ValueError when the arrays differ in length, or the reference carries nothing while the model does.
     """
     if model.load.shape != reference.load.shape:
         raise ValueError(f"{model.load.size} contacts against {reference.load.size}: not the same drive")
@@ -260,25 +237,14 @@ def _relative(model: FloatArray, reference: FloatArray, compared: NDArray[np.boo
 
 
 def compare_positions(model: PositionAnswer, reference: PositionAnswer) -> PositionDifference:
-    """Compare two answers to the same position.
-
-    Parameters
-    ----------
-    model, reference : PositionAnswer
-        At the same crank angle of the same drive.
-
-    Returns
-    -------
-    PositionDifference
-        Model less reference.
-    """
+    """Return the differences of two answers to the same position of the same drive, model less reference."""
     bearing = float(np.max(np.hypot(reference.bearing_radial, reference.bearing_tangential)))
     return PositionDifference(
         kinds={kind: compare_kind(model.kinds[kind], reference.kinds[kind]) for kind in KINDS},
         bearing_radial=(model.bearing_radial - reference.bearing_radial) / bearing,
         bearing_tangential=(model.bearing_tangential - reference.bearing_tangential) / bearing,
-        wheel_angle=(model.wheel_angle - reference.wheel_angle) * ARCSECONDS,
-        disc_rotation=(model.disc_rotation - reference.disc_rotation) * ARCSECONDS,
+        wheel_angle=(model.wheel_angle - reference.wheel_angle) * ARCSEC,
+        disc_rotation=(model.disc_rotation - reference.disc_rotation) * ARCSEC,
         disc_displacement=float(
             np.hypot(
                 model.disc_radial - reference.disc_radial,

@@ -173,24 +173,10 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
 
 
 def compare_stresses(model: DiscStressAnswer, reference: DiscStressAnswer) -> DiscStressDifference:
-    """Compare the stress in the disc of two answers to one position.
+    """Return the differences of the stress in the disc of two answers to one position, model less reference.
 
-    Parameters
-    ----------
-    model : DiscStressAnswer
-        At its stress stations.
-    reference : DiscStressAnswer
-        At nodes close to each other: taken linear between them.
-
-    Returns
-    -------
-    DiscStressDifference
-        Model less reference.
-
-    Raises
-    ------
-    ValueError
-        When the answers do not belong to discs with as many walls, roots and contacts.
+    The model is given at its stress stations, the reference at nodes close to each other, linear between them. ValueError
+    when the numbers of walls, roots or contacts differ.
     """
     if len(model.stress) != len(reference.stress) or any(
         own.shape != reference.largest[region].shape for region, own in model.largest.items()

@@ -214,14 +214,7 @@ def _draw(solution: FullSolution, title: str, folder: Path, prefix: str) -> None
 def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> PositionAnswer:
     """Return the answer of one disc in the summary of a full solution (`fem.reducer.solution_files.summarise`).
 
-    Parameters
-    ----------
-    summary : dict
-        Of all discs.
-    single : Drive
-        The drive of the disc alone.
-    disc : int
-        Its number.
+    `single` is the drive of that disc alone.
     """
 
     def of_disc(name: str) -> FloatArray:

@@ -61,13 +61,7 @@ def answer_positions(
 
 
 def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
-    """Return the analysis of a drive of one disc (`LoadedAnalysis.discs`) position by position.
-
-    Raises
-    ------
-    ValueError
-        For several discs.
-    """
+    """Return the analysis of a drive of one disc (`LoadedAnalysis.discs`) position by position."""
     (disc,) = analysis.model.discs
     full, response, pressures = analysis.full, analysis.full.response, analysis.pressures
     direction = disc.geometry.placement.eccentric_direction(full.crank_angle)

@@ -39,13 +39,7 @@ FEM, HALF_SPACE = "finite elements", "half-space"
 
 
 def check_closed_forms(drive: Drive) -> list[Row]:
-    """Return the rows of level 1.
-
-    Parameters
-    ----------
-    drive : Drive
-        Its mean tangential bearing load is held against power balance; the other rows use bodies of their own.
-    """
+    """Return the rows of level 1; the mean tangential bearing load of the drive is compared with power balance."""
     return [*_ring(), *_hole(), *_two_cylinders(), *_rollers(), *_ball(), *_power(drive)]
 
 

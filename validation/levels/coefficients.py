@@ -15,15 +15,7 @@ HALVED_LIMIT = 3e-3
 
 
 def check_file(dataset: xr.Dataset, case: str, plane: str) -> list[Row]:
-    """Return the checks of one set of coefficients as rows.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        From `fem.coefficients.dataset.derive_coefficients`.
-    case, plane : str
-        Case whose disc it is, and its plane state, for the rows.
-    """
+    """Return the checks of one set of derived coefficients as rows, labelled with case and plane state."""
     return [_row(check, case, f"coefficients, plane {plane}") for check in check_coefficients(dataset)]
 
 
@@ -52,14 +44,9 @@ def _row(check: Check, case: str, model: str) -> Row:
 
 
 def halved_mesh_row(finer: xr.Dataset, case: str) -> Row:
-    """Return what a mesh of half the size changes, from coefficients derived on it.
+    """Return the row on the change by a mesh of half the size, from coefficients derived on it.
 
-    Parameters
-    ----------
-    finer : Dataset
-        Derived with half the element size; its own convergence estimate compares with the default one.
-    case : str
-        Whose disc.
+    Their convergence estimate compares with twice the element size, the default one.
     """
     change = float(finer.attrs["convergence_estimate"])
     return Row(

@@ -14,8 +14,9 @@ from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
+from ltca.drive.units.quantities import ARCSEC
 from ltca.laws.series import approach_at_load
-from validation.compare.comparison import ARCSECONDS, compare_positions
+from validation.compare.comparison import compare_positions
 from validation.compare.model_positions import answers_of
 from validation.rows import Row, positive_row
 
@@ -29,19 +30,7 @@ def compare_models(
     coefficients: InfluenceCoefficients,
     plane_stress: InfluenceCoefficients,
 ) -> list[Row]:
-    """Return rows on the models alone.
-
-    Parameters
-    ----------
-    drive : Drive
-        In the case.
-    case : str
-        Its name.
-    crank_angles : array
-        rad.
-    coefficients, plane_stress : InfluenceCoefficients
-        Of the drive's shape, body part in plane strain and in plane stress.
-    """
+    """Return rows on the models alone; the coefficients are those of the body in plane strain and in plane stress."""
     return [
         *_uncoupled(drive, case, crank_angles),
         *_wide(drive, case, crank_angles, coefficients),
@@ -211,8 +200,8 @@ def _plane_stress(
             Row(
                 level=5,
                 quantity="wheel angle",
-                value=second.wheel_angle * ARCSECONDS,
-                reference=first.wheel_angle * ARCSECONDS,
+                value=second.wheel_angle * ARCSEC,
+                reference=first.wheel_angle * ARCSEC,
                 unit='"',
                 difference=apart.wheel_angle,
                 difference_unit='"',

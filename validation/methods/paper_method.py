@@ -65,14 +65,7 @@ class PaperIteration:
 def pose_of_lead(model: Reducer, wheel_position: FloatArray, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return actual crank angle and pose (`ltca.geometry.pairs`) of the unknowns of the paper (Eq. 45–46).
 
-    Parameters
-    ----------
-    model : Reducer
-        For its geometry.
-    wheel_position : array, shape (positions,)
-        Held φ_P, rad.
-    unknowns : array, shape (positions, 4)
-        δ_r, δ_t, δ_φ, δ_φC.
+    `wheel_position` is the held φ_P, rad, shape (positions,); the unknowns are δ_r, δ_t, δ_φ and δ_φC, shape (positions, 4).
     """
     place = model.discs[0].geometry.placement
     ideal = place.reduction_ratio * wheel_position
@@ -99,16 +92,10 @@ def lead_of_pose(model: Reducer, crank_angle: FloatArray, pose: FloatArray) -> t
 def iterate_held_wheel(
     model: Reducer, wheel_position: FloatArray, wheel_moment: FloatArray, unknowns: FloatArray
 ) -> PaperIteration:
-    """Iterate Eq. 90–93 at held wheel from given guesses; failures are told, not raised.
+    """Iterate Eq. 90–93 at held wheel from given guesses; failures are part of the result, not raised.
 
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose: tables or grids.
-    wheel_position, wheel_moment : array, shape (positions,)
-        Held φ_P in rad, external moment on the wheel in N·mm.
-    unknowns : array, shape (positions, 4)
-        Guesses of δ_r, δ_t, δ_φ, δ_φC.
+    `wheel_position` is the held φ_P, rad, `wheel_moment` in N·mm, both of shape (positions,); the guesses are δ_r, δ_t, δ_φ
+    and δ_φC, shape (positions, 4).
     """
     try:
         return _iterate(model, wheel_position, wheel_moment, unknowns)
@@ -202,28 +189,10 @@ def _iterate(
 def solve_paper_equilibrium(
     model: Reducer, crank_angle: FloatArray, wheel_moment: FloatArray | float, start: FloatArray
 ) -> Equilibrium:
-    """Balance every position by the iteration of the paper, at requested actual crank angles.
+    """Balance every position by the iteration of the paper, at requested actual crank angles (rad), from given poses.
 
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose: tables or grids.
-    crank_angle : array, shape (positions,)
-        Actual φ_C that the answer shall have, rad.
-    wheel_moment : float or array, shape (positions,)
-        External moment on the wheel, N·mm.
-    start : array, shape (positions, 4)
-        Poses to start from.
-
-    Returns
-    -------
-    Equilibrium
-        As from `ltca.equilibrium.balance.solve_equilibrium`; iterations counts all Newton steps.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position fails; the history holds its residuals in N.
+    `iterations` of the result counts all Newton steps. ConvergenceError when a position fails; the history holds its
+    residuals in N.
     """
     requested = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), requested.shape)

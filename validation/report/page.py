@@ -44,25 +44,7 @@ SHARED = (
 
 
 def write_report(study: Study, path: Path) -> Path:
-    """Write the page of a validation.
-
-    Parameters
-    ----------
-    study : Study
-        A finished validation.
-    path : Path
-        The page.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    CycloError
-        When it cannot be written.
-    """
+    """Write the page of a finished validation and return its path."""
     text = page_text(
         "report.html", _context(study), scripts=("drawing", "report"), styles=("report",), package="validation.report"
     )
