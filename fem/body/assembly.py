@@ -16,8 +16,8 @@ import scipy.sparse as sp
 from skfem import ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 
-from fem.mesh.body_mesh import BodyMesh, IntArray
-from ltca.arrays import FloatArray
+from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import FloatArray, IntArray
 
 
 def shape_functions(body: BodyMesh, quadrature: int) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -25,8 +25,8 @@ import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
 from fem.body.elasticity import area_loads, rigid_modes
-from fem.mesh.body_mesh import BodyMesh, IntArray
-from ltca.arrays import FloatArray
+from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import FloatArray, IntArray
 
 SYMMETRIC = {"SymmetricMode": True, "Equil": False}
 # Any diagonal above the sum of a row keeps the proxy of the node graph positive definite.

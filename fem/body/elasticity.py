@@ -17,8 +17,8 @@ from skfem import ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearF
 from skfem.models.elasticity import lame_parameters
 
 from fem.body.assembly import elastic_blocks, jacobians, shape_functions, sum_by_nodes
-from fem.mesh.body_mesh import BodyMesh, IntArray
-from ltca.arrays import FloatArray
+from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import FloatArray, IntArray
 from ltca.drive.parts import Material
 
 PlaneState = Literal["strain", "stress"]

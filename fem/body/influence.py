@@ -26,8 +26,8 @@ import scipy.sparse.linalg as spla
 
 from fem.body.condensation import SYMMETRIC, order_nodes, statically_determinate
 from fem.body.elasticity import rigid_modes, unknowns_of_nodes
-from fem.mesh.body_mesh import BodyMesh, IntArray
-from ltca.arrays import FloatArray
+from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import FloatArray, IntArray
 
 # Columns of Z that are made dense together. With fewer the overhead of each panel counts, with more the zeros: 64 to
 # 128 take the least time on discs of 26 to 90 teeth.

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from fem.body.elasticity import unknowns_of_nodes
 from fem.errors import MeshError
-from fem.mesh.body_mesh import BodyMesh, IntArray
+from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import Curve
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 
 # Products of a quadratic and a linear shape function, a normal that turns by less than 0.1 rad along the edge and
 # a square-root length element: five points integrate them to round-off.

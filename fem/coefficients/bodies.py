@@ -40,16 +40,16 @@ GROWTH = 0.4
 # Pins, rollers and race are small: a mesh of half the size costs nothing.
 ROUND_SIZE = 0.5
 # Elements stay small to this distance from the middle of a patch, in half-widths.
-ZONE = 1.2
+REFINED_RADIUS = 1.2
 # Every 16th station also gets a patch twice as wide: both together show the closed form of the near field.
 WIDE_STEP = 16
 WIDE_RATIO = 2.0
 # Stations whose displacement is solved for once more, to measure reciprocity by another way than the matrix.
-SAMPLED = 12
+RECIPROCITY_SAMPLES = 12
 # Faster growth distorts triangles (smallest angle below 15° on one of six random discs at 1.0).
-LARGEST_GROWTH = 0.7
+MAX_GROWTH = 0.7
 # Beyond this the edges are longer than the patches are wide.
-LARGEST_SIZE = 4.0
+MAX_SIZE = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,10 +120,10 @@ class DerivedRound:
 
 def _refinements(points: ComplexArray, half_width: float, size: float) -> list[Refinement]:
     edge = EDGE_SHARE * size * half_width
-    return [Refinement(float(point.real), float(point.imag), edge, ZONE * half_width) for point in points]
+    return [Refinement(float(point.real), float(point.imag), edge, REFINED_RADIUS * half_width) for point in points]
 
 
-def require_element_size(size: float, largest: float = LARGEST_SIZE) -> None:
+def require_element_size(size: float, largest: float = MAX_SIZE) -> None:
     """Raise MeshError for a multiple of the default element edge that is not positive or above the largest."""
     if not (np.isfinite(size) and 0.0 < size <= largest):
         raise MeshError(
@@ -132,7 +132,7 @@ def require_element_size(size: float, largest: float = LARGEST_SIZE) -> None:
 
 
 def _growth(size: float) -> float:
-    return min(GROWTH * size, LARGEST_GROWTH)
+    return min(GROWTH * size, MAX_GROWTH)
 
 
 def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0, processes: int = 1) -> None:
@@ -192,7 +192,7 @@ def derive_disc(
     measures = wall_modulus(material, state) * sp.hstack(strains)
     loads = sp.hstack([*patches, *wide_patches, *pressures, measures], format="csc")
     stiffness = assemble_stiffness(body, material, thickness=thickness, state=state)
-    sampled = np.unique(np.linspace(0, count - 1, SAMPLED).astype(int))
+    sampled = np.unique(np.linspace(0, count - 1, RECIPROCITY_SAMPLES).astype(int))
     by_area, by_bores = area_loads(body), motions.toarray()
     influence = influence_of_loads(body, stiffness, loads, [by_area, by_bores], sampled)
     del stiffness

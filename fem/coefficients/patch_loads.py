@@ -30,7 +30,7 @@ GAUSS = np.polynomial.legendre.leggauss(10)
 # Length of a quadratic edge whose speed varies by some per cent: four points leave 1e-12.
 LENGTH_GAUSS = np.polynomial.legendre.leggauss(4)
 # A patch must be small against its boundary: it may cover this part of it.
-LARGEST_SHARE = 0.25
+MAX_BOUNDARY_SHARE = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,10 +153,10 @@ def patch_loads(
     parameters = np.atleast_1d(np.asarray(parameters, dtype=float))
     width = np.broadcast_to(np.asarray(half_width, dtype=float), parameters.shape)
     boundary = BoundaryArc.of_boundary(body, curve)
-    if not (np.all(width > 0.0) and np.all(2.0 * width < LARGEST_SHARE * boundary.length)):
+    if not (np.all(width > 0.0) and np.all(2.0 * width < MAX_BOUNDARY_SHARE * boundary.length)):
         raise MeshError(
             f"patch half-width {width.min():.4g} to {width.max():.4g} mm on {curve.name!r} of {body.name}: must be "
-            f"greater than 0 and less than {0.5 * LARGEST_SHARE * boundary.length:.4g} mm"
+            f"greater than 0 and less than {0.5 * MAX_BOUNDARY_SHARE * boundary.length:.4g} mm"
         )
     middle = boundary.arc_of(curve.points(parameters))
     phi, weight, owner = divide_patches(boundary, middle, width)

@@ -10,6 +10,7 @@ from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
     add_size_argument,
+    tell_unit_mistakes,
 )
 
 if TYPE_CHECKING:
@@ -48,7 +49,6 @@ def chosen_drive(arguments: argparse.Namespace) -> tuple[str, str, Drive]:
 
 def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
     """Return the drive file, the name of the case and its drive."""
-    from ltca.reading.arguments import tell_unit_mistakes
     from ltca.reading.drive_file import load_drive
 
     file = load_drive(arguments.drive)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
-from fem.drive.contact_results import DeformedContacts, summarise_contacts
+from fem.drive.contact_results import ContactResults, DeformedContacts
 from fem.drive.expected_contacts import (
     ContactGroup,
     ExpectedContacts,
@@ -32,10 +32,10 @@ from ltca.geometry.placement import Placement
 # Contacts under this share of the largest load of their kind get elements as if they carried it (design.md: 5 %).
 FINE_SHARE = 0.05
 # Elements may be this much larger than asked for before the meshes are graded anew.
-SLACK = 1.1
+EDGE_TOLERANCE = 1.1
 # A soft disc turns and bends under its flank: the pressure then lies beside the place where the rigid bodies meet. Up to
 # this part of a half-width the fine elements, which reach half a half-width further than the contact, serve it there.
-SHIFT = 0.25
+SHIFT_TOLERANCE = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,7 +105,7 @@ def grade_contacts(
 
     A contact without load whose gap is below `margin`, mm, becomes a candidate, with elements for at least `smallest_share`
     of the largest load of its kind. Gaps and places of pressure of a `deformed` solution at this pose replace those of the
-    rigid bodies where they are known and far enough from them (`SHIFT`).
+    rigid bodies where they are known and far enough from them (`SHIFT_TOLERANCE`).
     """
     gaps = measure_gaps(drive, crank_angle, displacement, rotation, wheel_angle)
     profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
@@ -158,7 +158,7 @@ def grade_contacts(
 
 def _is_shifted(rigid: ComplexArray, deformed: ComplexArray, group: ContactGroup) -> NDArray[np.bool_]:
     """Return which contacts press so far from where the rigid bodies would that small elements there miss them."""
-    return np.asarray(np.abs(deformed - rigid) > SHIFT * group.half_width) & (group.half_width > 0.0)
+    return np.asarray(np.abs(deformed - rigid) > SHIFT_TOLERANCE * group.half_width) & (group.half_width > 0.0)
 
 
 def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[FloatArray, ...]:
@@ -188,9 +188,8 @@ def _reach_to_bore(displacement: ComplexArray, place: Placement, rays: ComplexAr
     return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))
 
 
-def find_shortcoming(model: DriveModel, solution: PoseSolution, size: float) -> str:
-    """Return why the meshes do not serve a solution, "" when they do."""
-    results = summarise_contacts(model, solution)
+def find_shortcoming(model: DriveModel, solution: PoseSolution, results: ContactResults, size: float) -> str:
+    """Return why the meshes do not serve a solution with these contacts, "" when they do."""
     for pair, detail in zip(model.pairs, results.details, strict=True):
         own = solution.contact.pressure[pair.unknowns]
         name = CONTACT_KINDS[pair.kind].name.format(pair.index)
@@ -198,7 +197,7 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, size: float) -> 
             return f"the pressure of {name} reaches the end of its zone"
         if (
             detail.share > FINE_SHARE
-            and detail.largest_edge > SLACK * size * detail.half_width / ELEMENTS_PER_HALF_WIDTH
+            and detail.largest_edge > EDGE_TOLERANCE * size * detail.half_width / ELEMENTS_PER_HALF_WIDTH
         ):
             return (
                 f"{detail.half_width / detail.largest_edge:.3g} elements for the half-width of {name}, "

@@ -23,7 +23,7 @@ from ltca.errors import ConvergenceError
 POSE_TOLERANCE = 5.0e-5
 LOAD_TOLERANCE = 2.0e-4
 # Farthest a body may travel in one step, mm: normals are those of the old pose.
-LARGEST_STEP = 0.05
+MAX_STEP = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,7 +152,7 @@ def _move(
     reach[2] = shapes.disc.flank.profile.tip_radius
     reach[3] = float(np.abs(model.placement.wheel_pin_centres).max())
     largest = float(np.max(np.abs(motion * reach)))
-    motion *= min(1.0, LARGEST_STEP / largest) if largest > 0.0 else 1.0
+    motion *= min(1.0, MAX_STEP / largest) if largest > 0.0 else 1.0
     distances = pose.roller_distances.copy()
     for column, roller in enumerate(model.rollers, start=4):
         distances[roller] += motion[column]

@@ -271,8 +271,8 @@ def solve_disc(
     for grading in range(1, MAX_GRADINGS + 1):
         model, solution = task.solve_graded(model, solution, grading, rounds)
         rounds = keep_rounds(rounds, model.groups)
-        complaint = find_shortcoming(model, solution, options.size)
         results = summarise_contacts(model, solution)
+        complaint = find_shortcoming(model, solution, results, options.size)
         watch.lap("check")
         if not complaint:
             return FullSolution(
@@ -316,14 +316,15 @@ def solve_moment(
         progress=progress,
     )
     watch.lap("contact and pose")
-    if find_shortcoming(model, solution, previous.options.size):
+    results = summarise_contacts(model, solution)
+    if find_shortcoming(model, solution, results, previous.options.size):
         return solve_disc(
             model.drive, model.crank_angle, wheel_moment, previous.options, rounds=previous.rounds, progress=progress
         )
     return replace(
         previous,
         state=solution,
-        contacts=summarise_contacts(model, solution),
+        contacts=results,
         pose_iterations=solution.iterations,
         seconds=watch.total(),
     )

@@ -20,11 +20,11 @@ from ltca.output.files import whole_file
 
 DEFAULT_CHORD = 1e-3
 """mm."""
-LEAST_AROUND = 360
+MIN_CIRCLE_EDGES = 360
 """Edges of a circle at the least: its area is then 5e-5 off, however small it is."""
-LEAST_SHARE = 1.0 / 40
+MAX_EDGE_BY_LOBE = 1.0 / 40
 """Of a lobe, longest edge of a flank by its length."""
-NO_STEP = 0.381966
+START_OFFSET = 0.381966
 """Of the step between corners of a circle, where the first one stands: bodies that touch (rollers and races) share no corner, or
 readers would take them for one that is not closed."""
 INITIAL_MESH_ONLY = 3
@@ -73,8 +73,8 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     """Return corners on a closed curve, counter-clockwise, whose edges are no further from it than a chord, mm."""
     if isinstance(curve, Circle):
         half = np.arccos(max(1.0 - chord / curve.radius, 0.0))
-        count = max(LEAST_AROUND, int(np.ceil(np.pi / half)))
-        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + NO_STEP) / count))
+        count = max(MIN_CIRCLE_EDGES, int(np.ceil(np.pi / half)))
+        return np.asarray(curve.centre + curve.radius * np.exp(2j * np.pi * (np.arange(count) + START_OFFSET) / count))
     # On a fine table: the chord of an edge of length s is κ s²/8.
     flank = curve.flank
     fine = np.linspace(0.0, 2.0 * np.pi, 16 * curve.parameter.size + 1)
@@ -83,7 +83,7 @@ def divide(curve: FlankSpline | Circle, chord: float) -> ComplexArray:
     middle = 0.5 * (fine[:-1] + fine[1:])
     # A tenth less than allowed, for edges over which the curvature changes.
     edges = np.sqrt(0.9 * chord * 8.0 / np.maximum(np.abs(flank.curvature(middle)), 1e-12))
-    edges = np.minimum(edges, LEAST_SHARE * lengths.sum() / flank.lobes)
+    edges = np.minimum(edges, MAX_EDGE_BY_LOBE * lengths.sum() / flank.lobes)
     needed = np.concatenate([[0.0], np.cumsum(lengths / edges)])
     count = int(np.ceil(needed[-1]))
     parameter = np.interp(np.arange(count) * needed[-1] / count, needed, fine)

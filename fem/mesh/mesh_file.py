@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem.errors import MeshError
-from fem.mesh.body_mesh import BodyMesh, IntArray, triangle_mesh
+from fem.mesh.body_mesh import BodyMesh, triangle_mesh
 from fem.mesh.quality import require_valid_elements
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, IntArray
 from ltca.output.files import whole_file
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.mesh.body_mesh import BodyMesh, IntArray
-from ltca.arrays import ComplexArray
+from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import ComplexArray, IntArray
 
 POINTS_PER_EDGE = 5
 """Points drawn along a curved edge."""

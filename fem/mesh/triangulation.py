@@ -14,14 +14,14 @@ from types import ModuleType
 import numpy as np
 
 from fem.errors import MeshError
-from fem.mesh.body_mesh import BodyMesh, IntArray, triangle_mesh
+from fem.mesh.body_mesh import BodyMesh, triangle_mesh
 from fem.mesh.boundary_division import DividedCurve, divide_curve, serve_curvature
 from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import UNKNOWNS_PER_TRIANGLE, mesh_memory, require_memory
 from fem.mesh.quality import require_quality
 from fem.shapes import CircleShape, DiscShape, RingShape, Shape
-from ltca.arrays import ComplexArray
+from ltca.arrays import ComplexArray, IntArray
 
 FRONTAL_DELAUNAY = 6
 TRIANGLE, LINE, POINT = 2, 1, 15

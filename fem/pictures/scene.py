@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 PIXELS_PER_INCH = 200.0
 """Of pictures: words keep their size, so they read larger on a smaller one."""
-BESIDE, ABOVE = 1.25, 0.85
+BAR_INCHES, TITLE_INCHES = 1.25, 0.85
 """Inches for the scales beside a panel, and for its title and the scale below."""
 LETTERS_PER_INCH = 12.5
-LEAST_INCHES = 4.0
+MIN_INCHES = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,7 +143,7 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
     from matplotlib.ticker import MaxNLocator
 
     width = _inches(side)
-    figure = Figure(figsize=((width + BESIDE) * len(panels), width + ABOVE), layout="constrained")
+    figure = Figure(figsize=((width + BAR_INCHES) * len(panels), width + TITLE_INCHES), layout="constrained")
     FigureCanvasAgg(figure)
     for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
         norm = LogNorm(*panel.limits, clip=True) if panel.logarithmic else Normalize(*panel.limits)
@@ -174,7 +174,7 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
 
 def _inches(side: int) -> float:
     """Side of a panel on paper: on one of few pixels words shrink with it."""
-    return max(side / PIXELS_PER_INCH, LEAST_INCHES)
+    return max(side / PIXELS_PER_INCH, MIN_INCHES)
 
 
 def _round_values(low: float, high: float) -> list[float]:

@@ -17,7 +17,7 @@ from ltca.arrays import ComplexArray, FloatArray
 # Colours over the whole drive run over ratios, from where this share of its area is below up to the largest stress: on an
 # even scale the spots under the contacts would leave the rest of the drive in one colour.
 COLOUR_AREA = 0.10
-MOST_RATIO = 500.0
+MAX_COLOUR_RATIO = 500.0
 # The largest elastic displacement is drawn as this part of the drive's radius.
 DEFORMED_SHARE = 0.04
 ZOOM_HALF_WIDTHS = 3.5
@@ -41,7 +41,7 @@ def draw_solution(
     everything = np.concatenate([field.places for field in fields])
     reach = 1.03 * float(np.max(np.abs(everything)))
     highest = max(float(np.max(field.stress.von_mises)) for field in fields)
-    lowest = _round_down(max(_stress_below(fields, COLOUR_AREA), highest / MOST_RATIO))
+    lowest = _round_down(max(_stress_below(fields, COLOUR_AREA), highest / MAX_COLOUR_RATIO))
     shaft = _shaft_pins(solution)
     whole = Panel(
         title=f"{headline}\nvon Mises stress, largest {highest:.3g} MPa (logarithmic scale)",

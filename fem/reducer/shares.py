@@ -14,12 +14,12 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 
-ROUNDS = 12
+MAX_ROUNDS = 12
 ANGLE_TOLERANCE = 1e-9
 """Largest difference of wheel angles, rad: a hundred thousandth of what a drive winds up by."""
 MOMENT_TOLERANCE = 1e-8
 """Largest moment left over as a part of the wheel's."""
-LEAST_SHARE = 1e-3
+MIN_SHARE = 1e-3
 """A disc below this part of the mean share floats in its play: nothing says where it rests."""
 
 
@@ -68,7 +68,7 @@ def share_moment(
     *,
     rise: float = 1.0,
     angle_tolerance: float = ANGLE_TOLERANCE,
-    rounds: int = ROUNDS,
+    rounds: int = MAX_ROUNDS,
 ) -> Shares:
     """Find the moments under which all discs turn the wheel to one angle.
 
@@ -79,7 +79,7 @@ def share_moment(
     """
     moment, slope = np.array(moment, dtype=float), np.array(slope, dtype=float)
     sign, size = np.sign(moment.sum()), abs(moment.sum())
-    least = LEAST_SHARE * size / moment.size
+    least = MIN_SHARE * size / moment.size
     spread: list[float] = []
     left: list[float] = []
     before: tuple[FloatArray, FloatArray] | None = None
@@ -100,7 +100,7 @@ def share_moment(
         if np.any(short & (sign * moment <= least)):
             disc = int(np.argmin(sign * wanted))
             raise ConvergenceError(
-                f"disc {disc} carries less than {LEAST_SHARE:g} of the mean share of the wheel's moment: finite elements "
+                f"disc {disc} carries less than {MIN_SHARE:g} of the mean share of the wheel's moment: finite elements "
                 "cannot say where a disc without load rests; differences of the wheel angles in rad",
                 spread,
             )

@@ -29,7 +29,7 @@ from ltca.errors import ConvergenceError
 
 POSE_TOLERANCE = 1e-7
 """Largest increment of a pose at rest, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
-STEP = 0.01
+RELATIVE_MOMENT_STEP = 0.01
 """Part of a moment over which the springs' slope is taken."""
 SPRING_TOLERANCE = 1e-7
 
@@ -280,7 +280,8 @@ def expect_shares(drive: Drive, crank_angle: float, wheel_moment: float) -> tupl
         return SharedAnswer(wheel_angle=angles(moments), left_over=0.0)
 
     def slopes(moments: FloatArray) -> FloatArray:
-        return (angles((1.0 + STEP) * moments) - angles((1.0 - STEP) * moments)) / (2.0 * STEP * moments)
+        step = RELATIVE_MOMENT_STEP
+        return (angles((1.0 + step) * moments) - angles((1.0 - step) * moments)) / (2.0 * step * moments)
 
     equal = np.full(len(singles), wheel_moment / len(singles))
     try:

@@ -25,7 +25,7 @@ from ltca.errors import CycloError
 from ltca.output.files import whole_file
 from ltca.output.processes import supervised
 
-LONGEST_RUN = 3600.0
+TIME_LIMIT = 3600.0
 CONTACT_STRESS = "contact stress"
 # The points have come to rest (see `fem.referee.calculix_deck`), so none pulls but those that changed sides in the last
 # iteration as many one way as the other: these are next to the rim, where there is next to no pressure.
@@ -54,7 +54,7 @@ class RefereeAnswer:
     seconds: float
 
 
-def run_calculix(deck: Path, program: str, *, limit: float = LONGEST_RUN) -> tuple[str, float]:
+def run_calculix(deck: Path, program: str, *, limit: float = TIME_LIMIT) -> tuple[str, float]:
     """Run ccx on a deck in a temporary folder; return the text of its .dat file and the seconds it took.
 
     CycloError when ccx fails, does not end within `limit` seconds or leaves no results.

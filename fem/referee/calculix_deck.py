@@ -46,8 +46,8 @@ from fem.body.surface import OppositeZone
 from fem.contact.coupling import Pose
 from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair, DriveModel
-from fem.mesh.body_mesh import BodyMesh, IntArray
-from ltca.arrays import ComplexArray, FloatArray
+from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 from ltca.errors import CycloError
 from ltca.output.files import whole_file
@@ -60,7 +60,7 @@ CONTACT_CONTROLS = "0.,0.,100,200"
 # Half-angle of the rigid shaft-pin arcs is this many times the zone they face.
 RIGID_REACH = 1.3
 # Nodes that carry an elastic shaft pin, see above.
-SUPPORTS = 100
+SUPPORT_NODES = 100
 
 
 def find_calculix() -> str:
@@ -363,7 +363,7 @@ def _carry_shaft_pin(deck: _Deck, solution: FullSolution, pair: ContactPair) -> 
     deck.equate(sorted(terms, key=lambda term: -abs(term[2])))
 
 
-def even_support(body: BodyMesh, count: int = SUPPORTS) -> tuple[IntArray, FloatArray]:
+def even_support(body: BodyMesh, count: int = SUPPORT_NODES) -> tuple[IntArray, FloatArray]:
     """Return up to `count` nodes of a circle about the origin, evenly spread, and the share of a force on each.
 
     Shares are the areas nearest to each node, corrected so that their resultant passes through the origin; they sum to one.

@@ -10,13 +10,14 @@ import pytest
 
 import validation.levels.flexible_disc
 from fem.options import SolutionOptions
+from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import without_coupling
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from validation.compare.compared_positions import compare_case
 from validation.compare.disc_stresses import DiscStressAnswer
 from validation.compare.finite_element_positions import FullPosition
-from validation.compare.model_positions import answer_positions
+from validation.compare.model_positions import answers_of
 from validation.levels.flexible_disc import flexibility_rows, full_solution_rows, study_case
 from validation.levels.positions import compare_position_rows
 from validation.rows import Row
@@ -60,7 +61,7 @@ def make_study(paper_cases):
     drives = {name: paper_cases[name] for name in ("CS-1", "CS-6")}
     compared, flexibility, coefficients, rows = {}, {}, {}, []
     for case, drive in drives.items():
-        answers = answer_positions(drive, np.array(ANGLES), "half-space")
+        answers = answers_of(analyse(drive, np.array(ANGLES)))
         positions = [
             FullPosition(
                 case=case,
@@ -116,7 +117,7 @@ def crank_study(crank_drive):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(validation.levels.flexible_disc, "TURN_POSITIONS", 2)
         patch.setattr(validation.levels.flexible_disc, "TORQUES", (1.0,))
-        (answer,) = answer_positions(crank_drive, np.array(angles), "half-space")
+        (answer,) = answers_of(analyse(crank_drive, np.array(angles)))
         full = FullPosition(
             case="nominal", crank_angle=angles[0], answer=answer, stress=NO_STRESS, residual=0.0, unknowns=1000,
             seconds=1.0, pictures=(),

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.errors import CycloError
 from ltca.reading.arguments import (
     add_case_argument,
     add_drive_argument,
@@ -70,7 +71,6 @@ def execute(arguments: argparse.Namespace) -> int:
     from fem.errors import MemoryLimitError
     from fem.options import SolutionOptions
     from fem.reducer.solution import require_solution_memory
-    from ltca.errors import CycloError
     from validation.study import plan_study
 
     angles = list(arguments.angles or [])

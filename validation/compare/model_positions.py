@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ltca.analysis.engines import Compliance, Engine, HalfSpace, engine_named
-from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
+from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
@@ -17,8 +17,6 @@ from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
-
-
 DiscCoefficients: TypeAlias = InfluenceCoefficients | tuple[InfluenceCoefficients, ...]
 """Coefficients of the one disc of a drive, or of each of several."""
 
@@ -26,38 +24,6 @@ DiscCoefficients: TypeAlias = InfluenceCoefficients | tuple[InfluenceCoefficient
 def engine_of(compliance: Compliance, coefficients: DiscCoefficients | None) -> Engine:
     """Return the engine of a compliance model, with the coefficients where it takes them."""
     return HalfSpace() if compliance == "half-space" else engine_named(compliance, coefficients=coefficients)
-
-
-def answer_positions(
-    drive: Drive,
-    crank_angles: FloatArray,
-    compliance: Compliance,
-    coefficients: DiscCoefficients | None = None,
-) -> list[PositionAnswer]:
-    """Analyse positions with one compliance model.
-
-    Parameters
-    ----------
-    drive : Drive
-        In its case, of one disc.
-    crank_angles : array, shape (positions,)
-        rad.
-    compliance : {"half-space", "fe", "hybrid"}
-        The model.
-    coefficients : InfluenceCoefficients or tuple of them, optional
-        What ``fe`` and ``hybrid`` need.
-
-    Returns
-    -------
-    list of PositionAnswer
-        One for each angle.
-
-    Raises
-    ------
-    CycloError
-        As `ltca.analysis.loaded_analysis.analyse`.
-    """
-    return answers_of(analyse(drive, crank_angles, engine=engine_of(compliance, coefficients)))
 
 
 def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:

@@ -21,7 +21,7 @@ from validation.rows import Row, relative_row, rounded
 
 TURN_POSITIONS = 72
 TORQUES = (0.25, 0.5, 1.0, 1.5)
-SAFE = 0.05
+LOAD_TOLERANCE = 0.05
 """A largest load is taken as good enough for a design within this part: what materials and tolerances scatter by."""
 
 CAUSE = "what the rigid disc and uncoupled contacts leave out: informs only"
@@ -212,11 +212,11 @@ def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
         if not changes:
             continue
         low, high = min(changes.values()), max(changes.values())
-        safe = [case for case, change in changes.items() if abs(change) <= SAFE]
-        under = [case for case, change in changes.items() if change > SAFE]
-        over = [case for case, change in changes.items() if change < -SAFE]
+        safe = [case for case, change in changes.items() if abs(change) <= LOAD_TOLERANCE]
+        under = [case for case, change in changes.items() if change > LOAD_TOLERANCE]
+        over = [case for case, change in changes.items() if change < -LOAD_TOLERANCE]
         verdict = [
-            f"within {100.0 * SAFE:g} % in {', '.join(safe)}" if safe else "",
+            f"within {100.0 * LOAD_TOLERANCE:g} % in {', '.join(safe)}" if safe else "",
             f"too low, so unsafe, in {', '.join(under)}" if under else "",
             f"too high, so on the safe side, in {', '.join(over)}" if over else "",
         ]

@@ -27,13 +27,13 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
-ITERATIONS = 60
-START = 0.95
+MAX_ITERATIONS = 60
+START_TORQUE_RATIO = 0.95
 """Part of the torque whose solution the iteration starts from: near, but never the answer itself."""
-DIFFERENCE = 1e-6
+DIFFERENCE_STEP = 1e-6
 """ε of Eq. 91 and 93, mm (rotations: by their lever arms): small against an approach, large against round-off."""
-CORRECTIONS = 12
-LABEL = 1e-11
+MAX_CORRECTIONS = 12
+CRANK_ANGLE_TOLERANCE = 1e-11
 """Largest difference of the actual crank angle from the requested one, rad: it moves loads by 1e-9 of themselves."""
 
 
@@ -138,7 +138,7 @@ def _iterate(
     going = np.ones(count, dtype=bool)
     converged = np.zeros(count, dtype=bool)
     # δ_φC moves the disc's race by e δ_φC: its lever is e, not e z_P.
-    steps = DIFFERENCE / np.array([1.0, 1.0, lever[2], reach])
+    steps = DIFFERENCE_STEP / np.array([1.0, 1.0, lever[2], reach])
     start: Start | None = None
 
     def unbalanced(rows: NDArray[np.intp], values: FloatArray, before: Start | None) -> tuple[FloatArray, Response]:
@@ -148,7 +148,7 @@ def _iterate(
         residual[:, WHEEL_ANGLE] -= wheel_moment[rows]
         return residual / lever, response
 
-    for _ in range(ITERATIONS + 1):
+    for _ in range(MAX_ITERATIONS + 1):
         rows = np.nonzero(going)[0]
         residual, response = unbalanced(rows, guess[rows], start)
         size = np.max(np.abs(residual), axis=1)
@@ -176,7 +176,7 @@ def _iterate(
         if not np.any(going):
             break
     for row in np.nonzero(~converged)[0]:
-        failure[row] = failure[row] or f"no balance after {ITERATIONS} iterations"
+        failure[row] = failure[row] or f"no balance after {MAX_ITERATIONS} iterations"
     return PaperIteration(
         unknowns=guess,
         converged=converged,
@@ -200,7 +200,7 @@ def solve_paper_equilibrium(
     wheel, unknowns = lead_of_pose(model, requested, start)
     steps = np.zeros(requested.size, dtype=np.intp)
     off: list[float] = []
-    for _ in range(CORRECTIONS):
+    for _ in range(MAX_CORRECTIONS):
         found = iterate_held_wheel(model, wheel, moment, unknowns)
         steps += found.iterations
         if not np.all(found.converged):
@@ -215,7 +215,7 @@ def solve_paper_equilibrium(
         actual, pose = pose_of_lead(model, wheel, unknowns)
         away = requested - actual
         off.append(float(np.max(np.abs(away))))
-        if off[-1] <= LABEL:
+        if off[-1] <= CRANK_ANGLE_TOLERANCE:
             response = model.respond(requested, pose)
             residual = response.force.copy()
             residual[:, WHEEL_ANGLE] -= moment
@@ -251,7 +251,7 @@ class HeldWheel:
         """Return balanced positions at an output torque."""
 
         def iterate(angle: FloatArray, moment: FloatArray, begin: FloatArray | None) -> Equilibrium:
-            near = solve_equilibrium(self.tables, angle, START * moment, begin)
+            near = solve_equilibrium(self.tables, angle, START_TORQUE_RATIO * moment, begin)
             return solve_paper_equilibrium(self.model, angle, moment, near.pose)
 
         return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
