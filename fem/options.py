@@ -1,4 +1,4 @@
-"""How finely and in which plane state a drive is solved: one value, made by the command or caller and passed down."""
+"""Options of a full solution as one value, made by the command or caller and passed down."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def persson_pressure(angle: ArrayLike, half_width: ArrayLike) -> FloatArray:
 
 
 def hertz_rows() -> Iterator[str]:
-    """Yield a line for each load of the issue's slot: what Hertz makes of arc, peak pressure and approach."""
+    """Yield a line for each load of the issue's slot: arc, peak pressure and approach by Hertz and by the law."""
     yield "where Hertz ends: pin 4.0 mm, slot 4.004 mm, datum 6 mm, 12 mm long, steel"
     law = _bore_law(*SEATS[1])
     play, radius = 0.004, 4.0 * 4.004 / 0.004
@@ -119,7 +119,7 @@ def seat_rows() -> Iterator[str]:
 
 
 def sleeve_rows() -> Iterator[str]:
-    """Yield a line for each sleeve: its law, and the sum of laws that know no wall, against finite elements.
+    """Yield a line for each sleeve: its law, and the sum of laws without a wall, against finite elements.
 
     All are the travel between the pin and a flat flank's patch outside, the flank's own half left out: the mean
     displacement under the patch and half the mean separation.

@@ -206,7 +206,7 @@ def _model_rows(
     folder: Path,
     say: Callable[[str], None],
 ) -> list[Row]:
-    """Return the rows of level 5; what the models owe each other is shown by the first disc alone."""
+    """Return the rows of level 5; relations between the models are checked on the first disc alone."""
     first, last = next(iter(plan.drives)), list(plan.drives)[-1]
     positions = [item for items in compared.values() for item in items]
     rows = [row for item in positions for row in (*compare_position_rows(item), *disc_stress_rows(item))]

@@ -35,7 +35,7 @@ PROXY_DIAGONAL = 200.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CondensedBody:
-    """A body as its contact sees it.
+    """A body reduced to its unit loads: compliance between them and nodal displacements under them.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class CondensedBody:
 
     @property
     def entries(self) -> int:
-        """Numbers that it holds: those of the factor, most of all."""
+        """Number of stored values, most of them those of the factor."""
         return int(self._factor.lower.nnz) + self.compliance.size + self._trailing.size
 
     def displacement(self, amounts: FloatArray) -> FloatArray:
@@ -240,7 +240,7 @@ def _factorise(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -
     count = len(kept)
     matrix = sp.vstack([sp.hstack([inner, border]), sp.hstack([border.T, sp.csr_matrix((loads.shape[1],) * 2)])])
     factor = spla.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
-    # SuperLU's object would keep three copies of the factors alive; one of them holds all there is to know.
+    # SuperLU's object would keep three copies of the factors alive; L and the diagonal of U are enough.
     lower, diagonal = factor.L, factor.U.diagonal()
     trailing = lower[count:, count:].toarray()
     schur = -(trailing * diagonal[count:]) @ trailing.T

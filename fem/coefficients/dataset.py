@@ -81,7 +81,7 @@ def derive_coefficients(
         Rigid core of the wheel pins and fixed bore of the race, mm; defaults of `DriveShapes.of_drive`.
     keep_clearance : bool
         Derive the disc with the bearing and pin-hole clearance of this case; without them on purpose, one dataset serves
-        all clearance cases about alike, and says so.
+        all clearance cases approximately, and says so.
     processes : int
         How many derivations share the memory of the machine.
     progress : callable, optional
@@ -165,7 +165,7 @@ class _Derived(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Bodies:
-    """What stays the same on all meshes."""
+    """Shapes, materials and options shared by the meshes of both sizes."""
 
     shapes: DriveShapes
     places: DiscStations

@@ -1,4 +1,4 @@
-"""Whose bodies a file of influence coefficients belongs to: its numbers and its stations against those of a drive."""
+"""Check that a file of influence coefficients belongs to the bodies of a drive: dimensions and stations."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def check_against_drive(dataset: xr.Dataset, drive: Drive, source: str) -> tuple
 
 
 def _served_by(dataset: xr.Dataset, drive: Drive, source: str) -> Drive:
-    """Return the drive whose bodies a file has: with its clearances, or without them where the file leaves them out."""
+    """Return the nominal drive that a file was derived for, with its clearances or, where the file leaves them out, without."""
     theirs = shape_of(dataset)
     for keep in (True, False) if float(dataset.attrs["clearances_left_out"]) else (True,):
         nominal = nominal_shape(drive, keep_clearance=keep)

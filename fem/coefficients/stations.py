@@ -110,7 +110,7 @@ class DiscStations:
 
     @property
     def coarse_walls(self) -> str | None:
-        """What to know before anything is derived at stations too far apart for a wall; None where they follow all walls."""
+        """Warning about walls on which the stations are too far apart; None where they are close enough everywhere."""
         missed, wall, distance = missed_between_stations(self.boundary, self.points)
         if missed < 1.0:
             return None

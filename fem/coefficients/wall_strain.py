@@ -1,4 +1,4 @@
-r"""Tangential strain of walls as a measure of the displacement: what stress stations read.
+r"""Tangential strain of walls as a linear measure of the displacement, for the stress stations.
 
 At a wall without load the stress has one component, along the wall, :math:`\sigma_t = E' \epsilon_t` with
 :math:`E' = E/(1 - \nu^2)` in plane strain (E in plane stress). The strain :math:`\epsilon_t = t \cdot du/ds` at a
@@ -9,7 +9,7 @@ point of a mesh is as rough as the mesh; its mean over a short arc of half-width
 
 is a smooth functional of the displacement: integrated by parts it is the work of a traction :math:`-(w\,t)'`, which
 balances itself and has no singularity, so its value converges with the square of the energy error. One solution for that
-traction (the adjoint) tells, by reciprocity, the mean strain under any load. The mean differs from the value in the
+traction (the adjoint) gives, by reciprocity, the mean strain under any load. The mean differs from the value in the
 middle by :math:`\epsilon_t''\, b^2/14`.
 """
 

@@ -98,7 +98,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _require_libraries(kind: str) -> None:
-    """Fail before anything is made."""
+    """Raise an error before any work when a library is missing."""
     from fem.mesh.gmsh_session import load_gmsh
     from ltca.export.drawing import load_ezdxf
 
@@ -130,7 +130,7 @@ def _paths(part: Part, kind: str, out: Path) -> list[Path]:
 
 
 def _write(part: Part, arguments: argparse.Namespace, out: Path) -> None:
-    """Write the files of one part, and say what is in them."""
+    """Write the files of one part and print their content."""
     kind, paths = arguments.format, _paths(part, arguments.format, out)
     for remark in part.remarks[2:]:
         print(f"  {part.name}: {remark}", flush=True)

@@ -171,7 +171,7 @@ def _print_drive(solution: ReducerSolution) -> None:
 
 
 def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:
-    """Return a function that runs and prints the referee; complain before any work when it is missing."""
+    """Return a function that runs and prints the referee; CycloError before any work when it is not installed."""
     if name is None:
         return None
     from fem.referee.calculix import compare_with_calculix

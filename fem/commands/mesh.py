@@ -83,7 +83,7 @@ def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Name
 def _mesh_disc(
     drive: Drive, wheel_moment: float, title: str, place: tuple[int, int], arguments: argparse.Namespace, out: Path
 ) -> None:
-    """Mesh one disc, `place` being its number and how many there are."""
+    """Mesh one disc; `place` is its number and the number of discs."""
     import time
 
     from fem.drive.expected_contacts import expect_contacts

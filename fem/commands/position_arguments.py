@@ -1,4 +1,4 @@
-"""Arguments that the commands of one position share: which drive, case, crank angle and element edge."""
+"""Arguments shared by the commands of one position: drive, case, crank angle and element edge."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BODIES = ("disc", "inner_race", *(f"{part}_[0-9]*" for part in ("inner_race", "p
 
 
 def disc_prefix(disc: int, discs: int) -> str:
-    """Return what the names of files of one disc begin with: nothing where it is the only one."""
+    """Return the prefix of the names of files of one disc, empty where it is the only one."""
     return "" if discs == 1 else f"disc_{disc}_"
 
 

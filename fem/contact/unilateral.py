@@ -8,7 +8,7 @@ equilibrium are the rigid motions q,
 A primal–dual active set (a semi-smooth Newton method: Hintermüller, Ito & Kunisch 2002) solves it; every
 step is one small dense system, and at the end equilibrium holds to round-off. From a bad first guess it may
 cycle; then an interior-point method (Nocedal & Wright, *Numerical Optimization*, 16.6), which converges from
-anywhere but ends a little inside, finds the active set to go on with.
+anywhere but ends slightly inside the bounds, provides the active set to continue with.
 """
 
 from __future__ import annotations

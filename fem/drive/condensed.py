@@ -100,7 +100,7 @@ def keep_rounds(known: tuple[RoundGroup, ...], used: tuple[RoundGroup, ...]) -> 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Slab:
-    """What all bodies share: thickness in mm and plane state."""
+    """Thickness, mm, and plane state of all bodies."""
 
     thickness: float
     state: PlaneState
@@ -108,7 +108,7 @@ class _Slab:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _RoundBodies:
-    """Condensed round bodies of one kind: the groups, and of every candidate body its group and its turn there."""
+    """Condensed round bodies of one kind: the groups, and group and rotation of every candidate body."""
 
     groups: tuple[RoundGroup, ...] = ()
     places: dict[int, tuple[int, float]] = field(default_factory=dict)
@@ -173,8 +173,8 @@ def _condense_carrier(
 def _distinct_loads(pairs: list[ContactPair]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the unit load of each pressure unknown of the inner races, and of each unit load its first unknown.
 
-    Rollers of several cranks press on the same places of one body that stands for all races: what is loaded about a vertex
-    is one unit load, whoever presses there.
+    Rollers of several cranks press on the same places of one body that stands for all races: the load about a vertex
+    is one unit load for all of them.
     """
     vertices = np.concatenate([pair.zone.nodes[1:, 0] for pair in pairs])
     _, first, number = np.unique(vertices, return_index=True, return_inverse=True)

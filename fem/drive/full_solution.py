@@ -50,7 +50,7 @@ class FullSolution:
 
     @property
     def bearing_components(self) -> FloatArray:
-        """Bearing force of each crank on the disc along its own eccentric and 90° ahead of it, N, shape (cranks, 2)."""
+        """Bearing force of each crank on the disc along its eccentric and 90° ahead of it, N, shape (cranks, 2)."""
         model = self.model
         directions = model.placement.eccentric_directions(np.asarray(model.crank_angle))
         along = self.contacts.bearing_force * directions.conjugate()

@@ -1,8 +1,8 @@
 """Where the contacts of rigid bodies lie at a given pose, how far open they are, and how to grade meshes for them.
 
 `fem.drive.expected_contacts` guesses pose and loads from springs; here pose and loads come from a finite-element
-solution on coarser meshes, so that the final meshes are graded for the contacts that are really there. What those do
-not serve after all is found here, too.
+solution on coarser meshes, so that the final meshes are graded for the contacts that are really there. Whether the meshes
+serve the solution is checked here, too.
 """
 
 from __future__ import annotations
@@ -157,12 +157,12 @@ def grade_contacts(
 
 
 def _is_shifted(rigid: ComplexArray, deformed: ComplexArray, group: ContactGroup) -> NDArray[np.bool_]:
-    """Return which contacts press so far from where the rigid bodies would that small elements there miss them."""
+    """Return which contacts press so far from those of the rigid bodies that the small elements there miss them."""
     return np.asarray(np.abs(deformed - rigid) > SHIFT_TOLERANCE * group.half_width) & (group.half_width > 0.0)
 
 
 def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[FloatArray, ...]:
-    """Return the gaps of pins, rollers and holes: those known of the deformed bodies, else those of the rigid ones."""
+    """Return the gaps of pins, rollers and holes: of the deformed bodies where known, else of the rigid ones."""
     rigid = (gaps.pins, gaps.rollers, gaps.holes)
     if deformed is None:
         return rigid
@@ -182,7 +182,7 @@ def _bore_points(displacement: ComplexArray, place: Placement, rays: ComplexArra
 
 
 def _reach_to_bore(displacement: ComplexArray, place: Placement, rays: ComplexArray) -> FloatArray:
-    """Return how far out along its cage ray the centre of each roller stands when it touches its bore, mm."""
+    """Return the distance of each roller's centre along its cage ray when it touches its bore, mm."""
     inward = (displacement * rays.conjugate()).real
     across = (displacement * rays.conjugate()).imag
     return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))

@@ -45,7 +45,7 @@ class RoundEnd:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundGrading:
-    """All that the mesh of a pin or roller depends on; equal gradings have equal meshes, to the last bit.
+    """Everything that determines the mesh of a pin or roller: equal gradings have equal meshes, to the last bit.
 
     Attributes
     ----------
@@ -85,14 +85,14 @@ class RoundGrading:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundMesh:
-    """Mesh of a pin or roller with its first contact at polar angle 0, and how it stands in the drive.
+    """Mesh of a pin or roller with its first contact at polar angle 0, and its rotation in the drive.
 
     Attributes
     ----------
     grading : RoundGrading
         By which it was meshed.
     body : BodyMesh
-        Before it is turned; may serve several bodies.
+        Before the rotation; may be shared by several bodies.
     turn : float
         Polar angle of the first contact in fixed axes, rad.
     """

@@ -1,6 +1,6 @@
 """Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a pose.
 
-Which body carries the pressure: the disc toward wheel pins, rollers and shaft pins, the inner race toward the
+The pressure is carried by the disc toward wheel pins, rollers and shaft pins, the inner race toward the
 rollers. Pins and rollers that share a mesh share one factorisation and one compliance, turned.
 """
 
@@ -57,7 +57,7 @@ class DrivePose:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundBody:
-    """All that the condensed pin or roller depends on.
+    """Everything that determines a condensed pin or roller.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class RoundGroup:
     Attributes
     ----------
     made_of : RoundBody
-        What it was made of: equal ones are equal to the last bit.
+        What determines it: equal ones are equal to the last bit.
     body : BodyMesh
         The mesh in the frame in which it was condensed.
     condensed : CondensedBody
@@ -103,7 +103,7 @@ class RoundGroup:
 
     @property
     def entries(self) -> int:
-        """Numbers that it holds."""
+        """Number of stored values."""
         return self.condensed.entries
 
 
@@ -163,7 +163,7 @@ class DriveModel:
     disc : CondensedBody
         Unit loads are the pressure unknowns on it.
     race : CondensedBody
-        One body that stands for the inner races of all cranks; unit loads are the pressures about its boundary vertices,
+        One body that represents the inner races of all cranks; unit loads are the pressures about its boundary vertices,
         each once.
     groups : tuple of RoundGroup
         Pins and rollers.

@@ -28,7 +28,7 @@ MAX_STEP = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PoseSolution:
-    """Contact solution at its own loaded pose.
+    """Contact solution at the loaded pose that belongs to it.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ def solve_pose(
     limit : int
         Pose steps.
     pose_tolerance : float
-        Largest increment of a pose at rest, mm.
+        Largest rigid increment of a converged pose, mm.
     progress : callable, optional
         Called with one line for each step.
 

@@ -21,12 +21,12 @@ from ltca.output.files import whole_file
 DEFAULT_CHORD = 1e-3
 """mm."""
 MIN_CIRCLE_EDGES = 360
-"""Edges of a circle at the least: its area is then 5e-5 off, however small it is."""
+"""Least number of edges of a circle: the error of its area is then 5e-5, however small it is."""
 MAX_EDGE_BY_LOBE = 1.0 / 40
-"""Of a lobe, longest edge of a flank by its length."""
+"""Longest edge of a flank by the length of a lobe."""
 START_OFFSET = 0.381966
-"""Of the step between corners of a circle, where the first one stands: bodies that touch (rollers and races) share no corner, or
-readers would take them for one that is not closed."""
+"""Place of the first corner of a circle, as a part of the step between corners: bodies that touch (rollers and races) then share
+no corner, which readers would take for one body that is not closed."""
 INITIAL_MESH_ONLY = 3
 TRIANGLE, LINE = 2, 1
 HEADER = 80
@@ -142,7 +142,7 @@ def _fill(gmsh: ModuleType, name: str, loops: list[ComplexArray]) -> IntArray:
 
 
 def _numbers_of(found: ComplexArray, points: ComplexArray) -> IntArray:
-    """Which of the points stand where nodes were found."""
+    """Return the numbers of the points at which the nodes lie, −1 for none."""
     known = {point: number for number, point in enumerate(points.tolist())}
     return np.array([known.get(place, -1) for place in found.tolist()], dtype=np.int64)
 

@@ -32,7 +32,7 @@ def load_gmsh() -> ModuleType:
 
 
 def _hear_signals() -> None:
-    """Give the signals back that gmsh takes when it starts: SIGTERM would end the process without any cleaning up."""
+    """Restore the signal handlers that gmsh replaces when it starts: SIGTERM would end the process without clean-up."""
     if threading.current_thread() is threading.main_thread():
         for number in (signal.SIGTERM, signal.SIGINT):
             handler = signal.getsignal(number)

@@ -15,7 +15,7 @@ POINTS_PER_EDGE = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacedBody:
-    """A body where it stands in the fixed frame.
+    """A body at its place in the fixed frame.
 
     Attributes
     ----------

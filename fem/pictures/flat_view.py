@@ -1,4 +1,4 @@
-"""What all off-screen pictures of flat things share: surfaces and lines of pyvista, a camera that looks down."""
+"""Common parts of off-screen pictures of plane bodies: surfaces and lines of pyvista, a camera that looks down."""
 
 from __future__ import annotations
 

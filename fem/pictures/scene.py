@@ -1,4 +1,4 @@
-"""Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; words by matplotlib."""
+"""Flat scenes of triangles and lines: fields by pyvista off-screen or, without GL, matplotlib; text by matplotlib."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 PIXELS_PER_INCH = 200.0
-"""Of pictures: words keep their size, so they read larger on a smaller one."""
+"""Of pictures; the text keeps its size, so it is relatively larger on a smaller picture."""
 BAR_INCHES, TITLE_INCHES = 1.25, 0.85
 """Inches for the scales beside a panel, and for its title and the scale below."""
 LETTERS_PER_INCH = 12.5
@@ -173,7 +173,7 @@ def compose(panels: Sequence[Panel], side: int, paint: Callable[[Any, Panel, Any
 
 
 def _inches(side: int) -> float:
-    """Side of a panel on paper: on one of few pixels words shrink with it."""
+    """Return the side of a panel, inches; below `MIN_INCHES` the text shrinks with the panel."""
     return max(side / PIXELS_PER_INCH, MIN_INCHES)
 
 

@@ -1,6 +1,6 @@
-"""A series of positions: condensed pins and rollers travel from each to the next.
+"""A series of positions: condensed pins and rollers are handed from each position to the next.
 
-What travels depends on shape, grading and material alone, never on the crank angle, so every solution is equal to the last bit
+They depend on shape, grading and material alone, never on the crank angle, so every solution is equal to the last bit
 to the one found alone, in whatever order the positions come and wherever a series was broken off.
 """
 
@@ -22,7 +22,7 @@ def solve_positions(
     torque: float | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Iterator[ReducerSolution]:
-    """Solve a drive at one crank angle after the other; a solution is found when it is asked for and not kept.
+    """Solve a drive at one crank angle after the other; a solution is computed when it is asked for and not kept.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-r"""Which part of the wheel's moment each disc carries: rounds of moments until the wheel angles of all discs agree.
+r"""Part of the wheel's moment that each disc carries: iteration of the moments until all wheel angles agree.
 
 Disc k alone turns the wheel to :math:`\theta_k(M_k)`, nearly a straight line. Each round takes the lines as they are known
-and finds the moments whose angles agree and whose sum is what it shall be; what comes of them makes the lines of the next.
+and finds the moments whose angles agree and whose sum is the required one; their result updates the lines.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from ltca.errors import ConvergenceError
 
 MAX_ROUNDS = 12
 ANGLE_TOLERANCE = 1e-9
-"""Largest difference of wheel angles, rad: a hundred thousandth of what a drive winds up by."""
+"""Largest difference of wheel angles, rad: a hundred thousandth of the wind-up of a drive."""
 MOMENT_TOLERANCE = 1e-8
 """Largest moment left over as a part of the wheel's."""
 MIN_SHARE = 1e-3
-"""A disc below this part of the mean share floats in its play: nothing says where it rests."""
+"""A disc below this part of the mean share floats in its play: its place is indeterminate."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SharedAnswer:
-    """What the discs do under moments of theirs.
+    """Wheel angles of the discs under given moments.
 
     Attributes
     ----------
     wheel_angle : array, shape (discs,)
-        Where each alone turns the wheel to, rad.
+        To which each disc alone turns the wheel, rad.
     left_over : float
-        Moment by which the sum of all is more than it shall be, N·mm.
+        Excess of the sum of all moments over the required one, N·mm.
     """
 
     wheel_angle: FloatArray
@@ -111,7 +111,7 @@ def share_moment(
 
 
 def _secants(slope: FloatArray, moments: FloatArray, angles: FloatArray, least: float) -> FloatArray:
-    """Slopes over the last step, where it was long enough to tell and makes sense."""
+    """Return secants over the last step, where it was long enough and the secant is plausible, else the slopes before."""
     told = np.abs(moments) > least
     secant = angles / np.where(told, moments, 1.0)
     return np.where(told & (secant > 0.1 * slope) & (secant < 10.0 * slope), secant, slope)

@@ -1,6 +1,6 @@
 """Full solution of a drive of any number of discs at one crank angle, whichever member is held.
 
-Each disc with its pins, rollers and race is a finite-element problem of its own (`fem.drive.solution`); they share the
+Each disc with its pins, rollers and race is a separate finite-element problem (`fem.drive.solution`); the discs share the
 wheel's angle and its moment (`fem.reducer.shares`). Where the wheel is held, its moment is what balances the output's torque
 and the moment of the input, which follows from the bearing forces found.
 """
@@ -28,9 +28,9 @@ from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
 
 POSE_TOLERANCE = 1e-7
-"""Largest increment of a pose at rest, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
+"""Largest rigid increment of a converged pose, mm: of the wheel, 1e-9 rad at a pin circle of 0.1 m."""
 RELATIVE_MOMENT_STEP = 0.01
-"""Part of a moment over which the springs' slope is taken."""
+"""Step of a central difference of the springs' wheel angle, as a part of the moment."""
 SPRING_TOLERANCE = 1e-7
 
 
@@ -124,7 +124,7 @@ class ReducerSolution:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Task:
-    """What stays the same through all rounds."""
+    """Drive, load and options of one solution."""
 
     drive: Drive
     crank_angle: float
@@ -149,7 +149,7 @@ class _Task:
     def settle(
         self, disc: int, previous: FullSolution | None, moment: float, rounds: tuple[RoundGroup, ...]
     ) -> FullSolution:
-        """Solve one disc under a moment to the last digit that its pose has."""
+        """Solve one disc under a moment until its pose has converged to `POSE_TOLERANCE`."""
         found = self.start(disc, moment, rounds) if previous is None else previous
         while found.state.wheel_moment != moment or found.state.increments[-1] > POSE_TOLERANCE:
             found = self.timed(solve_moment(found, moment, pose_tolerance=POSE_TOLERANCE, progress=self.saying(disc)))

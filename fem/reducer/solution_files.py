@@ -37,14 +37,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ARRAYS = tuple(getattr(kind, name) for name in ("load", "pressure", "half_width") for kind in CONTACT_KINDS.values())
-"""What of `fem.drive.contact_results.ContactResults` files hold, by name in ``fem.nc``."""
+"""Arrays of `fem.drive.contact_results.ContactResults` that files hold, by their names in ``fem.nc``."""
 MULTI_BLOCK = "fem.vtm"
 
 
 def summarise(solution: ReducerSolution) -> dict[str, Any]:
     """Return the content of ``summary.json``: lists by disc, then by part; of full length, zeros included.
 
-    What a disc has one of is a number with one disc, else a list by disc; of several cranks bearing forces are lists by
+    A value of a disc is a number with one disc, else a list by disc; with several cranks bearing forces are lists by
     crank. Rollers follow each other crank after crank.
     """
     discs = solution.discs

@@ -16,7 +16,7 @@ from ltca.page.verdict_tables import verdict_of, verdict_tables
 
 
 def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str, told: str, text: str) -> StudyPage:
-    """Return the page of a full solution: its verdict, `told` of what was solved, `text` the drive file."""
+    """Return the page of a full solution with its verdict; `told` describes the problem, `text` is the drive file."""
     sentence, state = verdict_of({case: checks})
     sections = [Section(heading="Verdict at this position", tables=verdict_tables({case: checks}))]
     several = len(solution.discs) > 1
@@ -48,7 +48,7 @@ def solution_page(solution: ReducerSolution, checks: Sequence[Check], case: str,
 
 
 def _contacts(solution: FullSolution) -> Iterator[list[Cell]]:
-    """Loaded contacts, a row each."""
+    """Yield a row for each loaded contact."""
     for kind, index, load, peak, width in solution.contacts.loaded:
         yield [
             word(CONTACT_KINDS[kind].title.format(index)),

@@ -1,4 +1,4 @@
-"""What a full solution reaches, judged by the same limits as the LTCA."""
+"""Largest loads, pressures and stresses of a full solution, judged by the same limits as the LTCA."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Candidate = tuple[FloatArray, Callable[[int], str], float]
 def judge_solution(
     solution: ReducerSolution, stresses: Sequence[DiscStress], limits: Mapping[str, Limit]
 ) -> list[Check]:
-    """Return the checks of one position by full finite elements; limits on what one position cannot say are left out."""
+    """Return the checks of one position by full finite elements; limits on quantities of a whole turn are left out."""
     parts = {quantity: [(kind.part, quantity)] for quantity, _, kind in judged_contacts()}
     parts["disc_shear"] = [
         ("below wheel pin", "pin_shear_max"),
@@ -39,9 +39,8 @@ def judge_solution(
         for part, name in parts[quantity]:
             for disc, (of_disc, stress) in enumerate(zip(solution.discs, stresses, strict=True)):
                 source = of_disc.contacts if hasattr(of_disc.contacts, name) else stress
-                of = f" of disc {disc}" if len(solution.discs) > 1 else ""
-                values = np.asarray(getattr(source, name), dtype=float).ravel()
-                yield values, (lambda number, part=part, of=of: f"{part} {number}{of}"), solution.crank_angle
+                template = f"{part} {{}} of disc {disc}" if len(solution.discs) > 1 else f"{part} {{}}"
+                yield np.asarray(getattr(source, name), dtype=float).ravel(), template.format, solution.crank_angle
 
     return judge_largest(solution.drive, {quantity: candidates(quantity) for quantity in parts}, limits)
 

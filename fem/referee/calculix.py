@@ -3,7 +3,7 @@
 CalculiX may end an increment while contact points still pull and append one of size zero that frees them; it prints
 both, and only the last one is the answer. Without what the deck asks of its contact (`fem.referee.calculix_deck`) it did so
 on the paper's drive with three times the default size (CS-1, 0.5 rad): 402 of 17,544 points of the first one pull with up
-to 9,440 MPa, and its wheel stands 0.27″ away from the last one's. With the default size the last one itself pulled.
+to 9,440 MPa, and its wheel angle is 0.27″ off that of the last one. With the default size even points of the last one pulled.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ PULLING_SHARE = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefereeAnswer:
-    """What CalculiX found.
+    """Answer of CalculiX.
 
     Attributes
     ----------

@@ -1,8 +1,8 @@
 """Input deck of the same problem for CalculiX: CPE6 elements, surface-to-surface penalty contact.
 
-The deck stands at the loaded pose that `cyclo fem` found, with all bodies undeformed: they overlap by their
-approaches and CalculiX presses them apart; any rigid motion it still finds is the difference of the two
-codes. What differs from our own model:
+The deck has the loaded pose of `cyclo fem`, with all bodies undeformed: they overlap by their
+approaches and CalculiX presses them apart; the rigid motion it adds is the difference of the two
+codes. Differences from our model:
 
 - rollers are held sideways at two nodes near their axis instead of in the mean (frictionless contacts
   leave these supports with next to nothing to carry, and a mean over all nodes would fill the matrix);
@@ -21,8 +21,8 @@ the same, it is the same but next to these places: that moves the pin by 0.2 % o
 pull, closes those that overlap and solves again. It ends as soon as the *number* of points changes by less than a
 thousandth (its parameter delcon); no residual is left to ask for. At the default size that are 51 of 51,000 points: with
 the first penalty of this deck it ended an increment after 28 iterations with 16 points that pulled, by up to 184 of
-1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is nought here, the
-iterations may be as many as that takes, and none is removed at random (alea).
+1549 MPa, and went on with another (paper's CS-1, 0.5 rad). The points must come to rest, so delcon is zero here, the
+number of iterations is not limited, and no point is removed at random (alea).
 
 **Why the penalty goes by the half-width.** Two quadratic surfaces whose nodes do not meet cannot follow each other at the
 hundred points of a face: the stiffer the penalty against the elements, the longer points change sides, up and down in

@@ -1,6 +1,6 @@
-"""A round pin in a hardly larger bore in plane strain: the reference that laws of conforming seats are held against.
+"""A round pin in a hardly larger bore in plane strain: the reference for laws of conforming seats.
 
-The bore is in a ring so wide that it stands for an infinite body (its outside is fixed; the datum is the mean displacement
+The bore is in a ring so wide that it represents an infinite body (its outside is fixed; the datum is the mean displacement
 of a circle about the bore), or in a sleeve that is pressed from outside. The pin is a free body: its force is balanced by
 a uniform body force and its place is the mean of its section.
 """
@@ -70,7 +70,7 @@ def press_pin_into_bore(
     width: float = 60.0,
     growth: float = DEFAULT_GROWTH,
 ) -> SeatedPin:
-    """Press a pin into the bore of a body that is as good as infinite.
+    """Press a pin into the bore of a very wide body.
 
     Parameters
     ----------

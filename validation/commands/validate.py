@@ -1,4 +1,4 @@
-"""``cyclo validate``: how far each simplification is from the full solution, as a report with pass and fail."""
+"""``cyclo validate``: comparison of each simplification with the full solution, as a report with limits."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 
-    # Before finite elements are imported: what is wrong is told at once.
+    # Before finite elements are imported: wrong input is reported at once.
     file = load_drive(arguments.drive)
     file.select(arguments.case)
     out: Path = arguments.out or default_folder(file.name, "validate")
@@ -150,7 +150,7 @@ def _print_costs(study: Study) -> None:
 
 
 class _Progress:
-    """Which step of how many, what it is, and its details."""
+    """Prints the number and title of a step and its details."""
 
     def __init__(self, plan: Plan, show: Callable[[str], None]) -> None:
         self.total, self.done, self.title, self.show = plan.steps, 0, "", show

@@ -1,7 +1,7 @@
-"""One position of a drive as any model answers it, and how two answers differ: all metrics are defined here.
+"""One position of a drive as any model answers it, and how two answers differ: definitions of all metrics.
 
-- A **load difference** is relative to the largest load of its kind in the reference: a contact that carries next to
-  nothing cannot make a large figure, and the sum over a kind stays a force.
+- A **load difference** is relative to the largest load of its kind in the reference: a contact that carries almost
+  nothing cannot give a large figure, and the sum over a kind stays a force.
 - **Pressures** and **half-widths** are compared, relative to the reference, where a contact carries over 5 % of the
   largest load of its kind: below that its half-width is a few elements and says nothing about the drive.
 - **Bearing forces** are compared crank by crank, relative to the largest of any crank in the reference.

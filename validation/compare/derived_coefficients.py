@@ -1,4 +1,4 @@
-"""Coefficients of the discs that a validation needs, each derived once and kept as a file of its own."""
+"""Coefficients of the discs that a validation needs, derived once and kept in files."""
 
 from __future__ import annotations
 

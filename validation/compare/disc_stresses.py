@@ -1,4 +1,4 @@
-"""Stress in the disc as full finite elements and as each compliance model have it, and how they differ.
+"""Stress in the disc by full finite elements and by each compliance model, and the differences.
 
 - Along the walls models are compared at their stress stations, where they are clear: farther than four half-widths from
   every loaded contact on the wall. A difference is relative to the largest stress of the reference at any such station.
@@ -138,7 +138,7 @@ def answer_of_content(content: dict[str, Any]) -> DiscStressAnswer:
 
 
 def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
-    """Return the stress of an analysis of one disc position by position; none where its model knows no stress in the disc."""
+    """Return the stress of an analysis of one disc position by position; none where its model gives no stress in the disc."""
     model, full = analysis.model.discs[0], analysis.full
     if (
         len(analysis.model.discs) > 1

@@ -1,7 +1,7 @@
-"""Full finite-element solutions of chosen positions, each kept as a file of its own as soon as it is there.
+"""Full finite-element solutions of chosen positions, kept in one file for each position as soon as it is solved.
 
 A file belongs to a drive in a case (by fingerprint), a crank angle, the options of the solution and the code that found
-it; whatever does not fit, or was damaged, is solved again. So a run that was killed goes on where it stopped and ends with
+it; a file that does not fit, or is damaged, is solved again. So a run that was killed continues where it stopped and ends with
 the same numbers, and no number of older code is compared.
 """
 
@@ -119,7 +119,7 @@ def _solve_kept(
     title: str,
     progress: Callable[[str], None] | None,
 ) -> tuple[tuple[FullPosition, ...], tuple[RoundGroup, ...]]:
-    """Return a position, and the condensed pins and rollers to go on with."""
+    """Return a position, and condensed pins and rollers for the next one."""
     key = _key(drive, case, crank_angle, options)
     path = folder / f"{position_name(drive, case, crank_angle, options)}.json"
     singles = single_discs(drive)
@@ -161,7 +161,7 @@ def _solve_kept(
 
 
 def disc_case(case: str, disc: int, discs: int) -> str:
-    """Return what rows and report call one disc of a case: the case itself where it is the only one.
+    """Return the label of one disc of a case in rows and report: the case itself where it is the only disc.
 
     Examples
     --------
@@ -190,7 +190,7 @@ def _key(drive: Drive, case: str, crank_angle: float, options: SolutionOptions) 
 
 
 def _read(path: Path, key: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the content of a file that fits its key; None when it has to be made (again)."""
+    """Return the content of a file that fits its key; None when it has to be solved."""
     try:
         content: dict[str, Any] = json.loads(read_regular(path, LARGEST_KEPT))
     except (OSError, ValueError):
@@ -223,7 +223,7 @@ def answer_of_summary(summary: dict[str, Any], single: Drive, disc: int) -> Posi
     discs = len(summary["pin_load_N"])
 
     def own(name: str) -> Any:
-        """What a disc has one of is a list by disc only where there are several."""
+        """Return a value of the disc, which is a list by disc only where there are several."""
         return summary[name][disc] if discs > 1 else summary[name]
 
     shift = own("disc_displacement")

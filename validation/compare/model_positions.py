@@ -57,7 +57,7 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
 
 
 def _hole_contacts(drive: Drive, pressures: ContactPressures) -> tuple[FloatArray, FloatArray]:
-    """Return pressures and half-widths at the holes; no numbers where the pins of full FE yield and the model's do not, or so."""
+    """Return pressures and half-widths at the holes; NaN where shaft pins yield in full FE or the model only."""
     holes = pressures.holes
     if pressures.rigid_shaft_pins == shaft_pins_yield(drive):
         return np.full(holes.mid.shape, np.nan), np.full(holes.mid.shape, np.nan)

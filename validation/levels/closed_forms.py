@@ -217,7 +217,7 @@ def _rollers() -> list[Row]:
 
 
 def _ball() -> list[Row]:
-    """A crowned roller short of its ends is an elliptical point contact."""
+    """Return the rows on a crowned roller, an elliptical point contact as long as it does not reach its ends."""
     small, large, approach = 2.0, 40.0, 2e-3
     point = solve_point_contact(approach, small, large, MODULUS)
     length = 2.2 * point.half_axis_long
@@ -242,7 +242,7 @@ def _ball() -> list[Row]:
 
 
 def _power(drive: Drive) -> list[Row]:
-    """Work of cranks and wheel over whole periods of the flank: mean tangential bearing load T/(u e) of what a disc carries.
+    """Return the rows on power balance over whole periods of the flank: mean tangential bearing load T/(u e) of each disc.
 
     Several cranks turn together: their loads count by their eccentricities.
     """

@@ -1,4 +1,4 @@
-"""Level 4: the derived influence coefficients by laws, closed forms and the size of their mesh."""
+"""Level 4: the derived influence coefficients against laws, closed forms and a finer mesh."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def check_file(dataset: xr.Dataset, case: str, plane: str) -> list[Row]:
 
 
 def _row(check: Check, case: str, model: str) -> Row:
-    """Return a check as a row: bounds on both sides about their middle, else what the value is short or over."""
+    """Return a check as a row: of two bounds the distance from their middle, else the amount by which the bound is missed."""
     if math.isfinite(check.highest):
         middle = 0.0 if check.lowest == 0.0 else 0.5 * (check.lowest + check.highest)
         difference, limit = check.value - middle, check.highest - middle

@@ -1,4 +1,4 @@
-"""Level 5, stress in the disc: the LTCA's, from its loads and the stress coefficients, against the full solution's own."""
+"""Level 5, stress in the disc: by the LTCA, from its loads and the stress coefficients, against the full solution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Level 6: how much the flexible disc changes what a designer reads off, and when half-spaces are good enough."""
+"""Level 6: effect of the flexible disc on the figures of a design, and when half-spaces are accurate enough."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from validation.rows import Row, relative_row, rounded
 TURN_POSITIONS = 72
 TORQUES = (0.25, 0.5, 1.0, 1.5)
 LOAD_TOLERANCE = 0.05
-"""A largest load is taken as good enough for a design within this part: what materials and tolerances scatter by."""
+"""Part within which a largest load is accurate enough for a design: the scatter by materials and tolerances."""
 
 CAUSE = "what the rigid disc and uncoupled contacts leave out: informs only"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnFigures:
-    """What a designer reads off one turn with one model: scalars of `ltca.quantities`, and three of the wheel.
+    """Figures of one turn with one model: scalars of `ltca.quantities`, and three of the wheel.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ def turn_figures(analysis: LoadedAnalysis) -> TurnFigures:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlexibilityEffect:
-    """What the flexible disc changes in one case, by all models.
+    """Figures of one case by all models, and the changes by the flexible disc.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ def flexibility_rows(case: str, effect: FlexibilityEffect) -> list[Row]:
 
 
 def full_solution_changes(compared: list[ComparedPosition]) -> dict[str, float]:
-    """Return by how much the full solution changes the largest loads over the positions of a case, relative."""
+    """Return the relative change of the largest loads over the positions of a case by the full solution."""
 
     def largest(answers: list[PositionAnswer], kind: Kind) -> float:
         return max(float(np.max(answer.kinds[kind].load)) for answer in answers)
@@ -201,7 +201,7 @@ def _change_row(case: str, quantity: str, change: float, against: str) -> Row:
 
 
 def judge_half_space(effects: Mapping[str, FlexibilityEffect]) -> list[str]:
-    """Return what the figures say about when half-spaces are good enough, one sentence each."""
+    """Return sentences on when half-spaces are accurate enough, by the figures."""
     sentences = []
     for name in LOADS:
         changes = {

@@ -1,4 +1,4 @@
-"""Level 5, without full solutions: what the compliance models owe each other, and what the plane-stress body changes."""
+"""Level 5, without full solutions: relations between the compliance models, and the effect of the body in plane stress."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def compare_models(
 
 
 def _uncoupled(drive: Drive, case: str, crank_angles: FloatArray) -> list[Row]:
-    """Without a body part and without the holes' near field the hybrid is the paper's half-space model."""
+    """Return the row on the hybrid without body part and without near field of the holes, which is the half-space model."""
     half = analyse(drive, crank_angles)
     hybrid = analyse(drive, crank_angles, engine=Hybrid(coefficients=without_coupling(drive), hole_near_field=False))
     first, second = half.full.response, hybrid.full.response
@@ -104,9 +104,9 @@ def pair_approaches(
     crank_angle: float,
     load: FloatArray,
 ) -> FloatArray:
-    """Return how far wheel pins and flank approach each other under loads of their own alone, mm.
+    """Return the approach of wheel pins and flank under their loads, without the loads of other contacts, mm.
 
-    Near field and own body parts together: what no choice of datum between the two can change.
+    It is the sum of near field and body part of each contact, which does not depend on the datum between the two.
     """
     model = CoupledCompliance.of_drive(drive, coefficients, near_field)
     angle = np.array([crank_angle])
@@ -126,7 +126,7 @@ def pair_approaches(
 
 
 def _wide(drive: Drive, case: str, crank_angles: FloatArray, coefficients: InfluenceCoefficients) -> list[Row]:
-    """The wider the drive the nearer half-spaces of finite length come to plane strain, like 1/ln width."""
+    """Return the rows on wider drives: half-spaces of finite length tend to plane strain like 1/ln width."""
     angle = float(crank_angles[0])
     fe = analyse(drive, crank_angles[:1], engine=PlaneStrain(coefficients=coefficients))
     load = fe.full.response.pin_load[0]

@@ -1,4 +1,4 @@
-"""Level 2: today's code against other people's, asked where they are installed, else as stored with the command that did.
+"""Level 2: comparison with other codes, run where they are installed, else with stored answers.
 
 Our side is computed in every run. Only the other codes' answers are stored, in ``stored/other_codes.json``, each with the
 fingerprint of the problem it belongs to (`validation.levels.other_code_problems`); an answer to another problem is refused.
@@ -138,7 +138,7 @@ def with_problems(answers: dict[str, Answer]) -> dict[str, Any]:
 
 
 def compare_answers(name: str, ours: Answer, theirs: Answer, against: str) -> list[Row]:
-    """Return the rows of one code ("CalculiX" or "tamaas"); `against` is what they call the other side."""
+    """Return the rows of one code ("CalculiX" or "tamaas"); `against` is the label of the other code."""
     return _drive_rows(ours, theirs, against) if name == "CalculiX" else _roller_rows(ours, theirs, against)
 
 

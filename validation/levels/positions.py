@@ -43,7 +43,7 @@ def compare_position_rows(compared: ComparedPosition) -> list[Row]:
 
 
 class _Maker:
-    """Rows of one position and model."""
+    """Makes the rows of one position and model."""
 
     def __init__(self, compared: ComparedPosition, model: str) -> None:
         self.case, self.angle, self.model = compared.full.case, compared.full.crank_angle, model
@@ -155,7 +155,7 @@ def _body_rows(compared: ComparedPosition, model: str) -> list[Row]:
 
 
 def _rotation_lever(drive: Drive) -> tuple[float, str]:
-    """Return the radius at which a disc is held against rotation, the longest where pins and cranks do, and its name."""
+    """Return the radius at which a disc is held against rotation, by pins or cranks the larger one, and its name."""
     shaft, circle = drive.pin_shaft, drive.crank.circle_radius or 0.0
     if shaft is not None and shaft.pin_circle_radius >= circle:
         return shaft.pin_circle_radius, "the shaft pins"
@@ -190,7 +190,7 @@ def _faint(answer: PositionAnswer, kind: Kind) -> int:
 
 
 def _interpolation_row(compared: ComparedPosition) -> Row:
-    """Return the worst load among contacts well between stations: nothing there was derived, all is interpolated."""
+    """Return the worst load among contacts well between stations, where the coefficients are interpolated."""
     worst, name, ours, theirs = 0.0, "", 0.0, 0.0
     for kind, distance in compared.station_distance.items():
         apart = compared.differences["fe"].kinds[kind]

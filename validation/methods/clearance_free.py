@@ -46,7 +46,7 @@ MAX_FACTORISATIONS = 60
 LOADED_ZONE = np.radians(110.0)
 """Rollers this near the expected bearing force start as effective (θ_predict of Eq. 5)."""
 HALF_WIDTH_TOLERANCE = 5e-3
-"""Change of the half-widths below which the grids are not laid anew."""
+"""Relative change of the half-widths below which the grids are kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,7 +173,7 @@ class _Patch:
 
     @property
     def weights(self) -> FloatArray:
-        """Area for which each cell stands, all quarters together, mm²."""
+        """Area of each cell with its mirror images, mm²."""
         return self.grid.images * self.grid.areas.ravel()
 
     @property
@@ -315,7 +315,7 @@ class _System:
         try:
             solved = _factor(blocks, coupling, springs).solve(right)
         except RuntimeError:
-            # Too few cells are left to hold the disc: a soft ground tells where it goes and which cells it meets.
+            # Too few cells are left to hold the disc: a soft ground shows where it moves and which cells it meets.
             held = False
             ground = 1e-3 * self.hole_stiffness * np.eye(self.load.size)
             solved = _factor(blocks, coupling, springs + ground).solve(right)

@@ -1,6 +1,6 @@
 """The iteration of the paper: wheel held, crank leads, Newton with finite-difference tangents (Eq. 43–46, 90–93).
 
-The wheel stands at φ_P; the unknowns are the displacements δ_r, δ_t of the disc centre from its ideal place, the
+The wheel is held at φ_P; the unknowns are the displacements δ_r, δ_t of the disc centre from its ideal place, the
 rotation δ_φ of the disc and the lead δ_φC of the crank. The residual is that of `ltca.equilibrium.balance`, on any
 compliance model. Mapped back: the actual crank angle is u φ_P + δ_φC and the wheel deviates from its ideal place
 there by −δ_φC/u. To give the answer at a requested actual crank angle the held φ_P is corrected from outside.
@@ -29,7 +29,7 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacem
 
 MAX_ITERATIONS = 60
 START_TORQUE_RATIO = 0.95
-"""Part of the torque whose solution the iteration starts from: near, but never the answer itself."""
+"""Part of the torque whose solution is the starting point: near the answer, but not the answer."""
 DIFFERENCE_STEP = 1e-6
 """ε of Eq. 91 and 93, mm (rotations: by their lever arms): small against an approach, large against round-off."""
 MAX_CORRECTIONS = 12
@@ -39,7 +39,7 @@ CRANK_ANGLE_TOLERANCE = 1e-11
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperIteration:
-    """Where the iteration of the paper ended for each position of a batch.
+    """Result of the iteration of the paper for each position of a batch.
 
     Attributes
     ----------
@@ -240,7 +240,7 @@ class HeldWheel:
     drive : Drive
         Of one disc.
     tables, model : Reducer
-        Where the iteration starts, and what it balances.
+        For the starting point, and the model that is balanced.
     """
 
     drive: Drive
@@ -270,7 +270,7 @@ def prepare(drive: Drive, tables: Reducer, model: Reducer) -> HeldWheel:
     Raises
     ------
     DriveError
-        For what the iteration does not know: several discs or cranks, members that yield.
+        For several discs or cranks, and for members that yield.
     """
     require_rigid_members(drive, "method paper")
     require_one_bore(drive, "method paper")

@@ -1,4 +1,4 @@
-"""The few figures to read first, and the files ``validation.json`` and ``rows.csv``."""
+"""The main figures, and the files ``validation.json`` and ``rows.csv``."""
 
 from __future__ import annotations
 

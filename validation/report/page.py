@@ -1,4 +1,4 @@
-"""``report.html``: one page with everything in it, which opens offline."""
+"""``report.html``: one self-contained page."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def _level(number: int, rows: list[Row]) -> dict[str, Any]:
 
 
 def _condense(rows: list[Row]) -> list[tuple[Row, int]]:
-    """Return the row with the largest difference of each quantity, case and model, and how many it stands for."""
+    """Return the row with the largest difference of each quantity, case and model, and the number of rows it represents."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row.model, row.against, row.quantity, row.case), []).append(row)
@@ -207,7 +207,7 @@ def _pictures(study: Study) -> list[dict[str, str]]:
 
 
 def picture_name(path: Path) -> str:
-    """Return which picture a file is: of several discs its name begins with that of the disc.
+    """Return the picture in a file; with several discs the file name begins with the disc.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def picture_name(path: Path) -> str:
 
 
 def _embedded(path: Path) -> str:
-    """Return a picture as a data address, made smaller for the page."""
+    """Return a picture as a data URL, scaled down for the page."""
     from PIL import Image
 
     with Image.open(path) as opened:

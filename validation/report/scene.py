@@ -1,4 +1,4 @@
-"""What the report's own script draws: the drive at each position, with every contact's place, direction and numbers."""
+"""Data for the script of the report: the drive at each position, with place, direction and numbers of every contact."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _numbers(answer: PositionAnswer, kind: Kind, number: int) -> list[float | No
 
 
 def _totals(answers: dict[str, PositionAnswer]) -> list[dict[str, Any]]:
-    """Return the lines of the table of what a position has one of, bearing forces of each crank."""
+    """Return the lines of the table of wheel, bearing forces, pose and number of contacts."""
     found: dict[str, list[Line]] = {model: _total_lines(answer) for model, answer in answers.items()}
     return [
         {"title": title, "digits": digits, "models": {model: lines[number][2] for model, lines in found.items()}}

@@ -1,4 +1,4 @@
-"""What full solutions and models reach over all positions, judged by the limits of the drive file and its materials."""
+"""Largest loads and pressures over all positions, judged by the limits of the drive file and its materials."""
 
 from __future__ import annotations
 
