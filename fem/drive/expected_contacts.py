@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem.drive.rigid_bodies import DISC_ROTATION, WHEEL_ANGLE, RigidBodies, X, Y
 from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.plane_strain import (
@@ -23,8 +24,6 @@ from ltca.drive.plane_strain import (
 )
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.flank import FlankProfile
-from ltca.geometry.placement import Placement
 
 FULL_FINITE_ELEMENTS = "full finite elements"
 """What refusals call this analysis."""
@@ -34,8 +33,6 @@ SMALLEST_LOAD_SHARE = 0.05
 # A contact open by less than this share of the largest approach may close in the real solution: refine it too.
 OPEN_MARGIN = 0.25
 APPROACH_LOGARITHM = 8.0
-# Places of the coordinates in a pose.
-X, Y, DISC_ROTATION, WHEEL_ANGLE = range(4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,17 +63,14 @@ class HertzContacts:
     ----------
     drive : Drive
         For materials and lengths.
-    profile : FlankProfile
-        For the curvature of the flank.
-    placement : Placement
-        For the radii.
+    rigid : RigidBodies
+        For curvature and radii.
     smallest_share : float
         Candidates get the half-width of at least this share of the largest load of their kind.
     """
 
     drive: Drive
-    profile: FlankProfile
-    placement: Placement
+    rigid: RigidBodies
     smallest_share: float
 
     @property
@@ -98,24 +92,24 @@ class HertzContacts:
         self, load: FloatArray, candidate: BoolArray, theta: FloatArray, direction: ComplexArray
     ) -> ContactGroup:
         """Return the contacts of wheel pins with the flank at θ; directions toward them, of any length."""
-        radius = self.profile.effective_radius(theta, self.placement.wheel_pin_radii)
+        radius = self.rigid.profile.effective_radius(theta, self.rigid.placement.wheel_pin_radii)
         return self._group(load, candidate, direction, radius, self.pin_modulus, self.drive.disc.thickness)
 
     def on_bore(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
         """Return the contacts of rollers with the bores."""
-        roller, bore = self.placement.roller_radii, self.placement.bore_radius
+        roller, bore = self.rigid.placement.roller_radii, self.rigid.placement.bore_radius
         radius, length = roller * bore / (bore - roller), self.drive.crank_bearing.roller_length
         return self._group(load, candidate, direction, radius, self.outer_modulus, length)
 
     def on_race(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
         """Return the contacts of rollers with the inner races."""
-        roller, race = self.placement.roller_radii, self.placement.inner_race_radius
+        roller, race = self.rigid.placement.roller_radii, self.rigid.placement.inner_race_radius
         radius, length = roller * race / (race + roller), self.drive.crank_bearing.roller_length
         return self._group(load, candidate, direction, radius, self.inner_modulus, length)
 
     def in_holes(self, load: FloatArray, candidate: BoolArray, direction: ComplexArray) -> ContactGroup:
         """Return the contacts of shaft pins with the holes."""
-        pin, hole = self.placement.shaft_pin_radii, self.placement.hole_radii
+        pin, hole = self.rigid.placement.shaft_pin_radii, self.rigid.placement.hole_radii
         modulus = hole_modulus(self.drive, rigid_shaft_pins=not shaft_pins_yield(self.drive))
         return self._group(load, candidate, direction, pin * hole / (hole - pin), modulus, self.drive.disc.thickness)
 
@@ -187,85 +181,6 @@ class ExpectedContacts:
     hole_points: ComplexArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _RigidDrive:
-    """Approaches of all contacts of rigid bodies at a pose (x, y, disc rotation, wheel angle)."""
-
-    profile: FlankProfile
-    placement: Placement
-    crank_angle: float
-
-    def wheel_pins(self, wheel_angle: float) -> ComplexArray:
-        turn = self.crank_angle / self.placement.reduction_ratio + wheel_angle
-        return np.asarray(self.placement.wheel_pin_centres * np.exp(1j * turn))
-
-    def flank_parameters(self, pose: FloatArray) -> FloatArray:
-        centre = self.disc_centre(pose)
-        in_disc = (self.wheel_pins(pose[WHEEL_ANGLE]) - centre) * np.exp(-1j * pose[DISC_ROTATION])
-        count = len(self.placement.wheel_pin_radii)
-        start = self.crank_angle / self.placement.reduction_ratio + 2.0 * np.pi * np.arange(count) / count
-        return self.profile.nearest_parameter(in_disc, on_turned_flank(self.profile, start))
-
-    def disc_centre(self, pose: FloatArray) -> complex:
-        return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[X], pose[Y])
-
-    def roller_rays(self) -> ComplexArray:
-        return np.asarray(np.exp(1j * self.placement.roller_angles(np.asarray(self.crank_angle))))
-
-    def hole_rays(self, pose: FloatArray) -> ComplexArray:
-        """Vectors from hole centres to shaft-pin centres."""
-        centres = self.disc_centre(pose) + self.placement.hole_centres * np.exp(1j * pose[DISC_ROTATION])
-        return np.asarray(self.placement.shaft_pin_centres - centres)
-
-    def approaches(self, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return approaches (pins, rollers, holes in a row) and their gradients, shape (contacts, 4)."""
-        place, centre, turn = self.placement, self.disc_centre(pose), np.exp(1j * pose[DISC_ROTATION])
-        pins = self.wheel_pins(pose[WHEEL_ANGLE])
-        theta = self.flank_parameters(pose)
-        in_disc = (pins - centre) / turn
-        n = self.profile.normal(theta) * turn
-        flank = place.wheel_pin_radii - self.profile.distance(in_disc, theta)
-        flank_gradient = np.column_stack(
-            [n.real, n.imag, (n.conjugate() * 1j * (pins - centre)).real, -(n.conjugate() * 1j * pins).real]
-        )
-        d = self.roller_rays()
-        play = place.bore_radius - place.inner_race_radius - 2.0 * place.roller_radii
-        shift = complex(pose[X], pose[Y])
-        bores = bore_displacements(place, self.crank_angle, shift, pose[DISC_ROTATION])[place.roller_cranks]
-        bearing = -(bores.real * d.real + bores.imag * d.imag) - play
-        arm = (1j * place.bore_centres * turn)[place.roller_cranks]
-        bearing_gradient = np.column_stack([-d.real, -d.imag, -(d.conjugate() * arm).real, np.zeros(len(d))])
-        ray = self.hole_rays(pose)
-        m = ray / np.abs(ray)
-        hole = np.abs(ray) + place.shaft_pin_radii - place.hole_radii
-        arm = 1j * place.hole_centres * turn
-        zero = np.zeros(len(m))
-        hole_gradient = np.column_stack([-m.real, -m.imag, -(m.conjugate() * arm).real, zero])
-        return (
-            np.concatenate([flank, bearing, hole]),
-            np.vstack([flank_gradient, bearing_gradient, hole_gradient]),
-        )
-
-
-def bore_displacements(
-    placement: Placement, crank_angle: float, displacement: complex, rotation: float
-) -> ComplexArray:
-    """Return the displacement of the centre of each bore from that of the inner race in it, fixed axes, mm, shape (cranks,).
-
-    `displacement` (mm) and `rotation` (rad) are those of the disc from its nominal place, in fixed axes.
-    """
-    races = placement.race_centres(np.asarray(crank_angle))
-    return np.asarray(races.mean() - races + displacement + placement.bore_centres * np.exp(1j * rotation))
-
-
-def on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray:
-    """Return roughly the θ of the flank in a direction of the disc frame (polar angle, rad).
-
-    θ counts from a root, which may be turned.
-    """
-    return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
-
-
 def require_supported(drive: Drive, by: str = FULL_FINITE_ELEMENTS) -> None:
     """Raise DriveError, naming `by`, where cranks or the wheel's axis yield, there is friction, or pins are not fixed."""
     require_rigid_members(drive, by)
@@ -280,7 +195,7 @@ def require_one_disc(drive: Drive) -> None:
         raise DriveError([f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc alone"])
 
 
-def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:
+def _minimise(rigid: RigidBodies, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:
     """Return pose and approaches at the minimum of ½ Σ k δ₊² − T_load·wheel_angle (damped Newton)."""
     length = abs(rigid.placement.wheel_pin_centres[0])
     scale = np.array([1.0, 1.0, 1.0 / length, 1.0 / length])  # every unknown a length
@@ -359,11 +274,11 @@ def expect_contacts(
         When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
         several discs; where cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
     """
-    profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
+    rigid = RigidBodies.of_drive(drive, crank_angle)
     _refuse_wheel_axis(drive)
     require_supported(drive)
-    rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
-    hertz = HertzContacts(drive=drive, profile=profile, placement=placement, smallest_share=SMALLEST_LOAD_SHARE)
+    profile, placement = rigid.profile, rigid.placement
+    hertz = HertzContacts(drive=drive, rigid=rigid, smallest_share=SMALLEST_LOAD_SHARE)
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)
     flank_stiffness = np.pi * hertz.pin_modulus * drive.disc.thickness / APPROACH_LOGARITHM
     roller_modulus = 1.0 / (1.0 / hertz.outer_modulus + 1.0 / hertz.inner_modulus)

@@ -1,4 +1,4 @@
-"""Where the contacts of rigid bodies lie at a given pose, how far open they are, and how to grade meshes for them.
+"""The contacts to grade meshes for at a given pose, and why meshes do not serve a solution.
 
 `fem.drive.expected_contacts` guesses pose and loads from springs; here pose and loads come from a finite-element
 solution on coarser meshes, so that the final meshes are graded for the contacts that are really there. Whether the meshes
@@ -7,27 +7,18 @@ serve the solution is checked here, too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.contact_results import ContactResults, DeformedContacts
-from fem.drive.expected_contacts import (
-    ContactGroup,
-    ExpectedContacts,
-    HertzContacts,
-    bore_displacements,
-    on_turned_flank,
-)
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, HertzContacts
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
+from fem.drive.rigid_bodies import RigidBodies, RigidGaps
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
-from ltca.geometry.flank import FlankProfile
-from ltca.geometry.placement import Placement
 
 # Contacts under this share of the largest load of their kind get elements as if they carried it (design.md: 5 %).
 FINE_SHARE = 0.05
@@ -38,60 +29,9 @@ EDGE_TOLERANCE = 1.1
 SHIFT_TOLERANCE = 0.25
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigidGaps:
-    """Contacts of rigid bodies at a pose; arrays over pins, rollers, holes.
-
-    Attributes
-    ----------
-    pins, rollers, holes : array of float
-        Gap, mm, negative where the rigid bodies overlap; that of a roller is its play along the cage ray.
-    flank_parameters : array of float, shape (z_P,)
-        θ of the contact points.
-    pin_normals : array of complex, shape (z_P,)
-        Out of the disc, fixed axes.
-    hole_directions : array of complex, shape (z_PS,)
-        From the hole centre to the contact, fixed axes.
-    """
-
-    pins: FloatArray
-    rollers: FloatArray
-    holes: FloatArray
-    flank_parameters: FloatArray
-    pin_normals: ComplexArray
-    hole_directions: ComplexArray
-
-
-def measure_gaps(
-    drive: Drive, crank_angle: float, displacement: complex, rotation: float, wheel_angle: float
-) -> RigidGaps:
-    """Return all gaps between rigid bodies at a pose, exact, from flank and circles.
-
-    `displacement` (mm) and `rotation` (rad) are those of the disc from its nominal place, fixed axes; `wheel_angle` is the
-    deviation of the wheel from φ_C/u, rad.
-    """
-    profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
-    turn, wheel = np.exp(1j * rotation), crank_angle / place.reduction_ratio + wheel_angle
-    centre = complex(place.race_centre(np.asarray(crank_angle))) + displacement
-    pins = (place.wheel_pin_centres * np.exp(1j * wheel) - centre) / turn
-    start = np.angle(place.wheel_pin_centres) + wheel - rotation
-    theta = profile.nearest_parameter(pins, on_turned_flank(profile, start))
-    rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
-    reach = _reach_to_bore(_of_rollers(place, crank_angle, displacement, rotation), place, rays)
-    holes = place.shaft_pin_centres - (centre + place.hole_centres * turn)
-    return RigidGaps(
-        pins=profile.distance(pins, theta) - place.wheel_pin_radii,
-        rollers=reach - place.roller_radii - place.inner_race_radius,
-        holes=place.hole_radii - place.shaft_pin_radii - np.abs(holes),
-        flank_parameters=theta,
-        pin_normals=profile.normal(theta) * turn,
-        hole_directions=holes / np.maximum(np.abs(holes), 1e-300),
-    )
-
-
 def grade_contacts(
     drive: Drive,
-    crank_angle: float,
+    rigid: RigidBodies,
     displacement: complex,
     rotation: float,
     wheel_angle: float,
@@ -101,17 +41,16 @@ def grade_contacts(
     smallest_share: float,
     deformed: DeformedContacts | None = None,
 ) -> ExpectedContacts:
-    """Return the contacts to grade meshes for, with the pose of `measure_gaps` and the loads of pins, rollers and holes, N.
+    """Return the contacts to grade meshes for, with the pose of `RigidBodies.gaps` and the loads of pins, rollers and holes, N.
 
     A contact without load whose gap is below `margin`, mm, becomes a candidate, with elements for at least `smallest_share`
     of the largest load of its kind. Gaps and places of pressure of a `deformed` solution at this pose replace those of the
     rigid bodies where they are known and far enough from them (`SHIFT_TOLERANCE`).
     """
-    gaps = measure_gaps(drive, crank_angle, displacement, rotation, wheel_angle)
-    profile, place = FlankProfile.of_drive(drive), Placement.of_drive(drive)
-    rays = np.exp(1j * place.roller_angles(np.asarray(crank_angle)))
+    gaps = rigid.gaps(displacement, rotation, wheel_angle)
+    profile, place, rays = rigid.profile, rigid.placement, rigid.roller_rays()
     turn_back = np.exp(-1j * rotation)
-    hertz = HertzContacts(drive=drive, profile=profile, placement=place, smallest_share=smallest_share)
+    hertz = HertzContacts(drive=drive, rigid=rigid, smallest_share=smallest_share)
     pins, rollers, holes = loads
     pin_near, roller_near, hole_near = (
         (load > 0.0) | (gap < margin) for load, gap in zip(loads, _gaps_left(gaps, deformed), strict=True)
@@ -122,10 +61,7 @@ def grade_contacts(
 
     theta = gaps.flank_parameters
     flank_points = profile.flank(theta)
-    bore_points = (
-        place.bore_centres[place.roller_cranks]
-        + _bore_points(_of_rollers(place, crank_angle, displacement, rotation), place, rays) * turn_back
-    )
+    bore_points = place.bore_centres[place.roller_cranks] + gaps.bore_points * turn_back
     hole_points = place.hole_centres + place.hole_radii * gaps.hole_directions * turn_back
     outer = hertz.on_bore(rollers, roller_near, rays)
     on_holes = hertz.in_holes(holes, hole_near, gaps.hole_directions)
@@ -140,7 +76,7 @@ def grade_contacts(
             _is_shifted(hole_points, deformed.hole_points, on_holes), deformed.hole_points, hole_points
         )
     return ExpectedContacts(
-        crank_angle=float(crank_angle),
+        crank_angle=rigid.crank_angle,
         disc_x=displacement.real,
         disc_y=displacement.imag,
         disc_rotation=float(rotation),
@@ -170,24 +106,6 @@ def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[Floa
     return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 
-def _of_rollers(place: Placement, crank_angle: float, displacement: complex, rotation: float) -> ComplexArray:
-    """Return the displacement of each roller's bore from the inner race in it, mm."""
-    return bore_displacements(place, crank_angle, displacement, rotation)[place.roller_cranks]
-
-
-def _bore_points(displacement: ComplexArray, place: Placement, rays: ComplexArray) -> ComplexArray:
-    """Return where rollers that touch their bore touch it, about the bore centre, fixed axes, mm."""
-    from_bore_centre = _reach_to_bore(displacement, place, rays) * rays - displacement
-    return np.asarray(place.bore_radius * from_bore_centre / np.abs(from_bore_centre))
-
-
-def _reach_to_bore(displacement: ComplexArray, place: Placement, rays: ComplexArray) -> FloatArray:
-    """Return the distance of each roller's centre along its cage ray when it touches its bore, mm."""
-    inward = (displacement * rays.conjugate()).real
-    across = (displacement * rays.conjugate()).imag
-    return np.asarray(inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2))
-
-
 def find_shortcoming(model: DriveModel, solution: PoseSolution, results: ContactResults, size: float) -> str:
     """Return why the meshes do not serve a solution with these contacts, "" when they do."""
     for pair, detail in zip(model.pairs, results.details, strict=True):
@@ -208,13 +126,15 @@ def find_shortcoming(model: DriveModel, solution: PoseSolution, results: Contact
 
 def _closed_without_zone(model: DriveModel, solution: PoseSolution) -> str:
     pose, place = solution.pose, model.placement
-    gaps = measure_gaps(model.drive, model.crank_angle, pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+    flank_profile = model.shapes.disc.flank.profile
+    rigid = RigidBodies(profile=flank_profile, placement=place, crank_angle=model.crank_angle)
+    gaps = rigid.gaps(pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
     elastic = model.disc_displacement(solution.contact.pressure)
     moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
     nodes = model.meshes.disc.places
     turn = np.exp(1j * pose.disc_rotation)
     rays = model.roller_rays
-    flank = model.shapes.disc.flank.profile.flank(gaps.flank_parameters)
+    flank = flank_profile.flank(gaps.flank_parameters)
     bore = place.bore_centres[place.roller_cranks] + place.bore_radius * rays / turn
     holes = place.hole_centres + place.hole_radii * gaps.hole_directions / turn
     candidates = {(pair.kind, pair.index) for pair in model.pairs}

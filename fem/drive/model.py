@@ -17,8 +17,9 @@ from fem.body.surface import OppositeZone, PressureZone
 from fem.contact.coupling import PairIntegrals, Pose, integrate_pair
 from fem.contact.unilateral import ContactProblem
 from fem.drive.contact_kinds import PairKind
-from fem.drive.expected_contacts import ExpectedContacts, bore_displacements
+from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.meshes import DriveMeshes, RoundGrading
+from fem.drive.rigid_bodies import bore_displacements
 from fem.mesh.body_mesh import BodyMesh
 from fem.shapes import DriveShapes
 from ltca.arrays import ComplexArray, FloatArray

@@ -25,10 +25,11 @@ from fem.drive.expected_contacts import (
     require_supported,
 )
 from fem.drive.full_solution import FullSolution
-from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts, measure_gaps
+from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
 from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
+from fem.drive.rigid_bodies import RigidBodies
 from fem.errors import MeshError
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
@@ -58,7 +59,7 @@ class _Task:
     """What stays the same through all stages of one solution; `approach` is the largest overlap in the guess, mm."""
 
     drive: Drive
-    crank_angle: float
+    rigid: RigidBodies
     shapes: DriveShapes
     moment: float
     options: SolutionOptions
@@ -129,7 +130,7 @@ class _Task:
     ) -> ExpectedContacts:
         return grade_contacts(
             self.drive,
-            self.crank_angle,
+            self.rigid,
             *pose,
             loads,
             margin=margin * self.approach,
@@ -253,15 +254,15 @@ def solve_disc(
     require_plane_strain(drive, FULL_FINITE_ELEMENTS)
     require_supported(drive)
     say, watch = progress or (lambda _: None), _Stopwatch()
-    shapes = DriveShapes.of_drive(drive)
+    shapes, rigid = DriveShapes.of_drive(drive), RigidBodies.of_drive(drive, crank_angle)
     guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)
     task = _Task(
         drive=drive,
-        crank_angle=crank_angle,
+        rigid=rigid,
         shapes=shapes,
         moment=wheel_moment,
         options=options,
-        approach=_largest_approach(drive, guess),
+        approach=_largest_approach(rigid, guess),
         say=say,
         watch=watch,
     )
@@ -330,9 +331,7 @@ def solve_moment(
     )
 
 
-def _largest_approach(drive: Drive, guess: ExpectedContacts) -> float:
+def _largest_approach(rigid: RigidBodies, guess: ExpectedContacts) -> float:
     """Return the largest overlap of rigid bodies in the guess, mm."""
-    gaps = measure_gaps(
-        drive, guess.crank_angle, complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
-    )
+    gaps = rigid.gaps(complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
     return float(-np.concatenate([gaps.pins, gaps.rollers, gaps.holes]).min())

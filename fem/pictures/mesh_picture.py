@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
-from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, bore_displacements
+from fem.drive.expected_contacts import ContactGroup, ExpectedContacts
 from fem.drive.meshes import DriveMeshes
+from fem.drive.rigid_bodies import bore_displacements
 from fem.mesh.placed_body import PlacedBody
 from fem.pictures.flat_view import (
     coordinate_pairs,

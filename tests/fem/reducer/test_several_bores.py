@@ -13,7 +13,7 @@ from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.fields import recover_fields
-from fem.drive.grading import measure_gaps
+from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import solve_disc
 from fem.options import SolutionOptions
 from fem.pictures.mesh_picture import choose_zooms, place_bodies
@@ -83,7 +83,7 @@ def test_gaps_are_those_of_the_pairs(rv, disc):
     }
     single, angle = single_discs(with_fields(rv, fields))[disc], np.array([1.3])
     pose = np.array([[0.012, -0.02, 3e-4, -1.9e-3]])
-    gaps = measure_gaps(single, 1.3, complex(0.012, -0.02), 3e-4, -1.9e-3)
+    gaps = RigidBodies.of_drive(single, 1.3).gaps(complex(0.012, -0.02), 3e-4, -1.9e-3)
     geometry = ContactGeometry.of_drive(single)
     rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
     displacement = bores.each(bores.displacement, gaps.rollers.size)
