@@ -29,6 +29,7 @@ import numpy as np
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
+from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main as cyclo
@@ -89,7 +90,7 @@ def program(words: list[str], answer: str, extra: str = "", study: bool = False)
 
 def full_solution(drive: Drive) -> np.ndarray:
     """Full finite elements, coarse."""
-    found = solve_reducer(warm_drive(drive), 0.5, scale=4.0)
+    found = solve_reducer(warm_drive(drive), 0.5, SolutionOptions(size=4.0))
     numbers = [np.array([found.wheel_angle, found.transmission_error, *found.disc_torques])]
     for disc in found.discs:
         contacts, pose = disc.contacts, disc.pose
