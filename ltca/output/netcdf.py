@@ -20,6 +20,7 @@ import numpy as np
 from ltca.errors import DamagedFileError, FaultError, one_line
 from ltca.output.regular_files import NotReadableError, regular_file
 from ltca.output.resources import available_memory
+from ltca.quantities import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,6 +110,24 @@ def read_netcdf(path: Path, what: str) -> xr.Dataset:
         return xr.load_dataset(path, engine="h5netcdf", decode_times=False, decode_timedelta=False)
     except DAMAGE as error:
         raise _unreadable(path, what, error) from error
+
+
+def require_known_schema(path: Path, attributes: Mapping[str, Any]) -> None:
+    """Refuse a dataset of a later schema than this version knows; files of before there was one have no number.
+
+    Raises
+    ------
+    DamagedFileError
+        Naming both numbers, or that the attribute is no number.
+    """
+    try:
+        version = int(attributes.get("schema_version", 0))
+    except (TypeError, ValueError) as error:
+        raise DamagedFileError(f"{path}: schema_version is no whole number") from error
+    if version > SCHEMA_VERSION:
+        raise DamagedFileError(
+            f"{path}: has schema version {version}, this version of cyclo reads up to {SCHEMA_VERSION}: update cyclo"
+        )
 
 
 def _unreadable(path: Path, what: str, error: Exception) -> DamagedFileError:
