@@ -194,7 +194,7 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
     from ltca.drive.fields import whose
     from ltca.output.files import whole_file
     from ltca.output.provenance import code_hash, code_version
-    from ltca.studies.execution.storage import field_column, quantity_column
+    from ltca.studies.study_results import field_column, quantity_column
 
     problem = optimum.problem
     front = np.zeros(len(optimum.variables), dtype=bool)
@@ -226,8 +226,8 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
     """What ``optimum.json`` holds: the drive as it is and the one found, solved finely, and as the search saw them."""
     from ltca.drive.fields import read_field, whose
     from ltca.output.provenance import code_hash, code_version
-    from ltca.studies.execution.storage import field_column, quantity_column
     from ltca.studies.optimiser import broken_limits, describe_limit
+    from ltca.studies.study_results import field_column, quantity_column
 
     problem, nominal, found = optimum.problem, *fine
     return {

@@ -18,8 +18,9 @@ from ltca.figures.house_style import COLOURS, DASHED, INK, OTHERS, STYLE, save_f
 from ltca.quantities import SCALARS
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.sensitivity import factor_groups
 from ltca.studies.study import Study
-from ltca.studies.study_results import factor_groups, read_quantity
+from ltca.studies.study_results import read_quantity
 
 SHOWN = 8
 """Fields in a ranking; the rest has no share worth a bar."""
@@ -35,7 +36,7 @@ def write_study_figures(
 ) -> Iterator[Path]:
     """Write the figures of a finished study into ``figures`` beside its results, one after the other.
 
-    `ranking` is that of `ltca.studies.study_results.rank`; `nominal`, quantities without deviations, is drawn where known.
+    `ranking` is that of `ltca.studies.sensitivity.rank`; `nominal`, quantities without deviations, is drawn where known.
     """
     values = {name: read_quantity(folder.results, name) for name in study.quantities}
     for name, figure in study_figures(study, values, ranking, nominal):
@@ -54,7 +55,7 @@ def study_figures(
     values : mapping of str to array, shape (samples,)
         Of every quantity.
     ranking : mapping
-        Of `ltca.studies.study_results.rank`.
+        Of `ltca.studies.sensitivity.rank`.
     nominal : mapping of str to float
         Quantities of the drive without deviations, drawn where known.
 

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -107,8 +108,9 @@ class Study:
         """Return a field as people read it: with whose it is where its number does not say so."""
         return with_whose(path, self.whose(path))
 
+    @cached_property
     def fingerprint(self) -> str:
-        """Return a hash of everything the results depend on, the code included (hex, 16 digits)."""
+        """Hash of everything the results depend on, the code and files of coefficients included (hex, 16 digits)."""
         parts = (
             self.cases,
             self.design,
@@ -208,7 +210,7 @@ _NOMINAL: dict[str, Nominal | None] = {}
 def _settings(study: Study) -> BatchSettings:
     """Settings with the nominal solution, which every process finds once for itself."""
     settings = study.settings
-    key = study.fingerprint()
+    key = study.fingerprint
     if key not in _NOMINAL:
         _NOMINAL.clear()
         _NOMINAL[key] = None

@@ -183,7 +183,7 @@ def test_methods_that_studies_would_leave_out_are_refused(paper, method):
 def test_engines_travel_to_workers(paper):
     for engine in (HalfSpace(), ALONE, PlaneStrain(), engine_named("fe", coefficients=None)):
         study = tolerance_study(paper, samples=2, positions=2, engine=engine)
-        assert pickle.loads(pickle.dumps(study)).fingerprint() == study.fingerprint()
+        assert pickle.loads(pickle.dumps(study)).fingerprint == study.fingerprint
 
 
 def test_kept_coefficients_are_those_of_the_shape_and_few(paper, derived):
