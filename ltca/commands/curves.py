@@ -95,7 +95,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_page_argument(parser)
 
 
-class Limits(NamedTuple):
+class CurveSettings(NamedTuple):
     """What the results are held against.
 
     Attributes
@@ -167,7 +167,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.analysis.memory_need import require_room_for_parts
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
-    limits, engine = Limits(*asked), compliance_of(arguments)
+    limits, engine = CurveSettings(*asked), compliance_of(arguments)
     for drive in cases.values():
         if drive.duty and limits.speed is not None:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])
@@ -228,7 +228,12 @@ def _tell_of_turns(drive: Drive, turns: int, positions: int) -> None:
 
 
 def _solve_and_write(
-    file: DriveFile, cases: dict[str, Drive], limits: Limits, engine: Engine, arguments: argparse.Namespace, out: Path
+    file: DriveFile,
+    cases: dict[str, Drive],
+    limits: CurveSettings,
+    engine: Engine,
+    arguments: argparse.Namespace,
+    out: Path,
 ) -> int:
     from ltca.output.files import write_json
     from ltca.output.progress import progress
@@ -270,7 +275,7 @@ def _solve_and_write(
     return 0
 
 
-def _sections(found: CaseCurves, drive: Drive, limits: Limits, of: str) -> list[Section]:
+def _sections(found: CaseCurves, drive: Drive, limits: CurveSettings, of: str) -> list[Section]:
     """What the page shows of a case; `of` names it where there are several."""
     from ltca.analysis.life.life_text import life_lines
     from ltca.page.studies.curves import life_section, orders_section, pressure_section, torque_section
@@ -284,7 +289,7 @@ def _sections(found: CaseCurves, drive: Drive, limits: Limits, of: str) -> list[
     ]
 
 
-def _life_speed(drive: Drive, limits: Limits) -> str | None:
+def _life_speed(drive: Drive, limits: CurveSettings) -> str | None:
     """Which speed the hours of the life are at."""
     speed = _crank_speed(drive, limits)
     return None if drive.duty or speed is None else _speed_words(drive, speed)
@@ -299,14 +304,16 @@ def _allowed(drive: Drive, limits: Mapping[str, Limit]) -> float | None:
     return None if check.limit is None else check.limit.value
 
 
-def _crank_speed(drive: Drive, limits: Limits) -> float | None:
+def _crank_speed(drive: Drive, limits: CurveSettings) -> float | None:
     """Speed of the crank: the one asked for, or that of the input in the drive file."""
     if limits.speed is not None or drive.load.speed is None:
         return limits.speed
     return drive.load.speed * (1.0 if drive.crank.number == 1 else abs(drive.crank_turns_per_input))
 
 
-def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine, advance: Callable[[int], None]) -> CaseCurves:
+def _solve(
+    drive: Drive, turns: int, limits: CurveSettings, engine: Engine, advance: Callable[[int], None]
+) -> CaseCurves:
     """Solve a case, a part of its positions at a time: what is kept of them is little."""
     import numpy as np
 
@@ -354,7 +361,7 @@ def _solve(drive: Drive, turns: int, limits: Limits, engine: Engine, advance: Ca
     )
 
 
-def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: Limits) -> None:
+def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, limits: CurveSettings) -> None:
     import numpy as np
 
     from ltca.analysis.engines import describe_engine

@@ -135,7 +135,7 @@ def _search_and_write(
 def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
     """What is asked of a drive."""
     from ltca.errors import DriveError, did_you_mean, shortened, told_twice
-    from ltca.studies.optimiser import Problem, parse_limit, parse_variable
+    from ltca.studies.optimiser import Problem, parse_bound, parse_variable
     from ltca.studies.quantities import STAGES, with_what_varies
 
     aims = tuple(arguments.minimise)
@@ -153,7 +153,7 @@ def _problem(drive: Drive, arguments: argparse.Namespace) -> Problem:
     if repeated := told_twice([variable.path for variable in variables]):
         raise DriveError([f"--vary {repeated}: is given twice"])
     return Problem(
-        drive=drive, variables=variables, aims=aims, limits=tuple(parse_limit(text) for text in arguments.subject)
+        drive=drive, variables=variables, aims=aims, limits=tuple(parse_bound(text) for text in arguments.subject)
     )
 
 
@@ -226,7 +226,7 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
     """What ``optimum.json`` holds: the drive as it is and the one found, solved finely, and as the search saw them."""
     from ltca.drive.fields import read_field, whose
     from ltca.output.provenance import code_hash, code_version
-    from ltca.studies.optimiser import broken_limits, describe_limit
+    from ltca.studies.optimiser import broken_limits, describe_bound
     from ltca.studies.study_results import field_column, quantity_column
 
     problem, nominal, found = optimum.problem, *fine
@@ -259,15 +259,15 @@ def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positio
             }
             for column, name in enumerate(problem.quantities)
         },
-        "limits": [describe_limit(limit) for limit in problem.limits],
-        "broken_limits": [describe_limit(limit) for limit in broken_limits(problem, found.values)],
+        "limits": [describe_bound(limit) for limit in problem.limits],
+        "broken_limits": [describe_bound(limit) for limit in broken_limits(problem, found.values)],
     }
 
 
 def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
     from ltca.drive.fields import read_field, whose, with_whose
     from ltca.quantities import SCALARS
-    from ltca.studies.optimiser import broken_limits, describe_limit
+    from ltca.studies.optimiser import broken_limits, describe_bound
 
     problem, nominal, found = optimum.problem, *fine
     print(
@@ -284,7 +284,7 @@ def _print(optimum: Optimum, fine: list[FineSolution], positions: int) -> None:
         print(f"{SCALARS[name].heading:<48}" + "".join(f"{value:>12.5g}" for value in values))
     for limit in broken_limits(problem, found.values):
         print(
-            f"beyond {describe_limit(limit)} when solved finely: {found.values[limit.quantity]:.5g}; the search saw "
+            f"beyond {describe_bound(limit)} when solved finely: {found.values[limit.quantity]:.5g}; the search saw "
             f"{positions} positions only, more --positions come nearer"
         )
     if len(problem.aims) == 2:

@@ -111,7 +111,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     from ltca.analysis.memory_need import require_room_for
     from ltca.analysis.results import check_common_shape
-    from ltca.commands.actions.run import Task, solve_and_write
+    from ltca.commands.actions.run import RunTask, solve_and_write
     from ltca.geometry.placement import position_angles
     from ltca.page.compared import read_compared
 
@@ -122,7 +122,7 @@ def execute(arguments: argparse.Namespace) -> int:
             [f"--pressure: fields over the width need --compliance half-space, not {arguments.compliance}"]
         )
     check_common_shape(cases)
-    task = Task(
+    task = RunTask(
         file=file,
         cases=cases,
         engine=compliance_of(arguments),

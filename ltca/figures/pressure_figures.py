@@ -18,7 +18,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.figures.curve_panels import BESIDE, MOST_CURVES, draw_panels, name_panel
 from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
-from ltca.figures.run_figures import numbered
+from ltca.figures.run_figures import with_paper_number
 from ltca.geometry.flank import FlankProfile
 
 SIDES = ("outer", "inner")
@@ -132,7 +132,7 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     panels[0].set_xlim(0.0, tip)
     panels[0].set_ylim(0.0, 1.08 * max(float(np.max(pressure)) for _, _, pressure in found))
     figure.suptitle(
-        numbered("Contact zone on the flank, contact half-width included; o: largest pressure", 27, results)
+        with_paper_number("Contact zone on the flank, contact half-width included; o: largest pressure", 27, results)
     )
 
 
@@ -227,9 +227,9 @@ def draw_sections(fields: xr.Dataset, *, major: bool) -> Figure:
     shown = titles[0] if len(set(titles)) == 1 else "the hardest loaded roller of each case"
     if major:
         cell = float(np.mean(np.diff(common)))
-        title = numbered(f"Pressure along the roller, means over {cell:.3g} mm", 32, fields)
+        title = with_paper_number(f"Pressure along the roller, means over {cell:.3g} mm", 32, fields)
     else:
-        title = numbered("Pressure across the roller at mid-width; dots: means of the cells", 33, fields)
+        title = with_paper_number("Pressure across the roller at mid-width; dots: means of the cells", 33, fields)
     panels = draw_panels(figure, common, resampled, names, label, "pressure [MPa]", title=f"{title}\n{shown}")
     for axes, (at, means), number in zip(panels, cells, range(len(cells)), strict=False):
         colour = COLOURS[number % len(COLOURS)]
@@ -302,7 +302,7 @@ def draw_roller_pressure(fields: xr.Dataset, case: str) -> Figure:
     )
     bar.set_ticks([tick for tick in ticks if tick <= top])
     bar.outline.set_visible(False)
-    figure.suptitle(f"{numbered(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
+    figure.suptitle(f"{with_paper_number(shortened_name(case, 40), 31, fields)}: {title}, largest {top:.0f} MPa")
     return figure
 
 

@@ -44,7 +44,7 @@ def _shipped() -> str:
     return shipped_drive()
 
 
-def numbered(title: str, number: int, dataset: xr.Dataset) -> str:
+def with_paper_number(title: str, number: int, dataset: xr.Dataset) -> str:
     """Return a title with the number of the paper's figure, where the drive is the paper's.
 
     Parameters
@@ -104,7 +104,7 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
     mark_a_turn(grid[0, 0], x[order])
     figure.supylabel("deviation from the mean [″]", fontsize=9.0)
     member = "output (pin shaft)" if data.attrs.get("held") == "pin-wheel" else "wheel"
-    figure.suptitle(numbered(f"Transmission error at the {member}", 23, data))
+    figure.suptitle(with_paper_number(f"Transmission error at the {member}", 23, data))
 
 
 def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
@@ -120,7 +120,7 @@ def _over_its_mesh(load: str, name: str, label: str, words: str, number: int) ->
         pins = f"s {', '.join(map(str, shown.tolist()))} of the discs" if different else f" {shown[0]}"
         panels = draw_panels(
             figure, x, values, case_names(data), CRANK, label, lines=lines_of(data),
-            title=numbered(words.format(pins), number, data),
+            title=with_paper_number(words.format(pins), number, data),
         )  # fmt: skip
         window = loaded_window(x, loads)
         if window is not None:
@@ -156,14 +156,16 @@ def _number_loaded(name: str, words: str, number: int) -> Callable[[Figure, xr.D
             part = f", {end:.0f}° of the turn (ranges and means are those of all of it)"
         formula(axes[-1].set_xlabel(CRANK))
         figure.supylabel("number", fontsize=9.0)
-        figure.suptitle(numbered(words, number, data) + part)
+        figure.suptitle(with_paper_number(words, number, data) + part)
 
     return draw
 
 
 def _bearing(figure: Figure, data: xr.Dataset) -> None:
     total = np.hypot(data["bearing_radial"].values, data["bearing_tangential"].values)
-    _from_anywhere(figure, data, total, "total bearing load [N]", numbered("Bearing load of the crank", 28, data))
+    _from_anywhere(
+        figure, data, total, "total bearing load [N]", with_paper_number("Bearing load of the crank", 28, data)
+    )
 
 
 def _from_anywhere(figure: Figure, data: xr.Dataset, values: FloatArray, label: str, title: str) -> None:
@@ -176,7 +178,7 @@ def _from_anywhere(figure: Figure, data: xr.Dataset, values: FloatArray, label: 
 
 def _bearing_component(name: str, label: str, words: str, number: int) -> Callable[[Figure, xr.Dataset], None]:
     def draw(figure: Figure, data: xr.Dataset) -> None:
-        _from_anywhere(figure, data, data[name].values, label, numbered(words, number, data))
+        _from_anywhere(figure, data, data[name].values, label, with_paper_number(words, number, data))
 
     return draw
 
@@ -200,7 +202,7 @@ def _roller_distribution(figure: Figure, data: xr.Dataset) -> None:
     speed = float(data["cage_speed"].values[0])
     place = speed * angle[:, None] + 2.0 * np.pi * np.arange(rollers) / rollers - angle[:, None]
     place = np.degrees(np.mod(place + np.pi, 2.0 * np.pi)) - HALF_TURN
-    title = numbered("Load distribution over the rollers", 34, data)
+    title = with_paper_number("Load distribution over the rollers", 34, data)
     if "of_case" in data.coords and np.ptp(data["crank"].values) > 0:
         draw_rollers_of_each_crank(figure, data, place, f"{title}, all discs: mean and range")
         return

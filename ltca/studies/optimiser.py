@@ -48,7 +48,7 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limit:
+class Bound:
     """Bound of a quantity: at most (sense +1) or at least (−1) a value in its unit."""
 
     quantity: str
@@ -97,7 +97,7 @@ def parse_variable(text: str, drive: Drive) -> Variable:
     return Variable(path=path, low=low, high=high)
 
 
-def parse_limit(text: str) -> Limit:
+def parse_bound(text: str) -> Bound:
     """Read ``quantity <= value unit`` or ``quantity >= value unit``.
 
     Raises
@@ -107,7 +107,7 @@ def parse_limit(text: str) -> Limit:
 
     Examples
     --------
-    >>> parse_limit("max_pin_pressure_mid <= 1.5 GPa").value
+    >>> parse_bound("max_pin_pressure_mid <= 1.5 GPa").value
     1500.0
     """
     match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|≤|≥)\s*(.+?)\s*", text)
@@ -117,7 +117,7 @@ def parse_limit(text: str) -> Limit:
     check_quantities((name,))
     unit = SCALARS[name].unit
     number = parse_quantity(value, "dimensionless" if unit == "1" else unit, f"--subject {name}")
-    return Limit(quantity=name, sense=1 if sign in ("<=", "≤") else -1, value=number)
+    return Bound(quantity=name, sense=1 if sign in ("<=", "≤") else -1, value=number)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,14 +132,14 @@ class Problem:
         What varies.
     aims : tuple of str
         One or two quantities to make small.
-    limits : tuple of Limit
+    limits : tuple of Bound
         What must hold.
     """
 
     drive: Drive
     variables: tuple[Variable, ...]
     aims: tuple[str, ...]
-    limits: tuple[Limit, ...]
+    limits: tuple[Bound, ...]
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -395,7 +395,7 @@ def _outcome(archive: _Archive, start: FloatArray, aims: int) -> Optimum:
     )
 
 
-def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Limit, ...]:
+def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Bound, ...]:
     """Return the limits that quantities break by more than rounding, 1e-6 of the limit."""
     return tuple(
         limit
@@ -404,7 +404,7 @@ def broken_limits(problem: Problem, values: Mapping[str, float]) -> tuple[Limit,
     )
 
 
-def describe_limit(limit: Limit) -> str:
+def describe_bound(limit: Bound) -> str:
     """Return a limit as it is written on the command line."""
     unit = SCALARS[limit.quantity].unit
     text = label(unit) if unit != "1" else ""

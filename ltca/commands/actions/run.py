@@ -38,7 +38,7 @@ Analyses = dict[str, LoadedAnalysis]
 Summaries = dict[str, dict[str, float | None]]
 
 
-class Task(NamedTuple):
+class RunTask(NamedTuple):
     """What ``cyclo run`` was asked for.
 
     Attributes
@@ -74,7 +74,7 @@ class Task(NamedTuple):
     compared: Compared | None
 
 
-def solve_and_write(task: Task, out: Path) -> int:
+def solve_and_write(task: RunTask, out: Path) -> int:
     """Solve the cases, write and print the results; return the exit status."""
     file, engine, angles, torque = task.file, task.engine, task.angles, task.torque
     analyses, failures = _analyse(task.cases, angles, torque, engine, "cases")
@@ -123,7 +123,7 @@ def solve_and_write(task: Task, out: Path) -> int:
 
 
 def _write_page(
-    task: Task, analyses: Analyses, dataset: Dataset, summaries: Summaries, checks: dict[str, list[Check]],
+    task: RunTask, analyses: Analyses, dataset: Dataset, summaries: Summaries, checks: dict[str, list[Check]],
     sampling: list[str], out: Path,
 ) -> str:  # fmt: skip
     """Write the page of the run; return its name."""
