@@ -85,13 +85,7 @@ def add_study_arguments(parser: argparse.ArgumentParser, command: str) -> None:
 
 
 def check_worker_arguments(arguments: argparse.Namespace) -> None:
-    """Refuse local processes beside a cluster, and what is no address of one.
-
-    Raises
-    ------
-    DriveError
-        When both are given, or dask would look for a scheduler at no address.
-    """
+    """Refuse local processes beside a cluster, and addresses at which dask would look for no scheduler."""
     from ltca.errors import DriveError, shortened
 
     if arguments.scheduler:
@@ -105,13 +99,7 @@ def check_worker_arguments(arguments: argparse.Namespace) -> None:
 
 
 def check_study_arguments(arguments: argparse.Namespace) -> None:
-    """Refuse options that contradict each other, before anything is imported.
-
-    Raises
-    ------
-    DriveError
-        When two are given of which there can be one.
-    """
+    """Refuse options that contradict each other, before anything is imported."""
     from ltca.errors import DriveError
 
     check_worker_arguments(arguments)

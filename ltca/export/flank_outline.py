@@ -67,15 +67,7 @@ class MadeFlank:
         return np.asarray(found / (1.0 - self.inward * found))
 
     def departure(self, points: ComplexArray, near: FloatArray) -> FloatArray:
-        """Return how far points lie outside the flank along its normal, mm.
-
-        Parameters
-        ----------
-        points : array of complex
-            mm.
-        near : array of float
-            θ near each of them, rad.
-        """
+        """Return how far complex points, mm, lie outside the flank along its normal, mm; `near` is θ near each, rad."""
         found = self.profile.nearest_parameter(points, near)
         return self.profile.distance(points, found) + self.inward
 
@@ -184,17 +176,9 @@ class FlankSpline:
 
 
 def follow_flank(flank: MadeFlank) -> FlankSpline:
-    """Return a spline that departs from a flank by less than `CLOSE`, everywhere it is looked at.
+    """Return a spline that departs from a flank by less than `CLOSE`, wherever it is compared.
 
-    Parameters
-    ----------
-    flank : MadeFlank
-        The flank.
-
-    Raises
-    ------
-    DriveError
-        When that takes more than `MOST_POINTS` points.
+    Raises `DriveError` when that takes more than `MOST_POINTS` points.
     """
     parameter = flank.start()
     while parameter.size <= MOST_POINTS:
@@ -210,19 +194,9 @@ def follow_flank(flank: MadeFlank) -> FlankSpline:
 
 
 def departures(spline: FlankSpline, places: FloatArray = LOOKED_AT) -> FloatArray:
-    """Return how far a spline lies outside the exact flank between its points, mm.
+    """Return how far a spline lies outside the exact flank between its points, mm, of shape (k, n), piece by piece.
 
-    Parameters
-    ----------
-    spline : FlankSpline
-        The spline.
-    places : array, shape (k,)
-        Shares of each piece at which it is looked at, from 0 to 1.
-
-    Returns
-    -------
-    array, shape (k, n)
-        Piece by piece.
+    `places`, of shape (k,), are shares of each piece at which it is compared, from 0 to 1.
     """
     piece = np.arange(spline.parameter.size)
     ends = np.append(spline.parameter[1:], 2.0 * np.pi)

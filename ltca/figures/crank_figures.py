@@ -32,16 +32,8 @@ HALF_TURN = 180.0
 def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArray, title: str) -> None:
     """Draw mean and range of the roller loads of each crank, all its discs together, a panel for each crank.
 
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    data : xarray.Dataset
-        Of `one_by_one`.
-    place : array, shape (discs and cranks, positions, rollers) or what broadcasts to it
-        Of the rollers from the eccentricity, degrees from −180 to 180.
-    title : str
-        Above all.
+    `place` is the angle of the rollers from the eccentricity, degrees from −180 to 180, of shape (discs and cranks, positions,
+    rollers) or what broadcasts to it; `data` comes from `one_by_one`.
     """
     steps = min(SECTORS, max(4, place.size // FEWEST_IN_A_SECTOR))
     sector = np.minimum(((place + HALF_TURN) / 360.0 * steps).astype(int), steps - 1)
@@ -76,27 +68,13 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
 
 
 def mark_a_half_turn(axes: Any) -> None:
-    """Show places of rollers from −180° to 180°.
-
-    Parameters
-    ----------
-    axes : Axes
-        Its scale of x.
-    """
+    """Show places of rollers from −180° to 180°."""
     axes.set_xlim(-HALF_TURN, HALF_TURN)
     axes.set_xticks(np.arange(-HALF_TURN, HALF_TURN + 1.0, 90.0))
 
 
 def draw_cranks(figure: Figure, data: xr.Dataset) -> None:
-    """Draw the torque of each crank, and where they yield how far each goes in the plane of each disc.
-
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    data : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`, with several cranks.
-    """
+    """Draw the torque of each crank, and where they yield how far each goes in the plane of each disc."""
     cranks, yields = data.sizes["crank"], "crank_deflection_radial" in data
     torque = one_by_one(data.isel(disc=[0]), cranks)
     values, names = torque["crank_torque"].values / 1e3, case_names(torque)

@@ -34,17 +34,7 @@ def _save(figure: Figure, path: Path) -> Path:
 
 
 def draw_torque_curve(curve: TorqueCurve, title: str, path: Path) -> Path:
-    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the file.
-
-    Parameters
-    ----------
-    curve : TorqueCurve
-        Of one case.
-    title : str
-        Drive and case.
-    path : Path
-        Of the file, whose suffix says what is written.
-    """
+    """Draw torque against wind-up over all crank angles, the stiffness marked and the play magnified; return the file."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.4))
         axes, close = figure.subplots(1, 2, width_ratios=(3, 2))

@@ -69,23 +69,9 @@ def degrees(dataset: xr.Dataset) -> FloatArray:
 
 
 def panel_grid(figure: Figure, count: int, *, columns: int | None = None, height: float = 1.25) -> Any:
-    """Return axes in columns that share both scales, and give the figure the height they need.
+    """Return axes, row by row, that share both scales, and give the figure the height they need.
 
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    count : int
-        How many panels.
-    columns : int, optional
-        One for few panels, else two.
-    height : float
-        Of a row, inches.
-
-    Returns
-    -------
-    array of Axes, shape (count,)
-        Row by row.
+    Columns are one for few panels, else two, by default; `height` is that of a row in inches.
     """
     across = columns or (1 if count < BESIDE else 2)
     rows = -(-count // across)
@@ -111,32 +97,10 @@ def draw_panels(
     title: str = "",
     columns: int | None = None,
 ) -> Any:
-    """Draw each curve in a panel with its name above, all others grey behind it, to the same scales.
+    """Draw each curve in a panel with its name above, all others grey behind it, to the same scales; return the axes.
 
-    Parameters
-    ----------
-    figure : Figure
-        Where to.
-    x : array, shape (positions,)
-        In any order.
-    curves : array, shape (curves, positions)
-        One for each name.
-    names : sequence of str
-        Above the panels; of one curve none is written unless it tells something.
-    x_label, y_label : str
-        Of all panels, with units; formulas stand between dollar signs.
-    limits : tuple of two floats, optional
-        Of y; from zero where nothing is negative, with room where something is.
-    lines : sequence of Line, optional
-        Of the curves.
-    title : str
-        Above all.
-    columns : int, optional
-        Of panels.
-
-    Returns
-    -------
-    array of Axes, shape (curves,)
+    `x` has shape (positions,) in any order, `curves` (curves, positions). Labels have units, formulas between dollar signs.
+    `limits` of y are by default from zero where nothing is negative, otherwise with room.
     """
     order = np.argsort(x, kind="stable")
     lines = plain_lines(len(curves)) if lines is None else lines
@@ -169,33 +133,13 @@ def draw_panels(
 
 
 def name_panel(axes: Any, name: str, across: int = 1) -> None:
-    """Write a name above a panel, at its left.
-
-    Parameters
-    ----------
-    axes : Axes
-        The panel.
-    name : str
-        Shortened in its middle where there is no room.
-    across : int
-        Panels beside each other.
-    """
+    """Write a name above the left of a panel, shortened in its middle where panels `across` leave no room."""
     if name != ALONE:
         axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
 
 
 def label_all(figure: Figure, panels: Any, x_label: str, y_label: str) -> None:
-    """Label the axes of one panel at it, of several once for all.
-
-    Parameters
-    ----------
-    figure : Figure
-        Of the panels.
-    panels : array of Axes
-        All of them.
-    x_label, y_label : str
-        Formulas stand between dollar signs.
-    """
+    """Label the axes of a single panel at it, of several once for all; formulas stand between dollar signs."""
     if len(panels) == 1:
         formula(panels[0].set_xlabel(x_label)), formula(panels[0].set_ylabel(y_label))
         return
@@ -216,15 +160,7 @@ def case_names(dataset: xr.Dataset) -> list[str]:
 
 
 def one_by_one(dataset: xr.Dataset, cranks: int) -> xr.Dataset:
-    """Return every disc of every case, on every crank, as a case of its own; of too many the cases that have room.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`.
-    cranks : int
-        How many of the cranks are shown, the first of them.
-    """
+    """Return every disc of every case, on the first `cranks`, as a case; of too many the cases that have room."""
     discs = dataset.sizes["disc"]
     if discs * cranks == 1:
         return dataset.isel(disc=0, crank=0, case=slice(MOST_CURVES))

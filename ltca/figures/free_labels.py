@@ -50,19 +50,7 @@ class FreeLabels:
         self._lines.append(np.linspace(first, last, 12))
 
     def place(self, words: str, point: complex, direction: complex, **style: Any) -> Any:
-        """Write words near a point, in a direction from it if there is room, and return the text.
-
-        Parameters
-        ----------
-        words : str
-            What to write.
-        point : complex
-            In the scales of the axes.
-        direction : complex
-            Wanted, of any length.
-        **style : Any
-            Of `Axes.text`.
-        """
+        """Write words near a point, in a direction from it if there is room, and return the text; both in data coordinates."""
         text = self._axes.text(point.real, point.imag, words, ha="center", va="center", **style)
         box = text.get_window_extent(self._renderer)
         half = 0.5 * np.array([box.width + 3.0, box.height + 2.0])

@@ -15,32 +15,15 @@ STEP = 5.0
 
 
 def loaded_at(load: FloatArray) -> NDArray[np.bool_]:
-    """Return where loads are more than nothing, by the largest of all.
-
-    Parameters
-    ----------
-    load : array
-        N.
-    """
+    """Return where loads are more than nothing, by the largest of all."""
     return np.asarray(load > LOADED_FRACTION * max(float(np.nanmax(load)), 1e-300))
 
 
 def elements_shown(crank_angle: FloatArray, load: FloatArray, discs: IntArray) -> IntArray:
     """Return which pin of each disc to show: the first whose mesh the positions do not cut in two.
 
-    Parameters
-    ----------
-    crank_angle : array, shape (positions,)
-        Degrees.
-    load : array, shape (cases, positions, pins)
-        Of every disc of every case, N.
-    discs : array of int, shape (cases,)
-        Whose loads they are.
-
-    Returns
-    -------
-    array of int, shape (discs,)
-        Of other discs the pins that mesh about when that of the first does, so that all fit one axis.
+    `crank_angle` in degrees has shape (positions,), `load` (cases, positions, pins), and `discs` (cases,) says whose loads they
+    are. Of further discs the pins are those that mesh about when that of the first does, so that all fit one axis.
     """
     order = np.argsort(crank_angle, kind="stable")
     loaded = loaded_at(load)[:, order]
@@ -64,19 +47,9 @@ def elements_shown(crank_angle: FloatArray, load: FloatArray, discs: IntArray) -
 
 
 def loaded_window(crank_angle: FloatArray, load: FloatArray) -> tuple[float, float] | None:
-    """Return the crank angles between which any of some curves is loaded, with a little room, degrees.
+    """Return the crank angles, degrees, between which any of the curves is loaded, with a little room.
 
-    Parameters
-    ----------
-    crank_angle : array, shape (positions,)
-        Degrees.
-    load : array, shape (curves, positions)
-        N.
-
-    Returns
-    -------
-    tuple of two floats or None
-        None where nothing would be left out, or nothing is loaded.
+    Loads have shape (curves, positions); None where nothing would be left out, or nothing is loaded.
     """
     at = crank_angle[loaded_at(load).any(axis=0)]
     if at.size < 2:

@@ -45,17 +45,7 @@ def _shipped() -> str:
 
 
 def with_paper_number(title: str, number: int, dataset: xr.Dataset) -> str:
-    """Return a title with the number of the paper's figure, where the drive is the paper's.
-
-    Parameters
-    ----------
-    title : str
-        What is drawn.
-    number : int
-        Of the figure in the paper.
-    dataset : xarray.Dataset
-        With the text of its drive file as an attribute.
-    """
+    """Return a title with the number of the paper's figure, where the drive is the paper's."""
     return f"{title} (Fig. {number})" if dataset.attrs.get("drive_file") == _shipped() else title
 
 
@@ -264,13 +254,7 @@ OF_THE_PIN_SHAFT = ("fig35_pin_shaft_load", "fig36_loaded_shaft_pins")
 
 
 def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
-    """Return the names of the figures of a run, keys of `FIGURES`.
-
-    Parameters
-    ----------
-    discs, holes, cranks : int
-        How many the drives have; no holes without a pin shaft.
-    """
+    """Return the names of the figures of a run, keys of `FIGURES`; `holes` is 0 without a pin shaft."""
     missing: tuple[str, ...] = OF_SEVERAL_DISCS if discs == 1 else ()
     missing += OF_SEVERAL_CRANKS if cranks == 1 else ()
     missing += OF_THE_PIN_SHAFT if holes == 0 else ()
@@ -278,15 +262,7 @@ def figure_names(discs: int, holes: int, cranks: int = 1) -> list[str]:
 
 
 def draw_figure(name: str, dataset: xr.Dataset) -> Figure:
-    """Return one figure.
-
-    Parameters
-    ----------
-    name : str
-        Key of `FIGURES`.
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`; of several discs each has a curve of its own.
-    """
+    """Return one figure of a run, a key of `FIGURES`; of several discs each has a curve."""
     dataset = _answered(dataset)
     if name in OF_SEVERAL_DISCS:
         dataset = dataset.assign(torque_share=dataset["disc_torque"] / dataset["wheel_moment"])
@@ -315,21 +291,6 @@ def _answered(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def write_figures(dataset: xr.Dataset, folder: Path, kind: str = "svg") -> Iterator[Path]:
-    """Write every figure.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`.
-    folder : Path
-        Where to write; made when missing.
-    kind : str
-        ``svg``, ``png`` or ``pdf``.
-
-    Yields
-    ------
-    Path
-        Each figure when it is written.
-    """
+    """Write every figure of a run as ``svg``, ``png`` or ``pdf`` and yield each file."""
     for name in figure_names(dataset.sizes["disc"], dataset.sizes["hole"], dataset.sizes["crank"]):
         yield save_figure(draw_figure(name, dataset), folder / f"{name}.{kind}")

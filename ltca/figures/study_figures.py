@@ -48,20 +48,8 @@ def study_figures(
 ) -> Iterator[tuple[str, Figure]]:
     """Yield the figures of a study with their names.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    values : mapping of str to array, shape (samples,)
-        Of every quantity.
-    ranking : mapping
-        Of `ltca.studies.sensitivity.rank`.
-    nominal : mapping of str to float
-        Quantities of the drive without deviations, drawn where known.
-
-    Yields
-    ------
-    tuple of str and Figure
+    `values` of every quantity have shape (samples,), `ranking` is that of `ltca.studies.sensitivity.rank`, `nominal` has
+    quantities of the drive without deviations, drawn where known.
     """
     with mpl.rc_context(STYLE):
         if isinstance(study.design, SweepDesign):
@@ -193,21 +181,8 @@ def _response(axis: Any, design: SweepDesign, numbers: Any, column: int, x: Any,
 def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
     """Return the share up to which a field of a regression may have no influence at all, by its path.
 
-    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements.
-
-    Parameters
-    ----------
-    study : Study
-        For the fields and how many elements each has.
-    explained : float
-        R² of the regression, adjusted for its freedom.
-    samples : int
-        That have an answer.
-
-    Returns
-    -------
-    dict of str to float
-        Mean and two deviations of what chance alone gives.
+    A coefficient without influence has the variance (1 − R²)/freedom; a field adds up as many as it has elements. The share is
+    mean and two deviations of what chance alone gives, from R² adjusted for its freedom and the number of answered samples.
     """
     one = (1.0 - min(explained, 1.0)) / max(samples - 1, 1)
     sizes = {name: len(range(*columns.indices(columns.stop))) for name, columns in factor_groups(study)}

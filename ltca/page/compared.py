@@ -59,18 +59,10 @@ class Compared:
 
 
 def read_compared(path: Path) -> Compared:
-    """Read what a run is to be compared with.
+    """Read what a run is to be compared with; `DriveError` when there is none, or it holds something else.
 
-    Parameters
-    ----------
-    path : Path
-        A folder that ``cyclo run`` wrote, its ``results.nc``, or a file of comma separated values with a measured transmission
-        error: columns ``crank_angle_deg`` (or ``_rad``) and ``transmission_error_arcsec`` (or ``_arcmin``, ``_rad``).
-
-    Raises
-    ------
-    DriveError
-        When there is none, or it holds something else.
+    The path is a folder that ``cyclo run`` wrote, its ``results.nc``, or a file of comma separated values with a measured
+    transmission error: columns ``crank_angle_deg`` (or ``_rad``) and ``transmission_error_arcsec`` (or ``_arcmin``, ``_rad``).
     """
     results = path / "results.nc" if path.is_dir() else path
     if results.suffix == ".csv":

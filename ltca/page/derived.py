@@ -22,14 +22,9 @@ Rows = list[tuple[str, str]]
 
 
 def derived_rows(written: Drive, drive: Drive, *, plays: bool = True) -> Rows:
-    """Return what follows from the inputs, a name and a text each.
+    """Return what follows from the inputs of a drive, as it was given and at its temperatures: names and texts.
 
-    Parameters
-    ----------
-    written, drive : Drive
-        As it was given, and at its temperatures.
-    plays : bool
-        Whether gaps and backlash over a turn are wanted, which take most of the time.
+    `plays` are gaps and backlash over a turn, which take most of the time.
     """
     return [*_warmth(written), *_materials(written), *_properties(drive, plays)]
 

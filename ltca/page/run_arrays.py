@@ -39,16 +39,9 @@ def run_arrays(dataset: xr.Dataset, light: xr.Dataset | None, rows: NDArray[np.i
     ``angle``, rad; by number of the case, torque and name, as ``0/full/pin/load``: loads in N, pressures at mid-width in MPa,
     half-widths in mm of shape (discs, contacts, positions), the parameter of each contact on the flank, rad; ``radial`` and
     ``tangential`` of each disc, mm, its ``rotation``, rad, the ``wheel`` angle, rad, and the transmission error ``te`` in
-    arc seconds; further curves of the whole drive (`_curves`).
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of `ltca.analysis.results.build_dataset`, or ``results.nc`` read back.
-    light : xarray.Dataset or None
-        The same at the light torque; without it that torque has its transmission error alone, which the first dataset knows.
-    rows : array of int
-        Positions that are shown (`shown_positions`).
+    arc seconds; further curves of the whole drive (`_curves`). The dataset is that of `ltca.analysis.results.build_dataset`, or
+    ``results.nc`` read back, `light` the same at the light torque: without it that torque has its transmission error alone.
+    `rows` are the positions that are shown (`shown_positions`).
     """
     arrays: dict[str, FloatArray] = {"angle": dataset["crank_angle"].values}
     for number in range(dataset.sizes["case"]):

@@ -96,13 +96,7 @@ class SampleResults:
 
 
 def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
-    """Return the solution of one drive at the angles of the settings.
-
-    Raises
-    ------
-    ConvergenceError
-        When it does not balance.
-    """
+    """Return the solution of one drive at the angles of the settings; `ConvergenceError` where it does not balance."""
     solved = _Batch([drive], settings)
     full = solved.balance([drive.load.torque], None)
     light = full
@@ -194,23 +188,10 @@ def _quantities(drives: list[Drive], settings: BatchSettings, nominal: Nominal |
 
 
 def solve_batch(drives: Sequence[Drive], settings: BatchSettings, nominal: Nominal | None = None) -> SampleBatch:
-    """Solve several drives at all angles as one batch.
+    """Solve drives of one `ltca.compliance.half_space.batch_signature` at all angles as one batch.
 
-    Parameters
-    ----------
-    drives : sequence of Drive
-        Drives of one `ltca.compliance.half_space.batch_signature`.
-    settings : BatchSettings
-        Angles, quantities, engine.
-    nominal : Nominal, optional
-        Starting poses.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position of any of them does not balance.
-    DriveError
-        When a torque cannot be carried (`ltca.analysis.half_width_guard`).
+    Raises `ConvergenceError` when a position of any of them does not balance, and `DriveError` when a torque cannot be carried
+    (`ltca.analysis.half_width_guard`).
     """
     drives = [warm_drive(drive) for drive in drives]
     stages = {STAGES[name] for name in settings.quantities}

@@ -57,13 +57,7 @@ class Bound:
 
 
 def parse_variable(text: str, drive: Drive) -> Variable:
-    """Read ``name``, ``path`` or either with ``=low:high``; half to one and a half of its value without a range.
-
-    Raises
-    ------
-    DriveError
-        When the name is none or several fields, or the range is missing or wrong.
-    """
+    """Read ``name``, ``path`` or either with ``=low:high``; half to one and a half of its value without a range."""
     name, _, span = text.partition("=")
     # A name alone is that of all discs; of one disc the whole path says it.
     kinds = {path: kind for path, kind in field_kinds().items() if f".{ANY}." not in path}
@@ -99,11 +93,6 @@ def parse_variable(text: str, drive: Drive) -> Variable:
 
 def parse_bound(text: str) -> Bound:
     """Read ``quantity <= value unit`` or ``quantity >= value unit``.
-
-    Raises
-    ------
-    DriveError
-        When it reads otherwise.
 
     Examples
     --------
@@ -148,17 +137,7 @@ class Problem:
 
 
 def batch_analysis(problem: Problem, positions: int, engine: Engine | None = None) -> Analysis:
-    """Return the analysis of candidates by the batch solver over one turn.
-
-    Parameters
-    ----------
-    problem : Problem
-        For its quantities.
-    positions : int
-        Crank angles 2πk/N.
-    engine : Engine, optional
-        How bodies yield; half-spaces by default.
-    """
+    """Return the analysis of candidates by the batch solver at crank angles 2πk/N, by default on half-spaces."""
     used: Engine = HalfSpace() if engine is None else engine
     quantities_for(problem.drive, problem.quantities)
     settings = BatchSettings(crank_angle=position_angles(positions), quantities=problem.quantities, engine=used)
@@ -269,27 +248,9 @@ def optimise(
 ) -> Optimum:
     """Find the best candidate, for two aims the Pareto front.
 
-    Parameters
-    ----------
-    problem : Problem
-        Variables, aims and limits.
-    analysis : callable
-        Quantities of drives, see `batch_analysis`.
-    seed : int
-        Of the random numbers.
-    generations : int
-        Of differential evolution, for each of the weighted problems of a front a third of them.
-    told : callable
-        Told the number of candidates of each solved batch.
-
-    Returns
-    -------
-    Optimum
-
-    Raises
-    ------
-    CycloError
-        When the drive itself cannot be solved, or no candidate is sound and within the limits.
+    `generations` are those of differential evolution, a third of them for each of the weighted problems of a front; `told` is
+    called with the number of candidates of each solved batch. Raises `CycloError` when the drive itself cannot be solved, or no
+    candidate is sound and within the limits.
     """
     from scipy.optimize import differential_evolution, minimize
 

@@ -60,31 +60,10 @@ def run_study(
 ) -> StudySummary:
     """Run a study, or what is left of it, and write its files.
 
-    Parameters
-    ----------
-    study : Study
-        What to solve.
-    folder : StudyFolder
-        Where its files go.
-    workers : Workers
-        Who solves it.
-    resume : bool
-        Whether to continue what the folder holds.
-    replace : bool
-        Whether another study in the folder makes room.
-    advance : callable
-        Told the samples of every finished batch and the rate so far in positions per second.
-    told : callable
-        Told what has to be derived before samples are solved, and which kept batches cannot be used.
-
-    Returns
-    -------
-    StudySummary
-
-    Raises
-    ------
-    CycloError
-        When the folder holds something else, no sample has influence coefficients, or workers die again and again.
+    `resume` continues what the folder holds, `replace` makes room for another study. `advance` is called with the number of
+    samples of every finished batch and the rate so far in positions per second; `told` with lines on what is derived before
+    samples are solved and on kept batches that cannot be used. Raises `CycloError` when the folder holds something else, no
+    sample has influence coefficients, or workers die again and again.
     """
     left = folder.prepare(study, resume, told, replace=replace)
     if not study.engine.batches:

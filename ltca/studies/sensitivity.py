@@ -45,15 +45,8 @@ class Regression:
 def regress(chunks: Chunks) -> Regression | None:
     """Regress every quantity on all factors at once, reading the samples in chunks.
 
-    Parameters
-    ----------
-    chunks : callable
-        Gives the samples anew at every call: factors (n, f) and quantities (n, q), failed samples left out.
-
-    Returns
-    -------
-    Regression or None
-        None with fewer than two samples for each factor: chance would decide.
+    `chunks` gives the samples anew at every call: factors (n, f) and quantities (n, q), failed samples left out. None with fewer
+    than two samples for each factor: chance would decide.
     """
     count, sum_x, sum_y = 0, np.zeros(1), np.zeros(1)
     for x, y in chunks():
@@ -107,12 +100,9 @@ class SobolIndices:
 
 
 def sobol_indices(blocks: FloatArray) -> SobolIndices:
-    """Return the indices from Saltelli blocks.
+    """Return the indices from Saltelli blocks of shape (blocks, groups + 2, quantities).
 
-    Parameters
-    ----------
-    blocks : array, shape (blocks, groups + 2, quantities)
-        f(A), f(B), and f(A with one group from B); blocks with a failed sample left out.
+    Of each block: f(A), f(B), and f(A with one group from B); blocks with a failed sample are left out.
 
     Notes
     -----
@@ -154,19 +144,9 @@ def factor_groups(study: Study) -> tuple[tuple[str, slice], ...]:
 
 
 def rank(path: Path, study: Study) -> dict[str, Any]:
-    """Return the sensitivity ranking of every quantity.
+    """Return the sensitivity ranking of a study from its ``results.nc``.
 
-    Parameters
-    ----------
-    path : Path
-        ``results.nc``.
-    study : Study
-        Its study.
-
-    Returns
-    -------
-    dict
-        ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first.
+    That is the ``method`` and, for each quantity, ``explained`` and the ``shares`` of the fields, largest first.
     """
     names = [name for name, _ in factor_groups(study)]
     sobol = sobol_of(path, study)

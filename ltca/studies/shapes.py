@@ -46,17 +46,7 @@ _ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
 def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
     """Return the engine with the coefficients of a drive in it, those of the last shapes from memory.
 
-    Parameters
-    ----------
-    engine : Engine
-        How bodies yield.
-    drive : Drive
-        Whose shape counts.
-
-    Raises
-    ------
-    CycloError
-        When there are none and none can be derived.
+    Raises `CycloError` when there are none and none can be derived.
     """
     given = _given(engine)
     if engine.batches or _are_coefficients(given):
@@ -105,22 +95,10 @@ def shapes_of(drives: Iterable[Drive]) -> dict[str, Drive]:
 
 
 def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[[str], None]) -> None:
-    """Derive what a study will need in this process, so that its workers find it.
+    """Derive the coefficients that a study will need in this process, so that its workers find them; nothing for half-spaces.
 
-    Parameters
-    ----------
-    engine : Engine
-        How bodies yield; nothing is done for half-spaces.
-    shapes : mapping of str to Drive
-        Of `shapes_of`.
-    told : callable
-        Told how many shapes have to be derived, if any.
-
-    Raises
-    ------
-    CycloError
-        When a file given does not serve a shape, or no shape at all has coefficients. A shape that alone cannot be
-        derived is left to its samples, which say why.
+    Raises `CycloError` when a given file does not serve a shape, or no shape at all has coefficients. A shape that alone cannot
+    be derived is left to its samples, which say why.
     """
     given = _given(engine)
     if engine.batches or _are_coefficients(given) or not shapes:

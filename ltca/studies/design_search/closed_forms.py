@@ -74,15 +74,7 @@ class Setting:
 
 
 def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return room and margins of the shape by name, mm: exact but for the places at which curvatures are looked at.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-    """
+    """Return room and margins of the shape by name, mm: exact but for the places at which curvatures are evaluated."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     found = flank_shape(sizes, setting)
     inner = sizes.bore - 2.0 * sizes.roller_radius
@@ -282,13 +274,6 @@ def clearance_play(sizes: Sizes, setting: Setting) -> FloatArray:
 
     A disc that moves by the radial clearance turns the wheel by the lever e z_P; one that turns in its holes turns the wheel with
     it. Bores of several cranks bound both ways of moving together, so the shorter lever counts.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
     """
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     reach = sizes.eccentricity * sizes.pins
@@ -323,20 +308,9 @@ def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: Float
 
 
 def closed_forms(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return everything that closed forms say of candidates of one number of pins.
+    """Return the closed-form values of candidates of one number of pins.
 
-    Parameters
-    ----------
-    sizes : Sizes
-        Of the candidates.
-    setting : Setting
-        What they share.
-
-    Returns
-    -------
-    dict of str to array
-        By the names of `ltca.quantities.LIMITED` where there is one; mm, N, MPa, h, arcmin,
-        N·mm/rad.
+    Names are those of `ltca.quantities.LIMITED` where there is one. Units are mm, N, MPa, h, arcmin and N·mm/rad.
     """
     flank = flank_values(sizes, setting)
     return shape_values(sizes, setting) | flank | inner_values(sizes, setting, flank)

@@ -81,22 +81,10 @@ def enumerate_candidates(
     torque: float | None = None,
     shifts: Mapping[str, float] | None = None,
 ) -> Enumeration:
-    """Return the best candidates by closed forms.
+    """Return up to `most` of the best candidates by closed forms.
 
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    demands : sequence of Demand
-        Of `find_demands`.
-    relaxed : collection of str
-        Names of demands that may be broken.
-    most : int
-        Candidates wanted.
-    torque : float, optional
-        On the output, N·mm; that asked for by default.
-    shifts : mapping of str to float, optional
-        By how much margins of loaded drives were above those of closed forms, by name.
+    Demands in `relaxed` may be broken; `torque` on the output, N·mm, replaces that of the requirements; `shifts` are by name how
+    far margins of solved drives lay above those of closed forms.
     """
     setting = Setting.of(requirements)
     found: list[Sizes] = []
@@ -158,15 +146,7 @@ def _scores(
 
 
 def size_of(reached: dict[str, FloatArray], smallest: str) -> FloatArray:
-    """Return the logarithm of what is to be small, in the manner of a length.
-
-    Parameters
-    ----------
-    reached : dict of str to array
-        With ``outer_diameter`` and ``length``, mm.
-    smallest : str
-        Of the requirements.
-    """
+    """Return the logarithm of the size to be minimised, as a length; `reached` has ``outer_diameter`` and ``length`` in mm."""
     diameter, length = np.log(reached["outer_diameter"]), np.log(reached["length"])
     if smallest == "diameter":
         return np.asarray(diameter + 1e-3 * length)
@@ -176,13 +156,7 @@ def size_of(reached: dict[str, FloatArray], smallest: str) -> FloatArray:
 
 
 def teeth(requirements: Requirements) -> list[tuple[int, float, int, int]]:
-    """Return numbers of pins that give the ratio, each with the first stage, its sun and its planet.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    """
+    """Return numbers of pins that give the ratio, with the first stage, its sun and its planet."""
     asked = requirements.asked
     allowed, more = asked.ratio * asked.ratio_tolerance + 1e-9, 1 if asked.held == "pin-wheel" else 0
     if asked.kind == "discs":

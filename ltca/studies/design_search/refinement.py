@@ -104,13 +104,7 @@ class Refined:
 
 
 def refine(task: Task) -> Refined:
-    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits.
-
-    Parameters
-    ----------
-    task : Task
-        The candidate.
-    """
+    """Return a candidate with its best continuous sizes, solved coarsely: `finish` says whether it fits."""
     row, best, last, solved = dict(task.row), None, None, 0
     life: float | None = None
     broken = np.inf
@@ -148,15 +142,7 @@ def refine(task: Task) -> Refined:
 
 
 def finish(task: Task, solved: int = 0) -> Refined:
-    """Return a refined candidate solved finely; where that finds more, a step back by what it found.
-
-    Parameters
-    ----------
-    task : Task
-        With the refined sizes.
-    solved : int
-        Solutions so far.
-    """
+    """Return a refined candidate solved finely; where that finds larger values, sizes step back by as much."""
     row, solution = dict(task.row), Solution(values={})
     # A life that gives way has no limit in the file any more, and has to be known all the same.
     lives = not task.relaxed or any(one.quantity in LIVES for one in task.demands)
@@ -181,29 +167,13 @@ def finish(task: Task, solved: int = 0) -> Refined:
 
 
 def relaxed_limits(limits: Limits, task: Task) -> Limits:
-    """Return limits without those of demands that are relaxed.
-
-    Parameters
-    ----------
-    limits : dict
-        Of a drive file.
-    task : Task
-        With the names of what is relaxed.
-    """
+    """Return limits without those of demands that are relaxed."""
     gone = {f"{one.sense}_{one.quantity}" for one in task.demands if one.name in task.relaxed}
     return {key: limit for key, limit in limits.items() if key not in gone}
 
 
 def most_rollers(row: dict[str, float], task: Task) -> int:
-    """Return how many rollers go beside each other in the bearing of a candidate.
-
-    Parameters
-    ----------
-    row : dict of str to float
-        Of `Sizes.row`.
-    task : Task
-        For the gap of the cage.
-    """
+    """Return how many rollers go beside each other in the bearing of a candidate."""
     radius = row["roller_radius"]
     part = radius * (1.0 + task.requirements.asked.shop.cage_gap) / (row["bore"] - radius)
     return max(3, floor(pi / asin(part) + 1e-9)) if part < 1.0 else 3

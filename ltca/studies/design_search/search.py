@@ -62,13 +62,7 @@ class Relaxation:
         return "-and-".join(one.name for one in self.demands)
 
     def would_do(self, demand: Demand) -> float | None:
-        """Return the value of a requirement that would do, rounded to the side that does.
-
-        Parameters
-        ----------
-        demand : Demand
-            One of `demands`.
-        """
+        """Return the value of a requirement that would do, rounded to the side that does."""
         if self.refined is None:
             return None
         return rounded_safely(self.refined.solution.values[demand.quantity], demand.sense)
@@ -115,14 +109,7 @@ class Found:
 
 
 def rounded_safely(value: float, sense: str) -> float:
-    """Return a value with a few digits, rounded up where it is the most that is allowed, down where the least.
-
-    Parameters
-    ----------
-    value : float
-        What was reached.
-    sense : {"max", "min"}
-        Of the limit.
+    """Return a value with a few digits, rounded up for a limit of sense ``max`` and down for ``min``.
 
     Examples
     --------
@@ -138,17 +125,7 @@ def rounded_safely(value: float, sense: str) -> float:
 
 
 def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> Relaxation:
-    """Return the least that requirements would have to give, all others held.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        Of it.
-    names : tuple of str
-        Of the demands that give.
-    """
+    """Return the smallest relaxation of the named demands that makes the design feasible, all others held."""
     combinations, best = 0, None
     shifts: dict[str, float] = {}
     giving = tuple(one for one in demands if one.name in names)
@@ -175,17 +152,7 @@ def relax(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[
 
 
 def least_broken(requirements: Requirements, demands: tuple[Demand, ...], names: tuple[str, ...]) -> float:
-    """Return the least that closed forms say is broken of all other requirements (ln); infinite where none has a chance.
-
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    demands : tuple of Demand
-        Of it.
-    names : tuple of str
-        Of the demands that give.
-    """
+    """Return the least violation of all other requirements by closed forms (ln); infinite where no candidate is left."""
     torque = requirements.asked.torque * (TORQUES[-1] if "torque" in names else 1.0)
     return float(np.min(enumerate_candidates(requirements, demands, names, 1, torque).broken, initial=np.inf))
 
@@ -196,18 +163,9 @@ def find_designs(
     told: Callable[[str], None] = lambda step: None,
     best: int = 3,
 ) -> Found:
-    """Return the designs that fit, or what stands in the way.
+    """Return up to `best` designs that fit, or the relaxations that would make one fit.
 
-    Parameters
-    ----------
-    requirements : Requirements
-        What is asked.
-    executor : Executor
-        That refines candidates.
-    told : callable
-        Told of every step.
-    best : int
-        Designs wanted.
+    The executor refines candidates; `told` is called with a line for each step of the search.
     """
     demands = find_demands(requirements)
     told("combinations")
@@ -259,13 +217,7 @@ def _rows(found: Enumeration) -> list[dict[str, float]]:
 
 
 def mean_shifts(refined: list[Refined]) -> dict[str, float]:
-    """Return by how much margins of loaded drives are above those of closed forms, by name: the mean of all.
-
-    Parameters
-    ----------
-    refined : list of Refined
-        What was solved.
-    """
+    """Return by name the mean difference between margins of solved drives and those of closed forms."""
     each = [one.shifts for one in refined if one.shifts]
     names = set().union(*each) if each else set()
     return {name: float(np.mean([one[name] for one in each if name in one])) for name in sorted(names)}

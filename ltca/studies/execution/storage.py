@@ -86,23 +86,11 @@ class StudyFolder:
         *,
         replace: bool = False,
     ) -> list[int]:
-        """Make the folder ready and return the batches that are still to be solved.
+        """Make the folder ready and return the numbers of the batches that are still to be solved.
 
-        Parameters
-        ----------
-        study : Study
-            What is to be solved.
-        resume : bool
-            Whether to continue what the folder holds.
-        told : callable
-            Told which batches are set aside, and why.
-        replace : bool
-            Whether another study in the folder, finished or not, makes room.
-
-        Raises
-        ------
-        CycloError
-            When the folder holds another or an unfinished study and that was not expected.
+        With `resume` the study that the folder holds goes on; with `replace` another one, finished or not, makes room. Raises
+        `CycloError` when the folder holds another or an unfinished study and neither was asked for. `told` is called with a
+        line for each batch that is set aside.
         """
         fingerprint = study.fingerprint
         held = None if replace else self._held()
@@ -222,24 +210,7 @@ def write_batch(path: Path, study: Study, result: BatchResult) -> None:
 
 
 def read_batch(path: Path, study: Study) -> BatchResult:
-    """Read one batch of a study.
-
-    Parameters
-    ----------
-    path : Path
-        Its file.
-    study : Study
-        Whose it must be.
-
-    Returns
-    -------
-    BatchResult
-
-    Raises
-    ------
-    DamagedFileError
-        When it is damaged, belongs to another study or to another number.
-    """
+    """Read one batch; `DamagedFileError` when it is damaged, or belongs to another study or to another number."""
     try:
         # Opened here: of a file that is no archive numpy leaves its own stream open.
         with regular_file(path, LARGEST_BATCH) as stream, zipfile.ZipFile(stream) as archive:

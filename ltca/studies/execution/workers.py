@@ -56,13 +56,7 @@ class Workers:
 
     @contextmanager
     def executor(self) -> Iterator[tuple[Executor, int]]:
-        """Give the executor and its number of workers.
-
-        Raises
-        ------
-        CycloError
-            When dask.distributed is not installed or the scheduler does not answer.
-        """
+        """Give the executor and its number of workers; `CycloError` where dask.distributed or its scheduler is missing."""
         if self.scheduler:
             with _cluster(self.scheduler) as found:
                 yield found
@@ -110,26 +104,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
 
 
 def solve_batches(study: Study, numbers: Iterable[int], workers: Workers) -> Iterator[BatchResult]:
-    """Solve batches and yield them as they are done.
+    """Solve batches and yield them as they are done, in no particular order.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    numbers : iterable of int
-        Batches to solve.
-    workers : Workers
-        Where.
-
-    Yields
-    ------
-    BatchResult
-        In no particular order.
-
-    Raises
-    ------
-    FaultError
-        When workers die again and again, or the scheduler is gone.
+    Raises `FaultError` when workers die again and again, or the scheduler is gone.
     """
     left = list(numbers)[::-1]
     for _ in range(LOSSES + 1):
