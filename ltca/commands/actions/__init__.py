@@ -4,5 +4,6 @@ A command of this name beside this folder adds its options, checks them and then
 
 ========  ============================================================
 run       Solve the cases of ``cyclo run``; dataset, summary, verdicts, page and figures
+curves    Solve the cases of ``cyclo curves``; curves.json, page and figures
 ========  ============================================================
 """
