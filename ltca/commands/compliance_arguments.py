@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ltca.errors import DamagedFileError
 from ltca.reading.arguments import DifferentValues, refuse_idle_options
 
 if TYPE_CHECKING:
@@ -39,8 +40,6 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
 
 def check_compliance(arguments: argparse.Namespace) -> None:
     """Check the arguments as far as that goes before the engines are imported, which takes a second."""
-    from ltca.errors import DamagedFileError
-
     refuse_idle_options(
         arguments.compliance,
         method=getattr(arguments, "method", None),

@@ -34,18 +34,10 @@ from ltca.reading.drive_file import DriveFile
 
 POSITIONS_PER_TURN = 192
 """Least positions in a turn; more where the highest order asks for them (`positions_per_turn`)."""
-
-
 ANGLES = 4
-
-
 HARMONICS = 7
 """Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST`)."""
-
-
 HIGHEST = 320
-
-
 SEEN = 2.05
 """Positions for each period of the highest order, beyond the two that tell it from others."""
 
