@@ -28,7 +28,7 @@ EXAMPLES = (
     ("cyclo curves my.toml", "torque curve, orders, bearing lives; curves.json"),
     ("cyclo curves my.toml --speed '1500 rpm' --load-rating '40 kN'", "lives at a speed and a maker's load rating"),
 )
-MANY = 20_000
+MANY_POSITIONS = 20_000
 """Positions beyond which it is said that fewer turns would do."""
 FIGURES = ("torque_curve", "transmission_error_orders", "flank_pressure")
 
@@ -108,7 +108,7 @@ def execute(arguments: argparse.Namespace) -> int:
         require_room_for_parts(drive, positions, out, f"--turns {turns}")
         if turns < drive.pin_wheel.number_of_pins:
             require_turns(drive, turns)
-        elif arguments.turns is None and positions > MANY:
+        elif arguments.turns is None and positions > MANY_POSITIONS:
             tell_of_turns(drive, turns, positions)
     endings = [f"_{escape(name)}" for name in cases] if len(cases) > 1 else [""]
     figures = figure_files(arguments.figures, *(name + ending for name in FIGURES for ending in endings))

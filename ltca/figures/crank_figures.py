@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ltca.figures.curve_panels import (
-    BESIDE,
     DASHES,
+    TWO_COLUMNS_FROM,
     FloatArray,
     case_names,
     degrees,
@@ -60,7 +60,7 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
         for _, _, _, other, _ in drawn:
             if other is not mean:
                 axes.plot(middle, other, color=OTHERS, linewidth=0.9, zorder=2.0)
-        name_panel(axes, name, 1 if len(drawn) < BESIDE else 2)
+        name_panel(axes, name, 1 if len(drawn) < TWO_COLUMNS_FROM else 2)
     panels[0].set_ylim(0.0, 1.06 * max(float(np.nanmax(high)) for *_, high in drawn) + 1e-9)
     mark_a_half_turn(panels[0])
     label_all(figure, panels, "angle of the roller from the eccentricity [°]", "load on the bore [N]")

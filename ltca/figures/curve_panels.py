@@ -17,15 +17,15 @@ DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 1.5, 1, 1.5)
 """Lines of disc after disc."""
 MOST_CURVES = 16
 """Panels of one figure; more do not fit on a page."""
-FEW = 40
+MARKED_POSITIONS = 40
 """Positions below which each is marked."""
-BESIDE = 4
+TWO_COLUMNS_FROM = 4
 """Panels from which on they stand in two columns."""
-ALONE = "nominal"
+UNNAMED_CASE = "nominal"
 """Name of the case of a drive without cases: it tells nothing."""
 LETTERS = {1: 84, 2: 42}
 """Letters above a panel of the width of the figure, and of half of it."""
-ROOM = 0.06
+MARGIN = 0.06
 """Of the range of all curves, above and below them."""
 
 
@@ -73,7 +73,7 @@ def panel_grid(figure: Figure, count: int, *, columns: int | None = None, height
 
     Columns are one for few panels, else two, by default; `height` is that of a row in inches.
     """
-    across = columns or (1 if count < BESIDE else 2)
+    across = columns or (1 if count < TWO_COLUMNS_FROM else 2)
     rows = -(-count // across)
     figure.set_figheight(3.9 if count == 1 else max(3.6, 0.8 + height * rows))
     grid = figure.subplots(rows, across, sharex=True, sharey=True, squeeze=False)
@@ -105,8 +105,8 @@ def draw_panels(
     order = np.argsort(x, kind="stable")
     lines = plain_lines(len(curves)) if lines is None else lines
     panels = panel_grid(figure, len(curves), columns=columns)
-    marker = "o" if x.size < FEW else None
-    across = columns or (1 if len(curves) < BESIDE else 2)
+    marker = "o" if x.size < MARKED_POSITIONS else None
+    across = columns or (1 if len(curves) < TWO_COLUMNS_FROM else 2)
     for number, (axes, line) in enumerate(zip(panels, lines, strict=True)):
         others = [curve for place, curve in enumerate(curves) if place != number]
         # Own curves first: who reads a panel's lines finds what it is about.
@@ -121,7 +121,7 @@ def draw_panels(
     axes.margins(x=0.0)
     if limits is None:
         least, most = float(np.nanmin(curves)), float(np.nanmax(curves))
-        room = ROOM * max(most - least, 1e-9 * abs(most), 1e-12)
+        room = MARGIN * max(most - least, 1e-9 * abs(most), 1e-12)
         limits = (0.0 if least >= 0.0 else least - room, most + room)
     axes.set_ylim(*limits)
     axes.yaxis.set_major_locator(mpl.ticker.MaxNLocator(5 if len(panels) == 1 else 3))
@@ -134,7 +134,7 @@ def draw_panels(
 
 def name_panel(axes: Any, name: str, across: int = 1) -> None:
     """Write a name above the left of a panel, shortened in its middle where panels `across` leave no room."""
-    if name != ALONE:
+    if name != UNNAMED_CASE:
         axes.set_title(shortened_name(name, LETTERS[across]), loc="left", fontsize=8.5, color=INK, pad=3.0)
 
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray, IntArray
 
-BESIDE_THE_MESH = 0.08
-"""Of its length, shown before and after it."""
-STEP = 5.0
+MARGIN = 0.08
+"""Part of the length of a mesh that is shown before and after it."""
+WINDOW_GRID = 5.0
 """Windows begin and end at whole multiples, degrees."""
 
 
@@ -55,7 +55,11 @@ def loaded_window(crank_angle: FloatArray, load: FloatArray) -> tuple[float, flo
     if at.size < 2:
         return None
     apart = float(np.max(np.diff(np.sort(crank_angle))))  # to the next position, where a curve has come down to nothing
-    room = max(BESIDE_THE_MESH * float(np.ptp(at)), STEP, apart)
-    low = max(STEP * np.floor((at.min() - room) / STEP), STEP * np.floor(crank_angle.min() / STEP))
-    high = min(STEP * np.ceil((at.max() + room) / STEP), STEP * np.ceil(crank_angle.max() / STEP))
+    room = max(MARGIN * float(np.ptp(at)), WINDOW_GRID, apart)
+    low = max(
+        WINDOW_GRID * np.floor((at.min() - room) / WINDOW_GRID), WINDOW_GRID * np.floor(crank_angle.min() / WINDOW_GRID)
+    )
+    high = min(
+        WINDOW_GRID * np.ceil((at.max() + room) / WINDOW_GRID), WINDOW_GRID * np.ceil(crank_angle.max() / WINDOW_GRID)
+    )
     return (float(low), float(high)) if high - low < 0.95 * np.ptp(crank_angle) else None

@@ -16,7 +16,7 @@ from ltca.arrays import FloatArray
 from ltca.contact.tracked_grid import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.figures.curve_panels import BESIDE, MOST_CURVES, draw_panels, name_panel
+from ltca.figures.curve_panels import MOST_CURVES, TWO_COLUMNS_FROM, draw_panels, name_panel
 from ltca.figures.house_style import COLOUR_MAP, COLOURS, OTHERS, STYLE, save_figure, shortened_name
 from ltca.figures.run_figures import with_paper_number
 from ltca.geometry.flank import FlankProfile
@@ -73,7 +73,7 @@ def draw_contact_zone(figure: Figure, results: xr.Dataset, drive: Drive) -> None
     tip = float(arc[half])
     outline = profile.flank(theta[: half + 1])
     names = [str(name) for name in results["case"].values][:MOST_CURVES]
-    across = 1 if len(names) < BESIDE else 2
+    across = 1 if len(names) < TWO_COLUMNS_FROM else 2
     rows = -(-len(names) // across)
     figure.set_figheight(max(4.0, 0.9 + 1.3 * rows))
     grid = figure.add_gridspec(rows, 1 + across, width_ratios=(1.1, *(2.4 / across,) * across))

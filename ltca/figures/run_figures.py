@@ -19,7 +19,7 @@ from ltca.analysis.summary import LOADED_FRACTION
 from ltca.drive.units.quantities import ARCSEC
 from ltca.figures.crank_figures import HALF_TURN, draw_cranks, draw_rollers_of_each_crank, mark_a_half_turn
 from ltca.figures.curve_panels import (
-    FEW,
+    MARKED_POSITIONS,
     MOST_CURVES,
     FloatArray,
     case_names,
@@ -79,7 +79,7 @@ def _transmission_error(figure: Figure, data: xr.Dataset) -> None:
         values = (values - values.mean(axis=1, keepdims=True))[:, order]
         for row in range(rows):
             axes = grid[row, column]
-            marker = "o" if x.size < FEW else None
+            marker = "o" if x.size < MARKED_POSITIONS else None
             axes.plot(
                 x[order], values[row], color=lines[row].colour, linestyle=lines[row].dashes, marker=marker,
                 markersize=3.0, zorder=2.5,

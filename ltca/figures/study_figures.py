@@ -22,9 +22,9 @@ from ltca.studies.sensitivity import factor_groups
 from ltca.studies.study import Study
 from ltca.studies.study_results import read_quantity
 
-SHOWN = 8
+FIELDS_SHOWN = 8
 """Fields in a ranking; the rest has no share worth a bar."""
-LETTERS = 44
+TITLE_LETTERS = 44
 """Letters of a line above a panel."""
 CHANCE_MEAN, CHANCE_SPREAD = 0.484, 1.170
 """Mean and deviation of max(z² − 1, 0) of a normal z: what an element without influence adds to its share of a regression,
@@ -82,7 +82,7 @@ def _distributions(study: Study, values: Mapping[str, Any], nominal: Mapping[str
     for axis, name in zip(axes, study.quantities, strict=False):
         finite = values[name][np.isfinite(values[name])]
         axis.hist(finite, bins=min(60, max(8, int(np.sqrt(finite.size)))), color=COLOURS[6], linewidth=0.0)
-        axis.set_xlabel(fill(SCALARS[name].heading, LETTERS), fontsize=8.0)
+        axis.set_xlabel(fill(SCALARS[name].heading, TITLE_LETTERS), fontsize=8.0)
         axis.set_yticks([])
         axis.grid(visible=False)
         axis.spines["left"].set_visible(False)
@@ -103,17 +103,17 @@ def _distributions(study: Study, values: Mapping[str, Any], nominal: Mapping[str
     return figure
 
 
-TALL = 12.0
+MAX_HEIGHT = 12.0
 """Inches that a figure of responses may be high before its quantities stand in blocks beside each other."""
 
 
 def _responses(study: Study, design: SweepDesign, values: Mapping[str, Any]) -> Figure:
     """Every quantity over every factor; samples alike in all other factors are joined."""
-    factors = list(design.factors)[:SHOWN]
+    factors = list(design.factors)[:FIELDS_SHOWN]
     count, across = len(study.quantities), len(factors)
     height = 1.25 if across < 4 else 1.0
     # Beside each other as far as a page is wide: few factors leave room for several blocks.
-    blocks = max(1, min(-(-count // 2), 4 // across, int(np.ceil(count * height / (0.6 * TALL)))))
+    blocks = max(1, min(-(-count // 2), 4 // across, int(np.ceil(count * height / (0.6 * MAX_HEIGHT)))))
     rows = -(-count // blocks)
     width = max(1.9, 3.2 / across)
     figure = Figure(figsize=(max(0.9 * blocks + width * across * blocks, 6.8), 1.3 + height * rows))
@@ -191,12 +191,12 @@ def chance_of(study: Study, explained: float, samples: int) -> dict[str, float]:
 
 def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int]) -> Figure:
     names = [name for name in study.quantities if name in ranking["quantities"]]
-    bars = min(SHOWN, max(len(ranking["quantities"][name]["shares"]) for name in names))
+    bars = min(FIELDS_SHOWN, max(len(ranking["quantities"][name]["shares"]) for name in names))
     figure, axes = _panels(len(names), 0.95 + 0.17 * bars, 4.9, 2 if len(names) < 7 else 3)
     by_regression = "regression" in ranking["method"]
     for axis, name in zip(axes, names, strict=False):
         entry = ranking["quantities"][name]
-        shares = dict(list(entry["shares"].items())[:SHOWN])
+        shares = dict(list(entry["shares"].items())[:FIELDS_SHOWN])
         chance = chance_of(study, entry["explained"], samples[name]) if by_regression else {}
         colours = [OTHERS if share <= chance.get(path, 0.0) else COLOURS[1] for path, share in shares.items()]
         places = np.arange(len(shares))
@@ -210,7 +210,7 @@ def _ranking(study: Study, ranking: Mapping[str, Any], samples: Mapping[str, int
         axis.tick_params(axis="x", labelsize=7.5)
         words = f"{SCALARS[name].title}\nfirst order together {max(0.0, 100.0 * entry['explained']):.0f} %"
         axis.set_title(
-            "\n".join(fill(line, 2 * LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
+            "\n".join(fill(line, 2 * TITLE_LETTERS // 3 + 8) for line in words.split("\n")), fontsize=8.0, loc="left"
         )
     told = f"{shortened_name(study.name, 40)}: {ranking['method']}"
     letters = int(12.5 * figure.get_figwidth())

@@ -168,7 +168,7 @@ def _supports(drive: Drive) -> Rows:
     return rows
 
 
-THIN = 0.1
+THIN_WALL = 0.1
 """Wall between slots, or of a sleeve, by the radius of its bore: what is thinner yields more than the contacts in it say."""
 
 
@@ -209,4 +209,4 @@ def _seat(part: PinWheel | PinShaft, pins: str, seen_from: str) -> Rows:
 
 
 def _wall(wall: float, bore: float) -> str:
-    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN * bore else "")
+    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN_WALL * bore else "")

@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 Summaries = Mapping[str, Mapping[str, float | None]]
 
 GROUPS = ("loads", "pressures", "transmission", "losses", "rest")
-TOLD_ORDERS = 8
+ORDERS_SHOWN = 8
 """Orders of the transmission error in the table."""
-SAME = 1e-9
-"""Of whole orders."""
+ORDER_TOLERANCE = 1e-9
+"""Departure up to which an order counts as a whole one."""
 
 
 def summary_tables(drives: Mapping[str, Drive], summaries: Summaries) -> dict[str, Table]:
@@ -81,9 +81,11 @@ def orders_table(dataset: xr.Dataset, drives: Mapping[str, Drive]) -> Table | No
     if not found:
         return None
     largest = np.max(list(found.values()), axis=0)
-    chosen = np.sort(np.argsort(-largest, kind="stable")[:TOLD_ORDERS])
+    chosen = np.sort(np.argsort(-largest, kind="stable")[:ORDERS_SHOWN])
     drive = next(iter(drives.values()))
-    names = {round(one.value): one.name for one in known_orders(drive) if abs(one.value - round(one.value)) < SAME}
+    names = {
+        round(one.value): one.name for one in known_orders(drive) if abs(one.value - round(one.value)) < ORDER_TOLERANCE
+    }
     rows = [
         [
             word(str(place + 1)),

@@ -37,8 +37,8 @@ from ltca.output.locks import held
 from ltca.output.provenance import code_hash
 from ltca.output.regular_files import regular_file
 
-KEPT = 8
-"""Shapes whose coefficients a process keeps in memory, some 10 MB each."""
+MAX_KEPT_SHAPES = 8
+"""Shapes whose coefficients a process keeps in memory, some 10 MB for each."""
 
 _ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
 
@@ -59,7 +59,7 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
         there = given is not None or all(cached_file(single).exists() for single in singles)
         with nullcontext() if there else _one_process(shapes[0]):
             _ENGINES[key] = engine.with_coefficients(drive)
-        if len(_ENGINES) > KEPT:
+        if len(_ENGINES) > MAX_KEPT_SHAPES:
             _ENGINES.popitem(last=False)
     _ENGINES.move_to_end(key)
     return _ENGINES[key]
@@ -110,8 +110,11 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
             longest = told_seconds(max(expected_seconds(missing)))
             told(f"{few} no influence coefficients yet: derived first, {longest} each")
-        for first in range(0, len(missing), KEPT) if len(missing) > 1 else ():
-            group = {f"shape {first + number}": drive for number, drive in enumerate(missing[first : first + KEPT], 1)}
+        for first in range(0, len(missing), MAX_KEPT_SHAPES) if len(missing) > 1 else ():
+            group = {
+                f"shape {first + number}": drive
+                for number, drive in enumerate(missing[first : first + MAX_KEPT_SHAPES], 1)
+            }
             # Several at once; what fails is tried again alone below.
             with suppress(CycloError):
                 find_case_coefficients(group, near_field=NEAR_FIELDS[engine.compliance])

@@ -28,7 +28,7 @@ from ltca.reading.drive_file import DriveFile
 
 ADVICE_POSITIONS = 60
 """Positions at which changed drives are compared."""
-BESIDE = 1e-3
+OFFSET = 1e-3
 LEAST_PART = 1e-3
 """Part of the torque below which it is not tried whether the drive carries it."""
 
@@ -99,7 +99,7 @@ def _judge(
     if arguments.compliance != "half-space" and any(check.fails for check in checks):
         told.append("what drives each value is found on half-spaces, whatever judges it")
     # Between those of a turn, so that nothing is refined.
-    angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + BESIDE
+    angles = position_angles(min(arguments.positions, ADVICE_POSITIONS)) + OFFSET
     return checks, advise(drive, checks, angles, whole, part), told
 
 

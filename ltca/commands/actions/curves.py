@@ -36,9 +36,9 @@ POSITIONS_PER_TURN = 192
 """Least positions in a turn; more where the highest order asks for them (`positions_per_turn`)."""
 ANGLES = 4
 HARMONICS = 7
-"""Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST`)."""
-HIGHEST = 320
-SEEN = 2.05
+"""Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST_ORDER`)."""
+HIGHEST_ORDER = 320
+POSITIONS_PER_PERIOD = 2.05
 """Positions for each period of the highest order, beyond the two that tell it from others."""
 
 
@@ -98,12 +98,12 @@ class CaseCurves(NamedTuple):
 
 def _orders(drive: Drive) -> tuple[Order, ...]:
     """Return the orders that are looked for."""
-    return known_orders(drive, harmonics=min(HARMONICS, max(2, HIGHEST // drive.disc.number_of_teeth)))
+    return known_orders(drive, harmonics=min(HARMONICS, max(2, HIGHEST_ORDER // drive.disc.number_of_teeth)))
 
 
 def positions_per_turn(drive: Drive) -> int:
     """Return how many positions a turn needs for the highest order to be told from the others."""
-    return max(POSITIONS_PER_TURN, ceil(SEEN * max(order.value for order in _orders(drive))))
+    return max(POSITIONS_PER_TURN, ceil(POSITIONS_PER_PERIOD * max(order.value for order in _orders(drive))))
 
 
 def require_turns(drive: Drive, turns: int) -> None:

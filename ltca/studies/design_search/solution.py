@@ -29,8 +29,8 @@ COARSE_POSITIONS = 24
 TURNS, HOURS = "bearing_life_million_turns", "bearing_life_hours"
 CHECK_POSITIONS = 360
 """Of `cyclo check`."""
-BESIDE = 1e-3
-"""Between the positions of a turn, so that nothing is refined, rad."""
+OFFSET = 1e-3
+"""Offset of positions from those of a whole turn, between which extremes would be refined, rad."""
 CURVE_ANGLES = np.array([0.0, 0.1])
 """Crank angles at which stiffness and lost motion are read, rad."""
 CURVE_POINTS = 4
@@ -77,7 +77,7 @@ def solve_coarsely(
     try:
         drive = drive_of(row, requirements)
         positions = COARSE_POSITIONS if drive.disc.number_of_discs == 1 else COARSE_POSITIONS // 2
-        analysis = analyse(drive, position_angles(positions) + BESIDE)
+        analysis = analyse(drive, position_angles(positions) + OFFSET)
         by_forces = _lives_by_forces(row, analysis, requirements)
         asked = [one for one in demands if one.quantity in LIVES]
         # ISO 281 with the mean force falls short of the slices by a factor of two or so: what it finds enough is.
