@@ -111,7 +111,7 @@ def tables(drive: Drive) -> None:
 
 def optimum(drive: Drive) -> np.ndarray:
     """What an optimisation computes of a candidate, with every quantity aimed at or limited."""
-    from ltca.studies.optimiser import Limit, Problem, batch_analysis, parse_variable
+    from ltca.studies.optimiser import Bound, Problem, batch_analysis, parse_variable
     from ltca.studies.quantities import quantities_for
 
     problem = Problem(
@@ -119,7 +119,7 @@ def optimum(drive: Drive) -> np.ndarray:
         variables=(parse_variable("disc.equidistant_offset", drive),),
         aims=("max_pin_load",),
         limits=tuple(
-            Limit(quantity=name, sense=1, value=1e9)
+            Bound(quantity=name, sense=1, value=1e9)
             for name in quantities_for(drive, ("all",))
             if name != "max_pin_load"
         ),

@@ -69,24 +69,7 @@ class _Reader:
 
 
 def load_sweep(path: Path, engine: Engine | None = None) -> Study:
-    """Read a sweep from its TOML file.
-
-    Parameters
-    ----------
-    path : Path
-        ``study.toml``.
-    engine : Engine, optional
-        How bodies yield; half-spaces by default.
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    DriveError
-        When file, drive, design or a factor is wrong; all mistakes together.
-    """
+    """Read a sweep from ``study.toml``; `DriveError` names all mistakes of file, drive, design and factors together."""
     text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
     table = parse_toml(text, str(path), MOST_VALUES, MOST_VALUES)
     source = table.get("drive")
