@@ -371,7 +371,7 @@ def _solve(
     """Balance new positions of both torques in one batch and give them to their stages."""
     joined = np.concatenate([angles, light_angles])
     torque = np.repeat([full.torque, light.torque], [angles.size, light_angles.size])
-    found = solve_at_output(analysis.model, analysis.drive, joined, torque, start)
+    found = solve_at_output(analysis.model, [analysis.drive], joined, torque, start)
     if angles.size:
         signals = _full_signals(analysis, found, analysis.model.pressures(found.response))
         loaded = slice(angles.size)

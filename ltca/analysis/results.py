@@ -17,7 +17,6 @@ from ltca.analysis.friction.variables import friction_values
 from ltca.analysis.half_width_guard import pin_deflections
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses
 from ltca.contact.subsurface import line_contact_shear
@@ -260,10 +259,8 @@ def _of_cases(words: Mapping[str, str]) -> str:
 
 def _bodies(analyses: Mapping[str, LoadedAnalysis]) -> dict[str, list[int] | list[str]]:
     """Whether coefficients of each case are its own or, on somebody's word, of bodies that differ a little; who derived them."""
-    models = [
-        [disc for disc in analysis.model.discs if isinstance(disc, CoupledCompliance)] for analysis in analyses.values()
-    ]
-    used = [[disc.coefficients for disc in model] for model in models]
+    models = [analysis.model.discs for analysis in analyses.values()]
+    used = [[disc.coefficients for disc in discs if disc.coefficients is not None] for discs in models]
     if not all(used):
         return {}
     return {

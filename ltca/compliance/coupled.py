@@ -21,6 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,6 +84,8 @@ class CoupledCompliance:
     own : OwnParts
         What each contact's own body parts add to the diagonal of C.
     """
+
+    grids_can_check: ClassVar[bool] = False
 
     geometry: ContactGeometry
     coefficients: InfluenceCoefficients

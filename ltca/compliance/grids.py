@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -89,6 +89,9 @@ class GridCompliance:
     hole_law : SpringLaw
         Of the pin holes.
     """
+
+    coefficients: ClassVar[None] = None
+    grids_can_check: ClassVar[bool] = False
 
     geometry: ContactGeometry
     kinds: ContactKinds

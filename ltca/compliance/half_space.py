@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -43,6 +44,9 @@ class HalfSpaceCompliance:
     kinds : ContactKinds
         The contacts as grids see them, for what no table holds.
     """
+
+    coefficients: ClassVar[None] = None
+    grids_can_check: ClassVar[bool] = True
 
     geometry: ContactGeometry
     pin_law: ContactLaw

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.rollers import RollerState
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion
@@ -150,6 +151,16 @@ class DiscModel(Protocol):
     @property
     def geometry(self) -> ContactGeometry:
         """The contact geometry of the disc in its drive."""
+        ...
+
+    @property
+    def coefficients(self) -> InfluenceCoefficients | None:
+        """Coefficients by which the contacts of the disc feel each other; None where they do not."""
+        ...
+
+    @property
+    def grids_can_check(self) -> bool:
+        """Whether contact grids, with the true separation of the surfaces, answer the same where separations are parabolas."""
         ...
 
     def respond(

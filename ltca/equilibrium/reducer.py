@@ -38,6 +38,39 @@ from ltca.geometry.pairs import ContactGeometry
 class JointFriction(Protocol):
     """Friction of the joints at a pose."""
 
+    @property
+    def pin(self) -> float:
+        """Coefficient with which wheel pins rub."""
+        ...
+
+    @property
+    def hole(self) -> float:
+        """Coefficient with which shaft pins rub."""
+        ...
+
+    @property
+    def rolling(self) -> float:
+        """Moment between crank and disc by the load of a crank bearing, mm."""
+        ...
+
+    @property
+    def motion(self) -> int:
+        """+1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked."""
+        ...
+
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns: its friction goes with the loads alone and may be followed from none."""
+        ...
+
+    def scaled(self, strength: float) -> JointFriction:
+        """Return the friction with all coefficients times a factor."""
+        ...
+
+    def reversed(self) -> JointFriction:
+        """Return the friction of the same drive as it turns the other way."""
+        ...
+
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
     ) -> Rubbing:

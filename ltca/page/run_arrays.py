@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import KindPressures
 from ltca.drive.units.quantities import ARCSEC
 from ltca.equilibrium.balance import Equilibrium
@@ -74,7 +73,7 @@ def _of_torque(analysis: LoadedAnalysis, *, light: bool) -> dict[str, FloatArray
 def _at_light_torque(analysis: LoadedAnalysis) -> LoadedAnalysis:
     """The analysis as if its light torque were that of the run; without pressures where they would be dear or unknown."""
     light, model, known = analysis.light, analysis.model, analysis.pressures
-    grids = any(isinstance(disc, GridCompliance) for disc in model.discs)  # they would be solved anew, for minutes
+    grids = analysis.engine.options["contacts"] == "grids"  # they would be solved anew, for minutes
     if np.all(analysis.balanced_light) and not grids:
         return replace(analysis, full=light, pressures=model.pressures(light.response))
     pins, outer, inner, holes = (

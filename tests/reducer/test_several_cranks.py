@@ -69,7 +69,7 @@ KINDS = ["rigid", "cranks", "central crank yields", "holes", *SLOWLY]
 def test_every_kind_is_balanced_by_energies_alone(rv, name):
     drive = kind(rv, name)
     model = HalfSpace().prepare(drive).model
-    found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
     for position in range(ANGLES.size):
         assert find_imbalance(drive, model, found, position, torque=drive.load.torque) == []
 
@@ -104,7 +104,7 @@ def test_linear_bearings_share_resultant_and_moment(rv, cranks, monkeypatch):
     drive = kind(rv, "shaft held")
     drive = replace(drive, crank=replace(drive.crank, support=None, number=cranks))
     model = HalfSpace().prepare(drive).model
-    found = solve_at_output(model, drive, ANGLES, drive.load.torque)
+    found = solve_at_output(model, [drive], ANGLES, drive.load.torque)
     for number, part in enumerate(found.response.parts):
         on_disc = -np.einsum("bi,bij->bj", part.pin_load, part.flank.gradient)
         resultant, moment = on_disc[:, X] + 1j * on_disc[:, Y], on_disc[:, DISC_ROTATION]

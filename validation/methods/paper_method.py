@@ -12,6 +12,7 @@ may fail, above all where a body floats free of contact and the tangent is singu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -273,6 +274,8 @@ class HeldWheel:
     tables, model : Reducer
         Where the iteration starts, and what it balances.
     """
+
+    batches: ClassVar[bool] = False
 
     drive: Drive
     tables: Reducer

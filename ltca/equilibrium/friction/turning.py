@@ -117,6 +117,11 @@ class TurningFriction:
             motion=drive.motion_sign,
         )
 
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns."""
+        return True
+
     def scaled(self, strength: float) -> TurningFriction:
         """Return a part of this friction."""
         return replace(self, strength=strength)

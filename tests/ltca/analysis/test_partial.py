@@ -28,12 +28,12 @@ def failing(monkeypatch):
     real = engines.solve_at_output
 
     def fail(which):
-        def solve(model, drive, angle, torque, start=None):
-            light = np.max(torque) < 0.5 * drive.load.torque
+        def solve(model, drives, angle, torque, start=None):
+            light = np.max(torque) < 0.5 * drives[0].load.torque
             bad = np.isclose(angle, ANGLES[2]) | np.isclose(angle, ANGLES[5])
             if np.any(bad) and (which == "both" or light == (which == "light")):
                 raise ConvergenceError("no equilibrium at some crank angle", [1.0, 2.0])
-            return real(model, drive, angle, torque, start)
+            return real(model, drives, angle, torque, start)
 
         monkeypatch.setattr(engines, "solve_at_output", solve)
 
