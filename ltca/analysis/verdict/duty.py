@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from ltca.analysis.life.bearing_lives import at_entry
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import summarise
 from ltca.drive.members.judgement import Value
@@ -50,8 +51,6 @@ def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | D
     """Entries that are heavier or quicker than the load, solved at the same positions by the same engine."""
     if not analysis.drive.duty:
         return
-    from ltca.analysis.life.bearing_lives import at_entry
-
     drive, speed = analysis.drive, analysis.drive.load.speed
     for number, entry in enumerate(drive.duty):
         quicker = drive.friction is not None and (

@@ -10,6 +10,9 @@ import numpy as np
 from ltca.analysis.contact_arrays import PARTS, contact_arrays
 from ltca.analysis.extremes import RESOLVED
 from ltca.analysis.half_width_guard import HALF_WIDTH_BOUND
+from ltca.analysis.life.bearing_lives import bearing_lives
+from ltca.analysis.life.equivalent_load import covers_whole_turns
+from ltca.analysis.life.life_text import life_summary
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import case_arrays
 from ltca.analysis.summary import refined_value
@@ -177,8 +180,6 @@ def _of_pins(analysis: LoadedAnalysis) -> Iterator[Value]:
 
 
 def _bending_fatigue(analysis: LoadedAnalysis, stress: PinStress | None, pins: str) -> Value:
-    from ltca.analysis.life.equivalent_load import covers_whole_turns
-
     quantity = f"{pins}_pin_bending_amplitude"
     if stress is None:
         return Value(quantity=quantity, value=None, reason=f"{pins} pins are no beams (pin_{pins}.beam)")
@@ -224,10 +225,6 @@ def _of_walls(analysis: LoadedAnalysis) -> Iterator[Value]:
 
 def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
     """Shortest life and least static safety of the crank bearings, of positions that cover whole turns."""
-    from ltca.analysis.life.bearing_lives import bearing_lives
-    from ltca.analysis.life.equivalent_load import covers_whole_turns
-    from ltca.analysis.life.life_text import life_summary
-
     named = [name for name in LIVES if "modified" not in name or analysis.drive.lubricant is not None]
     if not covers_whole_turns(analysis.full.crank_angle):
         told = "positions cover no whole turns"
