@@ -52,6 +52,11 @@ class PreparedEngine(Protocol):
         """The compliance whose loads balance."""
         ...
 
+    @property
+    def batches(self) -> bool:
+        """Whether the model is balanced directly, so that several drives may be rows of one batch."""
+        ...
+
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         """Return balanced positions at an output torque, N·mm, from poses near by if given."""
         ...
@@ -89,30 +94,34 @@ class Engine(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OnTables:
+class _OnTables:
     """Equilibrium on a model whose loads come cheaply from anywhere; several drives may be balanced as one batch."""
+
+    batches: ClassVar[bool] = True
 
     drive: Drive
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         """Return balanced positions at an output torque, N·mm, from poses near by if given."""
-        return solve_at_output(self.model, self.drive, crank_angle, torque, start)
+        return solve_at_output(self.model, [self.drive], crank_angle, torque, start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _FromTables:
     """Equilibrium on a dearer model, started from the solution on tables."""
 
+    batches: ClassVar[bool] = False
+
     drive: Drive
     tables: Reducer
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        near = solve_at_output(self.tables, self.drive, crank_angle, torque, start)
+        near = solve_at_output(self.tables, [self.drive], crank_angle, torque, start)
         # Grids wider than the bodies are curved have no separation: refused before they are laid.
         check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
-        return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
+        return solve_at_output(self.model, [self.drive], crank_angle, torque, near.pose, Start.after(near.response))
 
 
 def _on_tables(drive: Drive, singles: Sequence[Drive], *, in_batch: bool = False) -> Reducer:
@@ -193,7 +202,7 @@ class HalfSpace:
             return _method("paper")(drive, tables, model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
-        return OnTables(drive=drive, model=tables)
+        return _OnTables(drive=drive, model=tables)
 
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the tables of a drive."""

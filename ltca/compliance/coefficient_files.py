@@ -97,7 +97,7 @@ def _forget(folder: str, process: int) -> None:
 
 def find_coefficients(
     drive: Drive,
-    files: Path | Sequence[Path] | None = None,
+    files: Sequence[Path] | None = None,
     plane: str = "strain",
     *,
     near_field: NearField = "half-space",
@@ -108,7 +108,7 @@ def find_coefficients(
     ----------
     drive : Drive
         The drive; its load and single-part errors do not matter.
-    files : Path or sequence of Path, optional
+    files : sequence of Path, optional
         Files of ``cyclo derive``, one of which must belong to the drive.
     plane : {"strain", "stress"}
         State of the body part when it has to be derived.
@@ -128,7 +128,7 @@ def find_coefficients(
     if near_field == "plane-strain":
         require_plane_strain(drive, "compliance fe")
     if files is not None:
-        return _load_first_that_fits([files] if isinstance(files, Path) else files, drive)[1]
+        return _load_first_that_fits(files, drive)[1]
     found = _kept(drive, plane)
     if found is None:
         _derive_missing({drive.name: drive}, plane)

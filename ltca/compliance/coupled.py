@@ -21,6 +21,7 @@ the roller and the inner contacts of the other rollers; the place of the roller 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +34,9 @@ from ltca.compliance.response import (
     ContactPressures,
     DiscResponse,
     KindPressures,
+    PairSlopes,
     Start,
     bearing_bend,
-    coupled_slopes,
     resultant,
     split_shifts,
 )
@@ -83,6 +84,8 @@ class CoupledCompliance:
     own : OwnParts
         What each contact's own body parts add to the diagonal of C.
     """
+
+    grids_can_check: ClassVar[bool] = False
 
     geometry: ContactGeometry
     coefficients: InfluenceCoefficients
@@ -156,7 +159,7 @@ class CoupledCompliance:
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, shifts: ComplexArray | None = None
     ) -> DiscResponse:
-        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.half_space`.
+        """Return the contact forces at the poses of a batch of positions; see `ltca.compliance.uncoupled`.
 
         Raises
         ------
@@ -394,5 +397,35 @@ class _Batch:
             shifts=bodies.shifts,
             slopes=None
             if bodies.shifts is None
-            else coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
+            else _coupled_slopes(root, inside, np.asarray(changed), self.chosen, kept),
         )
+
+
+def _coupled_slopes(
+    root: FloatArray, inside: FloatArray, changed: FloatArray, chosen: NDArray[np.intp], kept: NDArray[np.intp]
+) -> PairSlopes:
+    """Return how the loads follow approaches and pose where contacts feel each other: dF = r (1 + r C r)⁻¹ r dδ.
+
+    Parameters
+    ----------
+    root : array, shape (positions, chosen)
+        r, square root of the stiffness of each contact that may carry.
+    inside : array, shape (positions, chosen, chosen)
+        1 + r C r.
+    changed : array, shape (positions, chosen, coordinates)
+        (1 + r C r)⁻¹ r ∂δ/∂q.
+    chosen : array of int, shape (positions, chosen)
+        Which of all contacts they are.
+    kept : array of int
+        Numbers of wheel pins and shaft pins among all contacts, the last of which is the last of these.
+    """
+    positions, contacts, rows = (
+        root.shape[0],
+        max(int(kept[-1]), int(chosen.max())) + 1,
+        np.arange(root.shape[0])[:, None],
+    )
+    by_pose, by_approach = np.zeros((positions, contacts, changed.shape[2])), np.zeros((positions, contacts, contacts))
+    by_pose[rows, chosen] = root[..., None] * changed
+    between = root[..., None] * np.linalg.solve(inside, root[..., None] * np.eye(root.shape[1]))
+    by_approach[rows[..., None], chosen[:, :, None], chosen[:, None, :]] = between
+    return PairSlopes(by_approach=by_approach[:, kept[:, None], kept], by_pose=by_pose[:, kept])

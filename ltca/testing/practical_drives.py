@@ -409,7 +409,7 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
         for part in PARTS:
             torque = part * drive.load.torque * np.array([1.0, -1.0])
             try:
-                loaded = solve_at_output(model, drive, np.full(2, angle), torque)
+                loaded = solve_at_output(model, [drive], np.full(2, angle), torque)
             except ConvergenceError:
                 continue
             turned = abs(float(np.diff(loaded.pose[:, WHEEL_ANGLE])[0])) * scale

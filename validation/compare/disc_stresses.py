@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from fem.drive.disc_stress import DiscStress
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
-from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.wall_stress import wall_profiles, wall_stresses
 from ltca.contact.subsurface import line_contact_shear
 from validation.compare.comparison import Kind, worst
@@ -140,11 +139,8 @@ def answer_of_content(content: dict[str, Any]) -> DiscStressAnswer:
 def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
     """Return the stress of an analysis of one disc position by position; none where its model gives no stress in the disc."""
     model, full = analysis.model.discs[0], analysis.full
-    if (
-        len(analysis.model.discs) > 1
-        or not isinstance(model, CoupledCompliance)
-        or not model.coefficients.stress.available
-    ):
+    coefficients = model.coefficients
+    if len(analysis.model.discs) > 1 or coefficients is None or not coefficients.stress.available:
         return []
     rotation = full.pose[:, 2]
     profiles = wall_profiles(model, full.response, analysis.pressures, rotation, refinement=1)

@@ -12,6 +12,7 @@ may fail, above all where a body floats free of contact and the tangent is singu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -242,6 +243,8 @@ class HeldWheel:
     tables, model : Reducer
         For the starting point, and the model that is balanced.
     """
+
+    batches: ClassVar[bool] = False
 
     drive: Drive
     tables: Reducer

@@ -23,7 +23,7 @@ def check_seeds(first, count):
     for seed in range(first, first + count):
         drive, angle = pin_drive(seed)
         model = HalfSpace().prepare(drive).model
-        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+        balanced = solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
         assert find_imbalance(drive, model, balanced, torque=drive.load.torque) == [], seed
 
 
@@ -100,7 +100,7 @@ def answered():
         wheel = replace(joint.pin_wheel, seat=seat, beam=WheelPinBeam(span=30.0, ends="supported", diameter=3.0))
         drive = replace(joint, pin_wheel=wheel, pin_shaft=shaft)
         model = HalfSpace().prepare(drive).model
-        found[name] = drive, model, solve_at_output(model, drive, np.array([0.31]), drive.load.torque)
+        found[name] = drive, model, solve_at_output(model, [drive], np.array([0.31]), drive.load.torque)
     return found
 
 
