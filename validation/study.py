@@ -9,14 +9,9 @@ from typing import Literal
 
 import numpy as np
 
+from ltca.drive.engine_support import require
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-    require_plane_strain,
-    require_rigid_members,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
@@ -118,10 +113,7 @@ def plan_study(
         cases = list(dict.fromkeys([names[0], names[(len(names) - 1) // 2], names[-1]]))
     drives = file.select_warm(cases)
     for drive in drives.values():
-        require_plane_strain(drive, "validation by full finite elements")
-        require_rigid_members(drive, "validation by full finite elements")
-        require_frictionless(drive, "validation by full finite elements")
-        require_fixed_pins(drive, "validation by full finite elements")
+        require(drive, "full FE")
     if not crank_angles:
         count = QUICK_ANGLES if level == "quick" else FULL_ANGLES
         teeth = next(iter(drives.values())).disc.number_of_teeth

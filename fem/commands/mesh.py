@@ -63,12 +63,10 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
     from fem.reducer.solution import expect_shares
-    from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
+    from ltca.drive.engine_support import require
     from ltca.drive.single_discs import single_discs
 
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require(drive, "FE mesh")
     print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
     singles = single_discs(drive)

@@ -15,14 +15,9 @@ from numpy.typing import NDArray
 
 from fem.contact.hertz import hertz_half_width
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.engine_support import require
+from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import (
-    hole_modulus,
-    require_fixed_pins,
-    require_frictionless,
-    require_rigid_members,
-    shaft_pins_yield,
-)
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
@@ -277,17 +272,6 @@ def _minimise(rigid: _RigidDrive, stiffness: FloatArray, moment: float) -> tuple
     )
 
 
-def _refuse_wheel_axis(drive: Drive) -> None:
-    offset = drive.pin_wheel.axis_offset
-    if offset.place != 0.0:
-        raise DriveError(
-            [
-                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
-                "the wheel about the axis of the pin shaft (the LTCA takes it)"
-            ]
-        )
-
-
 @names_unit_mistakes
 def expect_contacts(
     drive: Drive, crank_angle: float, *, torque: float | None = None, wheel_moment: float | None = None
@@ -315,14 +299,10 @@ def expect_contacts(
     ConvergenceError
         When nothing can carry the load.
     DriveError
-        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
-        several discs; where cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
+        For several discs, and for what full finite elements refuse at any length (`ltca.drive.engine_support`).
     """
     profile, placement = FlankProfile.of_drive(drive), Placement.of_drive(drive)
-    _refuse_wheel_axis(drive)
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require(drive, "FE mesh")
     rigid = _RigidDrive(profile=profile, placement=placement, crank_angle=float(crank_angle))
     materials, thickness = drive.materials, drive.disc.thickness
     roller_length = drive.crank_bearing.roller_length

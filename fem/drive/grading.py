@@ -18,8 +18,8 @@ from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
 from fem.drive.model import DriveModel
 from fem.drive.pose import PoseSolution
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import hole_modulus, shaft_pins_yield
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 

@@ -28,13 +28,8 @@ from fem.errors import MeshError
 from fem.mesh.element_size import DEFAULT_GROWTH
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-    require_plane_strain,
-    require_rigid_members,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
@@ -270,15 +265,11 @@ def solve_disc(
     ConvergenceError
         When nothing can carry the load or an iteration does not settle.
     DriveError
-        When the drive is not the same all along its thickness: shorter rollers, crown or relief; for several discs; where
-        cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
+        For several discs, and for what full finite elements refuse (`ltca.drive.engine_support`).
     MemoryLimitError
         When the meshes would not fit into memory.
     """
-    require_plane_strain(drive, "full finite elements")
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require(drive, "full FE")
     say, watch = progress or _silent, _Stopwatch()
     shapes = DriveShapes.of_drive(drive)
     guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)

@@ -22,8 +22,8 @@ from fem.drive.solution import solve_disc, solve_moment
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_rigid_members
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError
@@ -223,14 +223,11 @@ def solve_reducer(
     ConvergenceError
         When nothing can carry the load, an iteration does not settle, or a disc carries nothing.
     DriveError
-        When the drive is not the same all along its thickness; where cranks or the wheel's axis yield, or pins are loose,
-        sleeved or beams.
+        For what full finite elements refuse (`ltca.drive.engine_support`).
     MemoryLimitError
         When the meshes would not fit into memory.
     """
-    require_rigid_members(drive, "full finite elements")
-    require_frictionless(drive, "full finite elements")
-    require_fixed_pins(drive, "full finite elements")
+    require(drive, "full FE")
     singles = single_discs(drive)
     task = _Task(
         drive=drive,

@@ -11,7 +11,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from ltca.drive.units.quantities import COUNT, quantity
+from ltca.drive.units.quantities import COUNT, grows, quantity
 
 SignedLength = Annotated[float, quantity("mm")]
 PositiveLength = Annotated[float, quantity("mm", gt=0.0)]
@@ -181,12 +181,12 @@ class OneDisc:
         Places of its bores, one number a bore.
     """
 
-    runout: Runout | None = None
-    profile_errors: ProfileErrors | None = None
-    hole_errors: PlacementErrors | None = None
-    clearance: DiscClearance | None = None
-    roller_errors: RollerErrors | None = None
-    bore_errors: BoreErrors | None = None
+    runout: Annotated[Runout | None, grows("disc")] = None
+    profile_errors: Annotated[ProfileErrors | None, grows("disc")] = None
+    hole_errors: Annotated[PlacementErrors | None, grows("disc")] = None
+    clearance: Annotated[DiscClearance | None, grows("disc")] = None
+    roller_errors: Annotated[RollerErrors | None, grows("roller")] = None
+    bore_errors: Annotated[BoreErrors | None, grows("disc", radial=grows("disc", upon="crank.circle_radius"))] = None
 
     @property
     def of_bores_alone(self) -> bool:
@@ -212,5 +212,5 @@ class OneEccentric:
 
     disc: Number | None = None
     crank: Number | None = None
-    eccentricity_error: SignedLength | None = None
+    eccentricity_error: Annotated[SignedLength | None, grows("eccentric", upon="crank.eccentricity")] = None
     phase_error: Angle = 0.0

@@ -9,39 +9,17 @@ disc after disc: ``crank.of.N`` is that of disc N // cranks on crank N % cranks,
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from functools import cache, lru_cache
-from types import NoneType, UnionType
-from typing import Annotated, Any, Union, cast, get_args, get_origin, get_type_hints
+from typing import Any
 
-from pydantic.functional_validators import BeforeValidator
-
+from ltca.drive.declaration import ANY as ANY, INDICES, Field, declared_fields
 from ltca.drive.materials import MAY_BE_UNKNOWN, PARTS
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
-from ltca.drive.units.quantities import QuantityCheck
 from ltca.errors import DriveError, nearest
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FieldKind:
-    """What the definition says about one field.
-
-    Attributes
-    ----------
-    unit : str
-        Unit of a quantity, ``""`` for counts and names, ``"dimensionless"`` for ratios.
-    is_array : bool
-        Whether it holds one number for each pin, hole, roller, order or point.
-    """
-
-    unit: str
-    is_array: bool
-
-
-ANY = "N"
-"""Stands for the number of a disc in the paths of `field_kinds`."""
 OWN = {
     "disc.runout": "disc.of.N.runout",
     "disc.profile_errors": "disc.of.N.profile_errors",
@@ -51,33 +29,29 @@ OWN = {
     "crank.eccentricity_error": "crank.of.N.eccentricity_error",
 }
 """What each disc may have of its own, in the place of what all have."""
-_WHOSE = ("crank.of.N.disc", "crank.of.N.crank")
-"""They say whose an entry is, and are no fields of it."""
 _NUMBERED = re.compile(r"^((?:disc|crank)\.of|duty)\.([0-9]{1,6})\.")
 
 
 @cache
-def field_kinds() -> dict[str, FieldKind]:
+def field_kinds() -> dict[str, Field]:
     """Return every field of a drive by its dotted path, those of one disc with ``N`` for its number.
 
     Examples
     --------
-    >>> field_kinds()["disc.thickness"]
-    FieldKind(unit='mm', is_array=False)
-    >>> field_kinds()["crank.of.N.phase_error"]
-    FieldKind(unit='rad', is_array=False)
+    >>> field_kinds()["disc.thickness"].unit, field_kinds()["crank.of.N.phase_error"].unit
+    ('mm', 'rad')
     """
-    return {path: kind for path, kind in _kinds(Drive, "") if path not in _WHOSE}
+    return {path: field for path, field in declared_fields().items() if path not in INDICES}
 
 
 @lru_cache(maxsize=4096)
-def field_kind(path: str) -> FieldKind | None:
-    """Return what is known of a field, also of one of a numbered disc; None where there is none.
+def field_kind(path: str) -> Field | None:
+    """Return the declaration of a field, also of one of a numbered disc; None where there is none.
 
     Examples
     --------
-    >>> field_kind("disc.of.0.runout.amount")
-    FieldKind(unit='mm', is_array=False)
+    >>> field_kind("disc.of.0.runout.amount").path
+    'disc.of.N.runout.amount'
     """
     if f".{ANY}." in path:
         return None
@@ -179,32 +153,6 @@ def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = No
     if written is not None and written.group(2).isdigit():
         meant, told = meant.replace(f".{ANY}.", f".{written.group(2)}."), ""
     return "is not a field of the drive definition" + (f"; did you mean `{meant}`?{told[1:]}" if meant else "")
-
-
-def _kinds(owner: Any, prefix: str) -> Iterator[tuple[str, FieldKind]]:
-    compared = {item.name for item in fields(owner) if item.compare}
-    for name, hint in get_type_hints(owner, include_extras=True).items():
-        path = f"{prefix}{name}"
-        if name not in compared:  # the name of a case
-            continue
-        if get_origin(hint) in (Union, UnionType):  # what may be left out
-            (hint,) = (part for part in get_args(hint) if part is not NoneType)
-        if is_dataclass(hint):
-            yield from _kinds(cast(type, hint), f"{path}.")
-            continue
-        is_array = get_origin(hint) is tuple
-        if is_array and is_dataclass(get_args(hint)[0]):
-            yield from _kinds(cast(type, get_args(hint)[0]), f"{path}.{ANY}.")
-            continue
-        yield path, FieldKind(unit=_unit(get_args(hint)[0] if is_array else hint), is_array=is_array)
-
-
-def _unit(hint: Any) -> str:
-    if get_origin(hint) is Annotated:
-        for extra in get_args(hint)[1:]:
-            if isinstance(extra, BeforeValidator) and isinstance(extra.func, QuantityCheck):
-                return extra.func.unit
-    return ""
 
 
 def element_count(drive: Drive, path: str) -> int | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from ltca.drive.units.table import label
+from ltca.drive.fields import field_kind, field_kinds
 from ltca.errors import did_you_mean, nearest, printable, shortened
 
 
@@ -96,10 +96,8 @@ def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[st
 
 
 def _unit_of(path: str) -> str:
-    from ltca.drive.fields import field_kind
-
     kind = field_kind(path)
-    return f" in {label(kind.unit)}" if kind is not None and kind.unit else ""
+    return f" in {kind.label}" if kind is not None and kind.unit else ""
 
 
 @cache
@@ -111,8 +109,6 @@ def fields_of(table: str) -> tuple[str, ...]:
     >>> fields_of("clearance")
     ('bearing', 'pin_hole')
     """
-    from ltca.drive.fields import field_kinds
-
     table = re.sub(r"(\.of|^duty)\.[0-9]+\b", r"\1.N", table)
     head = f"{table}." if table else ""
     return tuple(dict.fromkeys(path[len(head) :].partition(".")[0] for path in field_kinds() if path.startswith(head)))

@@ -46,7 +46,7 @@ from ltca.drive.members.pins import (
     WheelPinSeat as WheelPinSeat,
 )
 from ltca.drive.names import Name
-from ltca.drive.units.quantities import COUNT
+from ltca.drive.units.quantities import COUNT, grows
 from ltca.errors import DriveError
 
 SAME_PART = 1e-9
@@ -84,15 +84,15 @@ class Disc:
     """
 
     number_of_teeth: Annotated[int, Field(ge=3, le=1000), COUNT]
-    thickness: PositiveLength
+    thickness: Annotated[PositiveLength, grows("disc")]
     number_of_discs: Annotated[int, Field(ge=1, le=10), COUNT] = 1
     phases: tuple[Angle, ...] = ()
-    planes: tuple[SignedLength, ...] = ()
-    equidistant_offset: SignedLength = 0.0
-    shifting_offset: SignedLength = 0.0
-    hole_errors: PlacementErrors = field(default_factory=PlacementErrors)
-    profile_errors: ProfileErrors = field(default_factory=ProfileErrors)
-    runout: Runout = field(default_factory=Runout)
+    planes: Annotated[tuple[SignedLength, ...], grows("planes")] = ()
+    equidistant_offset: Annotated[SignedLength, grows("disc", upon="pin_wheel.pin_radius")] = 0.0
+    shifting_offset: Annotated[SignedLength, grows("disc", upon="pin_wheel.pin_circle_radius")] = 0.0
+    hole_errors: Annotated[PlacementErrors, grows("disc")] = field(default_factory=PlacementErrors)
+    profile_errors: Annotated[ProfileErrors, grows("disc")] = field(default_factory=ProfileErrors)
+    runout: Annotated[Runout, grows("disc")] = field(default_factory=Runout)
     of: tuple[OneDisc, ...] = ()
 
     @property
@@ -177,7 +177,7 @@ class Drive:
     pin_shaft: PinShaft | None = None
     load: Load
     installation: Installation = field(default_factory=Installation)
-    clearance: Clearance = field(default_factory=Clearance)
+    clearance: Annotated[Clearance, grows("disc")] = field(default_factory=Clearance)
     materials: Materials = field(default_factory=Materials)
     friction: Friction | None = None
     duty: tuple[Duty, ...] = ()
@@ -311,6 +311,12 @@ class Drive:
     def body_materials(self) -> Materials:
         """Materials of the plane bodies whose coefficients are derived: as `wheel_pin` that of what the flank touches."""
         return replace(self.materials, wheel_pin=self.flank_pin)
+
+    @property
+    def pins_are_fixed(self) -> bool:
+        """Whether no pin lies loose, carries a sleeve or bends."""
+        parts = (self.pin_wheel, self.pin_shaft)
+        return all(part is None or (part.seat.kind == "fixed" and part.beam is None) for part in parts)
 
     @property
     def hole_pin(self) -> Material:

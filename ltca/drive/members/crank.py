@@ -20,7 +20,7 @@ from ltca.drive.deviations import (
     SignedLength,
 )
 from ltca.drive.materials import LengthProfile
-from ltca.drive.units.quantities import COUNT, quantity
+from ltca.drive.units.quantities import COUNT, grows, quantity
 
 Stiffness = Annotated[float, quantity("N/mm", gt=0.0)]
 
@@ -68,13 +68,13 @@ class Crank:
         What differs per eccentric: one entry a disc of a central crank; entries that carry disc and crank of several.
     """
 
-    eccentricity: PositiveLength
+    eccentricity: Annotated[PositiveLength, grows("disc")]  # that of the flank
     number: Annotated[int, Field(ge=1, le=12), COUNT] = 1
-    circle_radius: PositiveLength | None = None
+    circle_radius: Annotated[PositiveLength | None, grows("carrier")] = None
     angle: Angle = 0.0
-    support: CrankSupport | None = None
-    eccentricity_error: SignedLength = 0.0
-    axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    support: Annotated[CrankSupport | None, grows("eccentric")] = None
+    eccentricity_error: Annotated[SignedLength, grows("eccentric", upon="crank.eccentricity")] = 0.0
+    axis_offset: Annotated[AxisOffset, grows("carrier")] = field(default_factory=AxisOffset)
     of: tuple[OneEccentric, ...] = ()
 
     @property
@@ -121,10 +121,10 @@ class CrankBearing:
         Diameter and pocket errors of the rollers.
     """
 
-    inner_race_radius: PositiveLength
-    outer_race_radius: PositiveLength
+    inner_race_radius: Annotated[PositiveLength, grows("race")]
+    outer_race_radius: Annotated[PositiveLength, grows("disc")]
     number_of_rollers: Annotated[int, Field(ge=3, le=500), COUNT]
-    roller_radius: PositiveLength
-    roller_length: PositiveLength
-    roller_profile: LengthProfile = field(default_factory=LengthProfile)
-    roller_errors: RollerErrors = field(default_factory=RollerErrors)
+    roller_radius: Annotated[PositiveLength, grows("roller")]
+    roller_length: Annotated[PositiveLength, grows("roller")]
+    roller_profile: Annotated[LengthProfile, grows("roller")] = field(default_factory=LengthProfile)
+    roller_errors: Annotated[RollerErrors, grows("roller")] = field(default_factory=RollerErrors)

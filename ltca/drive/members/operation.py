@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic.dataclasses import dataclass
 
 from ltca.drive.deviations import STRICT, NonNegativeLength
-from ltca.drive.units.quantities import quantity
+from ltca.drive.units.quantities import grows, quantity
 
 REFERENCE_TEMPERATURE = 20.0
 """At which lengths are given, °C (ISO 1)."""
@@ -118,7 +118,7 @@ class Friction:
     hole: Coefficient = 0.0
     roller: Coefficient = 0.0
     support_bearing: Coefficient = 0.0
-    support_bearing_radius: NonNegativeLength = 0.0
+    support_bearing_radius: Annotated[NonNegativeLength, grows("eccentric")] = 0.0
     no_load_torque: Annotated[float, quantity("N*mm", ge=0.0)] = 0.0
 
 

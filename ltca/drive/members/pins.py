@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass
 from ltca.drive.deviations import STRICT, AxisOffset, PlacementErrors, PositiveLength
 from ltca.drive.materials import LengthProfile
 from ltca.drive.members.crank import Stiffness
-from ltca.drive.units.quantities import COUNT
+from ltca.drive.units.quantities import COUNT, grows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -31,9 +31,9 @@ class WheelPinSeat:
     """
 
     kind: Literal["fixed", "slot", "sleeve"] = "fixed"
-    radius: PositiveLength | None = None
-    pin_radius: PositiveLength | None = None
-    bore_radius: PositiveLength | None = None
+    radius: Annotated[PositiveLength | None, grows("wheel")] = None
+    pin_radius: Annotated[PositiveLength | None, grows("wheel_pin")] = None
+    bore_radius: Annotated[PositiveLength | None, grows("wheel_sleeve")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -51,8 +51,8 @@ class ShaftPinSeat:
     """
 
     kind: Literal["fixed", "sleeve"] = "fixed"
-    pin_radius: PositiveLength | None = None
-    bore_radius: PositiveLength | None = None
+    pin_radius: Annotated[PositiveLength | None, grows("shaft_pin")] = None
+    bore_radius: Annotated[PositiveLength | None, grows("shaft_sleeve")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -69,9 +69,9 @@ class WheelPinBeam:
         Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
-    span: PositiveLength
+    span: Annotated[PositiveLength, grows("wheel")]
     ends: Literal["supported", "clamped"]
-    diameter: PositiveLength | None = None
+    diameter: Annotated[PositiveLength | None, grows("wheel_pin")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -88,9 +88,9 @@ class ShaftPinBeam:
         Diameter of the beam, mm; that of the seat's pin when left out.
     """
 
-    span: PositiveLength
+    span: Annotated[PositiveLength, grows("carrier")]
     tip: Literal["free", "tied-clamped", "tied-pinned"]
-    diameter: PositiveLength | None = None
+    diameter: Annotated[PositiveLength | None, grows("shaft_pin")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
@@ -121,11 +121,13 @@ class PinWheel:
     """
 
     number_of_pins: Annotated[int, Field(ge=4, le=1000), COUNT]
-    pin_circle_radius: PositiveLength
-    pin_radius: PositiveLength
-    pin_profile: LengthProfile = field(default_factory=LengthProfile)
-    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
-    axis_offset: AxisOffset = field(default_factory=AxisOffset)
+    pin_circle_radius: Annotated[PositiveLength, grows("wheel")]
+    pin_radius: Annotated[PositiveLength, grows("wheel_sleeve")]
+    pin_profile: Annotated[LengthProfile, grows("wheel_sleeve")] = field(default_factory=LengthProfile)
+    pin_errors: Annotated[PlacementErrors, grows("wheel", diameter=grows("wheel_sleeve"))] = field(
+        default_factory=PlacementErrors
+    )
+    axis_offset: Annotated[AxisOffset, grows("wheel")] = field(default_factory=AxisOffset)
     support_stiffness: Stiffness | None = None
     seat: WheelPinSeat = field(default_factory=WheelPinSeat)
     beam: WheelPinBeam | None = None
@@ -172,12 +174,19 @@ class PinShaft:
     """
 
     number_of_pins: Annotated[int, Field(ge=3, le=200), COUNT]
-    pin_circle_radius: PositiveLength
-    pin_radius: PositiveLength
-    hole_radius: PositiveLength
+    pin_circle_radius: Annotated[PositiveLength, grows("disc")]  # that of the holes
+    pin_radius: Annotated[PositiveLength, grows("shaft_sleeve")]
+    hole_radius: Annotated[PositiveLength, grows("disc")]
     stiffness: Stiffness | None = None
     elastic_contact: StrictBool = True
-    pin_errors: PlacementErrors = field(default_factory=PlacementErrors)
+    pin_errors: Annotated[
+        PlacementErrors,
+        grows(
+            "carrier",
+            radial=grows("carrier", upon="pin_shaft.pin_circle_radius"),
+            diameter=grows("shaft_sleeve"),
+        ),
+    ] = field(default_factory=PlacementErrors)
     seat: ShaftPinSeat = field(default_factory=ShaftPinSeat)
     beam: ShaftPinBeam | None = None
 

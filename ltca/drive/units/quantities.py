@@ -112,6 +112,42 @@ class QuantityCheck:
         raise PydanticCustomError("quantity", "must be {text}", {"text": text})
 
 
+@dataclass(frozen=True, slots=True)
+class Grows:
+    """Thermal growth of a length, or of all lengths in a table, as part of their type (`grows`).
+
+    Attributes
+    ----------
+    part : str
+        Name of the factor in `ltca.drive.members.temperatures.Growth`.
+    upon : str
+        Path of the nominal length that the field is a deviation from: what grows by the factor is their sum, and the
+        nominal length itself may grow by another one. Empty where the field grows by itself.
+    but : tuple of (str, Grows)
+        Fields of the table that grow in another way.
+    """
+
+    part: str
+    upon: str = ""
+    but: tuple[tuple[str, Grows], ...] = ()
+
+    def of(self, name: str) -> Grows:
+        """Return the growth of a field of the table."""
+        return dict(self.but).get(name, Grows(self.part))
+
+
+def grows(part: str, *, upon: str = "", **but: Grows) -> Grows:
+    """Declare how a length, or every length in a table, grows with temperature.
+
+    Examples
+    --------
+    >>> growth = grows("wheel", diameter=grows("wheel_sleeve"))
+    >>> growth.of("radial").part, growth.of("diameter").part
+    ('wheel', 'wheel_sleeve')
+    """
+    return Grows(part, upon, tuple(but.items()))
+
+
 MOST_COUNTED = 10**15
 """Far beyond any count; what validates them takes 64 bits."""
 

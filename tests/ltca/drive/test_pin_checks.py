@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from ltca.commands.program import main
+from ltca.drive.engine_support import require
 from ltca.drive.materials import MAY_BE_UNKNOWN
-from ltca.drive.plane_strain import require_fixed_pins
 from ltca.drive.tolerances import Factors, parse_tolerances
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -204,10 +204,10 @@ def test_every_number_can_scatter(sleeved):
     assert problem.startswith("tolerances.pin_wheel.seat.kind: is not a field of the drive that can scatter")
 
 
-def test_what_knows_fixed_pins_alone_names_the_fields(sleeved):
-    require_fixed_pins(load_drive("paper").cases["CS-1"], "a test")
+def test_a_model_of_fixed_pins_names_the_fields(sleeved):
+    require(load_drive("paper").cases["CS-1"], "direct")
     with pytest.raises(DriveError) as caught:
-        require_fixed_pins(with_fields(sleeved, BEAMS), "a test")
+        require(with_fields(sleeved, BEAMS), "direct")
     told = caught.value.problems
     starts = ("pin_wheel.seat (", "pin_wheel.beam (", "pin_shaft.seat (", "pin_shaft.beam (")
     assert len(told) == 4

@@ -6,23 +6,22 @@ from dataclasses import dataclass
 
 import pytest
 
-from ltca.drive.fields import field_kinds
-from ltca.drive.reference.engine_support import ENGINES, REFUSED
-from ltca.drive.reference.field_descriptions import (
+from ltca.drive.declaration import (
+    INDICES,
     REQUIRED,
     attribute_sentences,
     by_table,
-    describe_fields,
-    describe_tables,
+    declared_fields,
+    declared_tables,
     find_fields,
     gathered,
 )
-from ltca.drive.units.table import label
+from ltca.drive.fields import field_kinds
+from ltca.drive.members.temperatures import Growth
 from ltca.errors import DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
-from ltca.testing.field_changes import EXCEPTIONS
 
-DESCRIBED = {field.path: field for field in describe_fields()}
+DECLARED = declared_fields()
 
 
 def is_a_sentence(told):
@@ -31,8 +30,8 @@ def is_a_sentence(told):
 
 def test_every_field_and_table_has_a_sentence():
     """A new field without a word in its docstring is red here, by its path."""
-    assert {path: field.meaning for path, field in DESCRIBED.items() if not is_a_sentence(field.meaning)} == {}
-    assert {path: table.meaning for path, table in describe_tables().items() if not is_a_sentence(table.meaning)} == {}
+    assert {path: field.meaning for path, field in DECLARED.items() if not is_a_sentence(field.meaning)} == {}
+    assert {path: table.meaning for path, table in declared_tables().items() if not is_a_sentence(table.meaning)} == {}
     assert [is_a_sentence(told) for told in ("", "Word.", "Some words", "Some words, mm.")] == [False] * 3 + [True]
 
 
@@ -59,12 +58,18 @@ def test_a_field_without_a_word_is_seen():
     assert attribute_sentences(Part) == {"told": "Something, mm."}
 
 
-def test_the_fields_are_those_of_the_definition():
-    assert set(field_kinds()) == set(DESCRIBED) - {"crank.of.N.disc", "crank.of.N.crank"}
-    for path, kind in field_kinds().items():
-        assert DESCRIBED[path].is_array == kind.is_array
-        assert DESCRIBED[path].unit == label(kind.unit)
-    assert all(table == "" or table in describe_tables() for table in by_table(describe_fields()))
+def test_paths_are_those_of_the_declaration():
+    assert set(field_kinds()) == set(DECLARED) - set(INDICES)
+    assert all(table == "" or table in declared_tables() for table in by_table(tuple(DECLARED.values())))
+
+
+def test_every_length_grows():
+    """A new length says how it grows with temperature; a depth of hardness is judged by alone."""
+    lengths = {path for path, field in DECLARED.items() if field.unit == "mm" and field.grows is None}
+    assert {path for path in lengths if not path.endswith(".hardness_depth")} == set()
+    for path, field in DECLARED.items():
+        assert field.grows is None or isinstance(getattr(Growth, field.grows.part), object), path
+        assert field.grows is None or field.grows.upon == "" or DECLARED[field.grows.upon].unit == "mm", path
 
 
 @pytest.mark.parametrize(
@@ -77,7 +82,7 @@ def test_the_fields_are_those_of_the_definition():
 )
 def test_bounds_are_those_of_the_reader(path, word):
     """What is told is what the message of a refused value says."""
-    assert word in DESCRIBED[path].bounds
+    assert word in DECLARED[path].bounds
     name = path.partition(".")[2]
     text = shipped_drive("paper").splitlines()
     bad = {"thickness": "-1.0", "number_of_pins": "1", "direction": '"up"'}[name]
@@ -89,7 +94,7 @@ def test_bounds_are_those_of_the_reader(path, word):
 
 def test_required_fields_are_required():
     """A file of the required fields alone is read, and one without any of them is not."""
-    needed = [f for f in describe_fields() if f.default == REQUIRED and not _of_optional(f.table)]
+    needed = [f for f in DECLARED.values() if f.default == REQUIRED and not _of_optional(f.table)]
     text = shipped_drive("paper")
     for field in needed:
         lines = [line for line in text.splitlines() if not line.startswith(f"{field.name} =")]
@@ -100,7 +105,7 @@ def test_required_fields_are_required():
 def _of_optional(table):
     parts = table.split(".")
     above = [".".join(parts[: end + 1]) for end in range(len(parts))]
-    return any(describe_tables()[path].optional for path in above if path in describe_tables())
+    return any(declared_tables()[path].optional for path in above if path in declared_tables())
 
 
 def test_names_find_fields():
@@ -109,12 +114,4 @@ def test_names_find_fields():
     assert {f.path for f in find_fields("span")} == {"pin_wheel.beam.span", "pin_shaft.beam.span"}
     assert [f.path for f in find_fields("disc.phases.1")] == ["disc.phases"]
     assert find_fields("nothing") == ()
-    assert len(gathered(describe_fields())) == len(DESCRIBED) - 7 * 9  # nine fields of seven more parts, told once
-
-
-def test_engines_and_their_refusals_are_of_this_definition():
-    """The walk of the contract holds the refusals themselves; here that they name what there is."""
-    assert set(ENGINES) == set(REFUSED) == set(EXCEPTIONS) - {"curves", "studies"}
-    for fields in REFUSED.values():
-        for path in fields:
-            assert path in DESCRIBED or path in describe_tables(), path
+    assert len(gathered()) == len(DECLARED) - 7 * 9  # nine fields of seven more parts, told once
