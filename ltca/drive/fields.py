@@ -14,8 +14,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Any
 
-from ltca.drive.declaration import ANY as ANY, INDICES, Field, declared_fields
-from ltca.drive.materials import MAY_BE_UNKNOWN, PARTS
+from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declared_fields
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError, nearest
@@ -278,22 +277,6 @@ def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
     return single.crank.eccentricity_error if value is None else value
 
 
-MAY_BE_LEFT_OUT = (
-    *(f"materials.{part}.{name}" for part in PARTS for name in MAY_BE_UNKNOWN),
-    "crank.circle_radius",
-    "installation.first_stage_ratio",
-    "load.speed",
-    "pin_shaft.seat.bore_radius",
-    "pin_shaft.seat.pin_radius",
-    "pin_shaft.stiffness",
-    "pin_wheel.seat.bore_radius",
-    "pin_wheel.seat.pin_radius",
-    "pin_wheel.seat.radius",
-    "pin_wheel.support_stiffness",
-)
-"""Single fields that a drive may have not; a study may give them all the same."""
-
-
 _FOLLOWS = {
     "disc.phases": "disc.disc_phases",
     "disc.planes": "disc.disc_planes",
@@ -301,6 +284,12 @@ _FOLLOWS = {
     "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",
 }
 """What follows from other fields where it is left out, and where it is read."""
+
+
+def may_be_left_out(path: str) -> bool:
+    """Tell whether a drive may be without a number in a field, such as a radius or a strength; a study may give one to all."""
+    field = field_kinds().get(path)
+    return field is not None and field.default == LEFT_OUT and not field.is_array and path not in _FOLLOWS
 
 
 def is_element(name: str) -> bool:
@@ -338,7 +327,7 @@ def read_field(drive: Drive, path: str) -> Any:
     value: Any = drive if drive.friction is not None else replace(drive, friction=Friction())
     for name in (_FOLLOWS.get(path) or path).split("."):
         value = getattr(value, name)
-    if value is None and path in MAY_BE_LEFT_OUT:
+    if value is None:
         raise DriveError([f"{path}: is left out in this drive"])
     if count is not None and not value:
         return (0.0,) * count

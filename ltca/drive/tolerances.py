@@ -17,11 +17,11 @@ from pydantic.dataclasses import dataclass
 
 from ltca.arrays import FloatArray
 from ltca.drive.fields import (
-    MAY_BE_LEFT_OUT,
     absence,
     element_count,
     field_kind,
     field_kinds,
+    may_be_left_out,
     not_a_field,
     own_paths,
     read_field,
@@ -163,7 +163,7 @@ def nothing_scatters(drive: Drive, path: str) -> str | None:
     if (problem := absence(drive, path)) is not None:
         return problem
     try:
-        if path in MAY_BE_LEFT_OUT:
+        if may_be_left_out(path):
             read_field(drive, path)
     except DriveError as error:
         return error.problems[0].partition(": ")[2]

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any
 
 from pydantic import ValidationError
 
+from ltca.drive.declaration import REQUIRED
 from ltca.drive.deviations import BoreErrors, DiscClearance, OneDisc, OneEccentric
-from ltca.drive.fields import field_kind, is_element, missing_part, no_entry, not_a_field, numbered, read_field
+from ltca.drive.fields import (
+    field_kind,
+    field_kinds,
+    is_element,
+    missing_part,
+    no_entry,
+    not_a_field,
+    numbered,
+    read_field,
+)
 from ltca.drive.materials import PARTS
 from ltca.drive.members.named_materials import named_material, numbers_of
 from ltca.drive.mistakes import describe_mistakes
@@ -59,7 +70,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
         else:
             whole[path] = value
             missing = missing_part(drive, path)
-            if missing is not None and not all(f"{missing}.{name}" in values for name in _NEEDED[missing]):
+            if missing is not None and not all(name in values for name in _required(missing)):
                 raise DriveError([f"{path}: there is no {missing} in this drive"])
     own: dict[tuple[str, int], dict[str, Any]] = {}
     for path, value in {**whole, **{name: tuple(row) for name, row in arrays.items()}}.items():
@@ -98,16 +109,10 @@ def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
     return found | {path: value for path, value in values.items() if path not in named}
 
 
-_NEEDED = {
-    "pin_shaft": ("number_of_pins", "pin_circle_radius", "pin_radius", "hole_radius"),
-    "pin_shaft.beam": ("span", "tip"),
-    "pin_wheel.beam": ("span", "ends"),
-    "crank.support": ("diameter", "positions", "stiffness"),
-    "friction": (),
-    "lubricant": ("viscosity", "contamination"),
-    "temperature": (),
-}
-"""What a part that may be left out is made of."""
+@cache
+def _required(table: str) -> tuple[str, ...]:
+    """Paths of the fields without which a table that may be left out cannot be made."""
+    return tuple(path for path, field in field_kinds().items() if field.table == table and field.default == REQUIRED)
 
 
 def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], problems: list[str]) -> Drive:

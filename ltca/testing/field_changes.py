@@ -38,14 +38,6 @@ _CLOSE = {
     "pin_shaft.seat.pin_radius": 0.999,
     "pin_shaft.seat.bore_radius": 1.001,
 }
-_COUNTS = {
-    "pin_wheel.number_of_pins": 1,
-    "disc.number_of_teeth": 1,
-    "disc.number_of_discs": 1,
-    "crank.number": 1,
-    "crank_bearing.number_of_rollers": -1,
-    "pin_shaft.number_of_pins": 1,
-}
 _SUPPORT = {
     "crank.support.diameter": 8.0,
     "crank.support.positions": (-10.0, 12.0),
@@ -81,15 +73,6 @@ _LEFT_OUT |= {
 }
 """What may be left out, and a value that a person could give."""
 _FROM_ZERO = {"mm": 1e-3, "rad": 0.3, "dimensionless": 0.5}
-_OTHER_WORD = {
-    "load.direction": {"ccw": "cw", "cw": "ccw"},
-    "load.driven_by": {"input": "output", "output": "input"},
-    "installation.held": {"pin-shaft": "pin-wheel", "pin-wheel": "pin-shaft"},
-    "pin_wheel.beam.ends": {"supported": "clamped", "clamped": "supported"},
-    "pin_shaft.beam.tip": {"free": "tied-clamped", "tied-clamped": "tied-pinned", "tied-pinned": "free"},
-    "pin_shaft.seat.kind": {"fixed": "sleeve", "sleeve": "fixed"},
-    "pin_wheel.seat.kind": {"fixed": "slot", "slot": "sleeve", "sleeve": "fixed"},
-}
 _RELIEF = {"end_relief_length": 0.8, "end_relief_depth": 0.002}
 ROUND_OFF = 1e-6
 """An answer moves when a number of it changes by more than this part: a thousand times the tolerance of equilibrium."""
@@ -161,12 +144,12 @@ def sensible_change(drive: Drive, path: str) -> Any:
         return value  # of one disc there is no other, and none has an effect yet
     if path == "name":
         return f"{value} too"
-    if path in _OTHER_WORD:
-        return _OTHER_WORD[path][value]
+    if kind.choices:
+        return kind.choices[(kind.choices.index(value) + 1) % len(kind.choices)]
     if isinstance(value, bool):
         return not value
-    if path in _COUNTS:
-        return value + _COUNTS[path]
+    if _is_count(path):
+        return value + (-1 if path == "crank_bearing.number_of_rollers" else 1)
     if kind.is_array:
         return _changed_array(drive, path, list(value))
     if path in _CLOSE:
@@ -178,6 +161,11 @@ def sensible_change(drive: Drive, path: str) -> Any:
     if value == 0.0:
         return _FROM_ZERO.get(kind.unit, 1.0)
     return 0.9 * value
+
+
+def _is_count(path: str) -> bool:
+    kind = field_kind(path)
+    return kind is not None and kind.kind == "count" and not kind.is_array
 
 
 def _changed_array(drive: Drive, path: str, values: list[Any]) -> tuple[Any, ...]:
@@ -318,7 +306,7 @@ def change_of(drive: Drive, path: str) -> tuple[Drive, dict[str, Any]]:
         )
     if path == "duty.0.share":
         return drive, {path: 0.5 * read_field(drive, path), "duty.1.share": 1.0 - 0.5 * read_field(drive, path)}
-    if path in _COUNTS:
+    if _is_count(path):
         cleared = {
             field: ()
             for field, kind in field_kinds().items()

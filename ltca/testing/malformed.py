@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from ltca.drive.declaration import find_fields
 from ltca.reading.drive_file import shipped_drive
 
 DIGITS = "7" * 400
@@ -101,9 +102,7 @@ def _with_line(text: str, number: int, line: str) -> str:
 
 def _value(draw: random.Random) -> Malformed:
     number, field, _ = draw.choice([item for item in _lines(BASE) if re.fullmatch(r"[-\d.e]+", item[2])])
-    value = draw.choice(NO_COUNT if field.startswith("number_of") else NO_QUANTITY)
-    if field == "number_of_discs" and value == "1001":
-        value = "11"
+    value = draw.choice(NO_COUNT if find_fields(field)[0].kind == "count" else NO_QUANTITY)
     return Malformed(about=f"{field} = {value[:40]}", content=_with_line(BASE, number, f"{field} = {value}").encode())
 
 
