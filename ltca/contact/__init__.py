@@ -16,5 +16,6 @@ free_end        Free ends: bodies that stop where the contact stops are no half-
 subsurface      Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929)
 hertz           Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical
                 point contact
+round_bodies    Closed forms of round bodies in plane elasticity, the references of wheel pins, rollers and races
 ==============  ============================================================
 """

@@ -10,6 +10,7 @@ drive_file          Reading drive files: TOML to validated drives, one for each 
                     once
 measured            Files of measured flanks, as deviations
 physical_checks     Physical checks of a drive: what its numbers, each fine on its own, cannot be together
+pin_checks          Checks of seats and beams of pins: fields that belong together, plays, spans and diameters
 deviation_checks    Physical checks of deviations, counts and sizes, and of the flank they leave: it neither folds nor
                     traps its pins
 contradictions      Which field is behind a contradiction: the one that alone can mend all of it, not the one whose bound
@@ -17,8 +18,8 @@ contradictions      Which field is behind a contradiction: the one that alone ca
 changes             A drive with some fields replaced, validated like a drive file
 writing             A drive as the text of a drive file
 coefficient_schema  What a file of influence coefficients must hold to be used; whoever made it
-held_ring           A round body held along an inner circle, loaded by a patch on its outer one: the closed form of wheel
-                    pins and races
+station_walls       Walls of a disc between its stations: how they bend as beams, and what stations far apart miss of
+                    the load across them
 coefficient_laws    Checks of a file of influence coefficients by laws that need no second computation
 coefficient_file    Files of influence coefficients: written whole with a checksum, read only when schema, laws and
                     checksum hold

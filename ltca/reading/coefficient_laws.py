@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.contact.round_bodies import compressed_cylinder, held_ring_approach
 from ltca.reading.coefficient_schema import shape_of
-from ltca.reading.held_ring import held_ring_approach, missed_between_stations, wall_bending
+from ltca.reading.station_walls import missed_between_stations, wall_bending
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -127,15 +128,6 @@ def station_resultants(dataset: xr.Dataset) -> FloatArray:
     point = dataset["station_x"].values + 1j * dataset["station_y"].values
     inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
     return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])
-
-
-def compressed_cylinder(radius: float, half_width: float) -> float:
-    r"""Return how far a cylinder yields at each of two opposite loads, relative to its centre, as multiple of the unit.
-
-    Johnson, *Contact Mechanics* (1985), Eq. 5.57: :math:`\ln(4R/b) - 1/2` at the middle of a semi-elliptic
-    pressure (both ends, each relative to the centre); the pressure-weighted mean over the patch is 1/4 less.
-    """
-    return float(np.log(4.0 * radius / half_width) - 0.75)
 
 
 def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
-from math import pi, sin
+from math import fsum, pi, sin
 
 import numpy as np
 
-from ltca.drive.members.duty_checks import find_duty_problems
-from ltca.drive.members.pin_checks import find_pin_problems
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, LengthProfile, Material, Temperature
 from ltca.drive.single_discs import single_discs, without_own
@@ -25,9 +23,12 @@ from ltca.reading.deviation_checks import (
     find_flank_problems,
     named_in_disc,
 )
+from ltca.reading.pin_checks import find_pin_problems
 
-# Parts that overlap are pressed together. Bodies strained by a tenth are no more linear-elastic; sharper limits need a load.
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
+"""Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
+SHARE_ROUNDING = 1e-9
+"""Round-off accepted in the sum of the shares of a duty."""
 
 
 def find_contradictions(drive: Drive) -> list[str]:
@@ -144,7 +145,19 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from (*_crank_support(drive), *find_pin_problems(drive), *find_duty_problems(drive))
+    yield from (*_crank_support(drive), *find_pin_problems(drive), *_duty(drive))
+
+
+def _duty(drive: Drive) -> Iterator[str]:
+    total = fsum(entry.share for entry in drive.duty)
+    if drive.duty and abs(total - 1.0) > SHARE_ROUNDING:
+        named = ", ".join(f"duty.{number}.share = {entry.share:g}" for number, entry in enumerate(drive.duty))
+        yield f"{named}: must add up to 1, they add up to {total:.10g}"
+    if drive.lubricant is not None and not drive.duty and drive.load.speed is None:
+        yield (
+            f"lubricant.viscosity = {drive.lubricant.viscosity:g} mm²/s: needs a speed, load.speed or those of [[duty]]; "
+            "without one no film can be computed"
+        )
 
 
 def _crank_support(drive: Drive) -> Iterator[str]:

@@ -11,11 +11,11 @@ from ltca.commands.program import main
 from ltca.compliance import coefficient_files
 from ltca.compliance.coefficient_files import cached_file, find_case_coefficients, find_coefficients
 from ltca.compliance.coefficients import load_coefficients
+from ltca.contact.round_bodies import held_ring_approach
 from ltca.errors import DamagedFileError
 from ltca.output.netcdf import write_netcdf
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
 from ltca.reading.coefficient_laws import near_field_unit
-from ltca.reading.held_ring import held_ring_approach
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
