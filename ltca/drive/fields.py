@@ -1,9 +1,9 @@
 """Fields of a drive by dotted path: read, count, unit.
 
-What differs per disc stands in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where
-nothing is said of it, it reads as the field of all discs that it takes the place of. Eccentrics of several cranks are counted
-disc after disc: ``crank.of.N`` is that of disc N // cranks on crank N % cranks, in whatever order the file has them.
-``duty.N`` is entry N of ``[[duty]]``, counted from 0 in the order of the file.
+Values per disc stand in ``disc.of`` and ``crank.of``: ``disc.of.1.runout.amount`` is that of disc 1, and where it is left out,
+it reads as the common field ``disc.runout.amount``. Eccentrics of several cranks are counted disc after disc: ``crank.of.N`` is
+that of disc N // cranks on crank N % cranks, in whatever order the file has them. ``duty.N`` is entry N of ``[[duty]]``,
+counted from 0 in the order of the file.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ OWN = {
     "crank_bearing.roller_errors": "disc.of.N.roller_errors",
     "crank.eccentricity_error": "crank.of.N.eccentricity_error",
 }
-"""What each disc may have of its own, in the place of what all have."""
+"""Common fields and tables, and those of single discs that replace them."""
 _NUMBERED = re.compile(r"^((?:disc|crank)\.of|duty)\.([0-9]{1,6})\.")
 
 
@@ -58,7 +58,7 @@ def field_kind(path: str) -> Field | None:
 
 
 def own_paths(drive: Drive, path: str) -> tuple[str, ...]:
-    """Return the paths of what each disc or eccentric has in the place of a field of all; none where they have not.
+    """Return the paths of the values per disc or eccentric that replace a common field; empty for other fields.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def own_paths(drive: Drive, path: str) -> tuple[str, ...]:
 
 
 def _entries(drive: Drive, table: str) -> int:
-    """How many discs, or eccentrics, there are."""
+    """Number of discs or eccentrics."""
     discs = drive.disc.number_of_discs
     return discs * drive.crank.number if table == "crank" else discs
 
@@ -87,7 +87,7 @@ def numbered(path: str) -> tuple[str, int, str] | None:
 
 
 def whose(drive: Drive, path: str) -> str:
-    """Return whose a field of one eccentric of several cranks is; empty where its path says it.
+    """Return disc and crank of a field of one eccentric of several cranks; empty for fields whose path says it.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def whose(drive: Drive, path: str) -> str:
 
 
 def with_whose(path: str, owner: str) -> str:
-    """Return a path with its owner (`whose`) behind it, if any.
+    """Return a path followed by disc and crank (`whose`), if any.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def with_whose(path: str, owner: str) -> str:
 
 
 def _counting(drive: Drive, table: str) -> str:
-    """What N of ``disc.of.N``, ``crank.of.N`` or ``duty.N`` is."""
+    """Meaning and range of N in ``disc.of.N``, ``crank.of.N`` or ``duty.N``."""
     if table == "duty":
         return "N of duty.N is the entry, counted from 0"
     last, cranks = _entries(drive, table.partition(".")[0]) - 1, drive.crank.number
@@ -123,16 +123,9 @@ def _counting(drive: Drive, table: str) -> str:
 
 
 def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = None) -> str:
-    """Return what to say of a path that is no field: the one that was meant, of those the drive can have.
+    """Return the message for a path that is not a field, with the field of the drive that it is close to.
 
-    Parameters
-    ----------
-    drive : Drive or None
-        None where it is not known yet.
-    path : str
-        As it was written.
-    known : iterable of str, optional
-        Fields to choose from; all by default.
+    Candidates are `known`, all fields by default; without a drive (None) also those that a drive may be without.
     """
     there = tuple(
         name
@@ -155,12 +148,9 @@ def not_a_field(drive: Drive | None, path: str, known: Iterable[str] | None = No
 
 
 def element_count(drive: Drive, path: str) -> int | None:
-    """Return how many numbers an array field has when filled; None for a single number.
+    """Return the number of elements of an array field when filled; None for a single number.
 
-    Raises
-    ------
-    DriveError
-        When there is no such field, or no such disc.
+    DriveError when there is no such field, or no such disc.
     """
     kind = field_kind(path)
     if kind is None:
@@ -185,9 +175,10 @@ def element_count(drive: Drive, path: str) -> int | None:
 
 
 def missing_part(drive: Drive, path: str) -> str | None:
-    """Return the part a field belongs to where the drive has none: its pin shaft, the support of its cranks, beams.
+    """Return the table that a field belongs to where the drive is without it: its pin shaft, supports or beams; None
+    elsewhere.
 
-    Coefficients of friction are zero where there is no friction: none of them is missing.
+    Coefficients of friction are zero without friction, and never missing.
     """
     if drive.pin_shaft is None and (path.startswith("disc.hole_errors") or ".hole_errors." in path):
         return "pin_shaft"
@@ -207,19 +198,11 @@ _OF_PARTS = {
     "friction.hole": "pin_shaft",
     "materials.crankshaft.": "crank.support",
 }
-"""What belongs to a part that may be left out without being in it."""
+"""Fields of a part that may be left out, which stand in other tables."""
 
 
 def absence(drive: Drive, path: str) -> str | None:
-    """Return why a drive cannot have a number in a field; None where it can.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    path : str
-        A field of the definition (`field_kind`).
-    """
+    """Return why a drive cannot have a number in a field; None where it can."""
     found = numbered(path)
     if found is not None and (problem := no_entry(drive, found[0], found[1])) is not None:
         return problem
@@ -234,7 +217,9 @@ def absence(drive: Drive, path: str) -> str | None:
 
 
 def no_entry(drive: Drive, table: str, number: int) -> str | None:
-    """Return what to say of an entry of ``disc.of`` or ``crank.of`` that the drive has not; None where it has it."""
+    """Return the message for an entry of ``disc.of``, ``crank.of`` or ``duty`` that the drive is without; None where it has
+    it.
+    """
     discs, cranks = drive.disc.number_of_discs, drive.crank.number
     if number < (len(drive.duty) if table == "duty" else _entries(drive, table.partition(".")[0])):
         return None
@@ -268,7 +253,7 @@ def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
 
 
 def _own_value(single: Drive, crank: int, name: str, count: int | None) -> Any:
-    """What a drive of one disc has nowhere else: errors of its eccentrics and of its bores."""
+    """Errors of the eccentrics and of the bores of one disc, which have no common field."""
     if name.startswith("bore_errors."):
         errors = single.disc.of[0].bore_errors if single.disc.of else None
         held = () if errors is None else getattr(errors, name.partition(".")[2])
@@ -283,7 +268,7 @@ _FOLLOWS = {
     "pin_shaft.beam.diameter": "pin_shaft.beam_diameter",
     "pin_wheel.beam.diameter": "pin_wheel.beam_diameter",
 }
-"""What follows from other fields where it is left out, and where it is read."""
+"""Fields that follow from others where they are left out, and the property with their value."""
 
 
 def may_be_left_out(path: str) -> bool:
@@ -293,24 +278,15 @@ def may_be_left_out(path: str) -> bool:
 
 
 def is_element(name: str) -> bool:
-    """Tell whether the last part of a path is the number of an element."""
+    """Tell whether the last part of a path is the index of an element."""
     return name.isascii() and name.isdigit() and len(name) <= 6
 
 
 def read_field(drive: Drive, path: str) -> Any:
-    """Return the value of a field; an array that was left out comes as its zeros.
+    """Return the value of a field, as ``disc.thickness``; an array that was left out comes as its zeros.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    path : str
-        ``disc.thickness``, ``pin_wheel.pin_errors.radial``, or one element of an array, ``….radial.3``.
-
-    Raises
-    ------
-    DriveError
-        When there is no such field or element.
+    The path may end with the index of an element of an array, ``pin_wheel.pin_errors.radial.3``. DriveError when there is
+    no such field or element.
     """
     parent, _, last = path.rpartition(".")
     if is_element(last) and field_kind(parent) is not None:

@@ -1,4 +1,4 @@
-"""Crankshafts: their eccentrics, the circle they stand on, what supports them, and their bearings."""
+"""Crankshafts: their eccentrics, the circle they stand on, their supports and their bearings."""
 
 from __future__ import annotations
 
@@ -53,19 +53,19 @@ class Crank:
     eccentricity : float
         Eccentricity e, design distance from the crank axis to the inner-race centre, mm; the flank is generated with it.
     number : int
-        How many cranks there are; one stands in the centre.
+        Number of cranks; a single one stands in the centre.
     circle_radius : float or None
-        Radius of the circle several cranks stand on, mm.
+        Radius of the circle of several cranks, mm.
     angle : float
         Place of crank 0 on that circle, rad.
     support : CrankSupport or None
-        What lets the cranks yield; rigid when left out.
+        Bending shaft and elastic bearings of the cranks; rigid when left out.
     eccentricity_error : float
         Actual less design eccentricity, mm.
     axis_offset : AxisOffset
         Crank axis, or the centre of the crank circle, against the centre of the pin shaft.
     of : tuple of OneEccentric
-        What differs per eccentric: one entry a disc of a central crank; entries that carry disc and crank of several.
+        Values per eccentric: one entry per disc for a central crank, entries with disc and crank for several.
     """
 
     eccentricity: Annotated[PositiveLength, grows("disc")]  # that of the flank
@@ -87,7 +87,7 @@ class Crank:
         )
 
     def eccentric(self, disc: int, crank: int = 0) -> OneEccentric:
-        """Return what is said of the eccentric of a disc on a crank, empty where nothing is."""
+        """Return the entry of the eccentric of a disc on a crank, an empty one where there is none."""
         return self.entries.get((disc, crank), OneEccentric())
 
     @property
