@@ -214,8 +214,8 @@ class Drive:
     def transmission_ratio(self) -> float:
         """Turns of the input for one of the output.
 
-        A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks driven by the carrier,
-        in its frame: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
+        A central crank: u with the pin shaft held, −z_C/Δz with the pin wheel held. Several cranks driven from the carrier,
+        relative to it: u and −u. Behind a first stage i₁ the input is its sun: −i₁ u and 1 + i₁ u.
         """
         stage = self.installation.first_stage_ratio
         if stage is not None:
@@ -241,8 +241,8 @@ class Drive:
 
     @property
     def input_per_crank_moment(self) -> float:
-        """External moment of the input by that of all cranks: 1, −1/i₁ behind a first stage, 0 where the carrier drives the
-        cranks.
+        """External moment of the input by that of all cranks: 1, −1/i₁ behind a first stage, 0 for cranks driven from the
+        carrier.
         """
         if self.crank.number == 1:
             return 1.0
