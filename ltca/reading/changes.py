@@ -94,7 +94,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
 
 
 def _without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Named materials as their numbers, which numbers given beside them replace."""
+    """Changes with named materials as their properties, which properties given beside them replace."""
     named = {f"materials.{part}" for part in PARTS} & values.keys()
     if not named:
         return values
@@ -116,7 +116,7 @@ def _required(table: str) -> tuple[str, ...]:
 
 
 def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], problems: list[str]) -> Drive:
-    """Replace fields of single discs; what one has not of its own begins as that of all."""
+    """Replace values of single discs; those left out so far start as the common ones."""
     rows: dict[str, list[Any]] = {
         "disc": [*(drive.disc.of or (OneDisc(),) * drive.disc.number_of_discs)],
         "crank": _eccentrics(drive),
@@ -163,7 +163,7 @@ def _made(values: Mapping[str, Any], path: str, problems: list[str]) -> Any:
 
 
 def _eccentrics(drive: Drive) -> list[OneEccentric]:
-    """An entry for every eccentric, disc after disc; of several cranks each says whose it is."""
+    """An entry for every eccentric, disc after disc, with index keys where there are several cranks."""
     cranks = drive.crank.number
     entries = [(disc, crank) for disc in range(drive.disc.number_of_discs) for crank in range(cranks)]
     if cranks == 1:
@@ -172,7 +172,7 @@ def _eccentrics(drive: Drive) -> list[OneEccentric]:
 
 
 def _begun(drive: Drive, entry: Any, name: str) -> Any:
-    """A table of one disc, or what it takes the place of."""
+    """A table of one disc, or the common one that it replaces."""
     mine = getattr(entry, name)
     if mine is not None:
         return mine
@@ -188,7 +188,7 @@ def _replaced(part: Any, tree: dict[str, Any], prefix: str, problems: list[str])
     for name, value in tree.items():
         below = getattr(part, name)
         nested = isinstance(value, dict) and is_dataclass(below)
-        # A part that was left out is made of what is given.
+        # A part that is absent so far is made of the given fields.
         changes[name] = _replaced(below, value, f"{prefix}{name}.", problems) if nested else value
     try:
         return replace(part, **changes)

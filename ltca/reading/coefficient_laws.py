@@ -27,9 +27,9 @@ NEIGHBOURS = "near field, neighbours and sizes"
 EVEN_PRESSURE = "stress left by even pressure on all walls"
 WALLS_CLOSE = "stress along closed walls against their displacement"
 STRESS_CONVERGENCE = "convergence of the stresses: change from a mesh of twice the size"
-# How good a file is by its own word: no sign of damage.
+# Accuracy that a file states about itself: no sign of damage.
 STATED_QUALITY = (CONVERGENCE, STRESS_CONVERGENCE)
-# Laws on what a file may leave out, and what that is.
+# Laws on optional data, with the names of the data.
 STATED_BY: dict[str, tuple[str, ...]] = {
     RECIPROCITY: ("symmetry",),
     RIGID_MOTIONS: ("rigid_residual",),
@@ -63,18 +63,18 @@ NEIGHBOUR_BOUNDS = (0.3, 5.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
-    """One figure against its bounds.
+    """One figure with its bounds.
 
     Attributes
     ----------
     name : str
-        What is measured.
+        Name of the figure.
     value : float
         The figure.
     lowest, highest : float
         Bounds.
     reason : str
-        Why the bounds have their size.
+        Reason for the bounds.
     """
 
     name: str
@@ -92,24 +92,14 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether the figure lies between its bounds; a figure that is no number does not."""
+        """Whether the figure lies between its bounds; NaN does not."""
         return bool(self.lowest <= self.value <= self.highest)
 
 
 def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> FloatArray:
-    """Return approaches with everything removed that rigid motions, or resultants, can change.
+    """Return approaches, shape (m, m), without the part that rigid motions or the choice of a datum can change.
 
-    Parameters
-    ----------
-    approach : array, shape (m, m)
-        In any datum.
-    resultants : array, shape (3, m)
-        Of the unit loads.
-
-    Returns
-    -------
-    array, shape (m, m)
-        Q A Q with Q the projection onto loads without resultant; equal for all datums.
+    It is Q A Q with Q the projection onto loads without resultant; `resultants`, shape (3, m), are those of the unit loads.
     """
     basis, _ = np.linalg.qr(resultants.T)
     left = approach - basis @ (basis.T @ approach)
@@ -117,31 +107,23 @@ def project_rigid_motions(approach: FloatArray, resultants: FloatArray) -> Float
 
 
 def near_field_unit(dataset: xr.Dataset, body: str) -> float:
-    """Return 2(1 − ν²)/(πEt) of a body (without ν in plane stress), mm/N: what the near field is a multiple of."""
+    """Return 2(1 − ν²)/(πEt) of a body (without ν in plane stress), mm/N: the unit of the near field."""
     nu = float(dataset.attrs[f"{body}_poisson_ratio"]) if dataset.attrs["plane"] == "strain" else 0.0
     modulus, thickness = float(dataset.attrs[f"{body}_youngs_modulus"]), float(dataset.attrs["thickness"])
     return 2.0 * (1.0 - nu**2) / (np.pi * modulus * thickness)
 
 
 def station_resultants(dataset: xr.Dataset) -> FloatArray:
-    """Return force in x, y and moment about the disc centre of a newton at each station, shape (3, stations)."""
+    """Return force in x, y (N) and moment about the disc centre (N·mm) of a newton at each station, shape (3, stations)."""
     point = dataset["station_x"].values + 1j * dataset["station_y"].values
     inward = -(dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values)
     return np.stack([inward.real, inward.imag, (point.conjugate() * inward).imag])
 
 
 def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
-    """Check a set of coefficients.
+    """Check coefficients of the right schema: reciprocity, definiteness, rigid bodies, closed forms, convergence.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        Of the right schema (`ltca.reading.coefficient_schema`).
-
-    Returns
-    -------
-    tuple of Check
-        Reciprocity, definiteness, rigid bodies, closed forms, convergence; those of `unstated_laws` are left out.
+    Those of `unstated_laws` are left out.
     """
     return (
         *_check_reciprocity(dataset),
@@ -156,9 +138,9 @@ def check_coefficients(dataset: xr.Dataset) -> tuple[Check, ...]:
 
 
 def unstated_laws(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the laws that a file says nothing about, and what it would have to hold for them.
+    """Return the laws that cannot be checked for lack of data in a file, with the missing names.
 
-    Another code's file may leave out how it was derived and what serves checking alone.
+    A file of another code may leave out its derivation and the data that serve checking alone.
     """
     return {
         law: ", ".join(lacking)
@@ -172,7 +154,7 @@ def _holds(dataset: xr.Dataset, name: str) -> bool:
 
 
 def _stated(dataset: xr.Dataset, law: str, highest: float, reason: str) -> Iterator[Check]:
-    """The figure that a file states of itself for a law, if it does."""
+    """The figure that a file states about itself for a law, if it does."""
     (name,) = STATED_BY[law]
     if name in dataset.attrs:
         value = float(dataset.attrs[name])
@@ -245,9 +227,9 @@ def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _check_neighbours(dataset: xr.Dataset) -> Iterator[Check]:
-    """Between a patch and its neighbour the approach falls like the logarithm, a pin yields about like a cylinder.
+    """Between a patch and its neighbour the approach falls like the logarithm; a pin yields about like a cylinder.
 
-    Files with wider patches say it better: what bends between neighbours is in both of those.
+    Files with wider patches are checked by them, which is sharper: bending between neighbours cancels there.
     """
     if _holds(dataset, "wide_station") and _holds(dataset, "pin_wide_approach"):
         return
@@ -280,7 +262,7 @@ def _check_neighbours(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _fall(distance: FloatArray | float, half_width: FloatArray) -> FloatArray:
-    """ln(distance) against the mean logarithm of a patch on itself."""
+    """ln(distance) minus the mean logarithm of a patch on itself."""
     return np.asarray(np.log(distance) - np.log(0.5 * half_width) + 0.25)
 
 
@@ -312,7 +294,9 @@ def _check_closed_forms(dataset: xr.Dataset) -> Iterator[Check]:
 
 
 def _off_held_ring(dataset: xr.Dataset, body: str, inner: float, outer: float) -> float:
-    """Largest difference of a round body's approaches from the closed form, of its largest; no number for no ring."""
+    """Largest difference of a round body's approaches from the closed form, relative to the largest; NaN where there is no
+    ring.
+    """
     if not 0.0 < inner < outer:
         return float("nan")
     nu = float(dataset.attrs[f"{body}_poisson_ratio"])
@@ -346,7 +330,7 @@ def even_pressure(dataset: xr.Dataset) -> FloatArray:
 
 
 def _slope(values: ComplexArray, at: FloatArray | None = None) -> ComplexArray:
-    """Derivative by the parameter of values at uniform places of its period 2π, there or elsewhere, by Fourier series."""
+    """Derivative of values at uniform places of a period 2π by the parameter, at these or other places, by Fourier series."""
     count = len(values)
     order = np.fft.fftfreq(count, 1.0 / count)
     series = 1j * order * np.fft.fft(values) / count

@@ -1,4 +1,4 @@
-"""Physical checks of a drive: what its numbers, each fine on its own, cannot be together."""
+"""Physical checks of a drive: contradictions between numbers that are valid by themselves."""
 
 from __future__ import annotations
 
@@ -32,17 +32,10 @@ SHARE_ROUNDING = 1e-9
 
 
 def find_contradictions(drive: Drive) -> list[str]:
-    """Return every physical contradiction of a drive.
+    """Return every physical contradiction of a drive whose single numbers are valid, one sentence each; empty for a sound
+    drive.
 
-    Parameters
-    ----------
-    drive : Drive
-        A drive whose single numbers are already valid.
-
-    Returns
-    -------
-    list of str
-        One sentence each, with field, value, bound and unit; empty for a sound drive.
+    Sentences have field, value, bound and unit.
     """
     problems = [*_installation(drive), *find_disc_problems(drive)]
     if problems:
@@ -62,7 +55,7 @@ def find_contradictions(drive: Drive) -> list[str]:
 
 
 def _find_at_temperatures(drive: Drive) -> list[str]:
-    """Contradictions of the drive as written or, where it has none, as warm as it is."""
+    """Contradictions of the drive at 20 °C or, where there are none, at its temperatures."""
     cold = _cold(drive)
     if problems := find_contradictions(cold):
         return problems
@@ -80,7 +73,7 @@ def _find_at_temperatures(drive: Drive) -> list[str]:
 
 
 def _cold(drive: Drive) -> Drive:
-    """The drive as written, at 20 °C; materials that are there for their expansion alone are left out."""
+    """The drive at 20 °C, without materials that are given for their expansion alone."""
     return warm_drive(replace(drive, temperature=Temperature()))
 
 
@@ -96,7 +89,7 @@ def _find_in_disc(drive: Drive) -> list[str]:
 
 
 def is_sound(drive: Drive) -> bool:
-    """Tell whether a drive is without contradictions; quicker than naming them, for what is cheap comes first."""
+    """Tell whether a drive has no contradictions; faster than `find_contradictions`, since cheap checks come first."""
     checks = (*FIRST, *BESIDE, _flank, find_flank_problems)
     if any(next(check(drive), None) is not None for check in (_installation, find_disc_problems)):
         return False
@@ -113,7 +106,7 @@ def is_sound(drive: Drive) -> bool:
 
 
 def _installation(drive: Drive) -> Iterator[str]:
-    """What goes with one crank or with several alone, and supports."""
+    """Problems of fields that belong to one crank or to several, and of supports, pins and duty."""
     crank, stage = drive.crank, drive.installation.first_stage_ratio
     if crank.number == 1:
         if drive.pin_shaft is None:
@@ -240,7 +233,7 @@ def _flank(drive: Drive) -> Iterator[str]:
 
 @lru_cache(maxsize=64)
 def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
-    """Smallest convex radius of the pin-centre path, mm; kept, since studies check one design thousands of times."""
+    """Smallest convex radius of the pin-centre path, mm; cached, since studies check one design thousands of times."""
     path = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
     largest = float(np.max(path.locus_curvature(np.linspace(0.0, 2.0 * pi / ratio, 4001))))
     return 1.0 / largest if largest > 0.0 else float("inf")
@@ -404,7 +397,7 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
 
 
 def _bores(drive: Drive) -> Iterator[str]:
-    """Walls about the bores of several cranks."""
+    """Problems of the walls around the bores of several cranks."""
     crank, radius = drive.crank, drive.bore_radius
     if crank.number == 1 or crank.circle_radius is None:
         return
@@ -438,7 +431,7 @@ def _bores(drive: Drive) -> Iterator[str]:
 
 
 def _friction(drive: Drive) -> Iterator[str]:
-    """Coefficients of joints that are not there, and support bearings without radius."""
+    """Problems of coefficients of absent joints, and of support bearings without radius."""
     friction, shaft = drive.friction, drive.pin_shaft
     if friction is None:
         return
@@ -458,6 +451,6 @@ def _friction(drive: Drive) -> Iterator[str]:
 
 
 FIRST = (find_deviation_problems, _tooth_numbers)
-"""What the geometry needs."""
+"""Checks that the geometry needs."""
 BESIDE = (_pins, _bearing, _holes, _bores, _length_profiles, _friction)
-"""What is looked at whatever the flank is."""
+"""Checks that do not depend on the flank."""

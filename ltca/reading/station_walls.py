@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Distance of stations, by the thickness of the wall, from which sums over them may miss all of what crosses it.
 LARGEST_DISTANCE = 2.0 * float(np.pi) / float(np.log(3.0))
+"""Spacing of stations by the thickness of the wall from which sums over them may miss all of the load across it."""
 
 
 PER_STATION = 12
-"""Points of a wall for each station: a twelfth of their spacing apart they tell the thickness of a thin one to some per cent."""
+"""Points of a wall per station: a twelfth of their spacing apart they give the thickness of a thin wall to some per cent."""
 
 
 def wall_bending(dataset: xr.Dataset, stations: NDArray[np.integer]) -> FloatArray:
@@ -110,7 +110,9 @@ def missed_between_stations(boundary: NDArray[np.integer], points: ComplexArray)
 def _walls(
     boundary: NDArray[np.integer], points: ComplexArray
 ) -> tuple[dict[int, ComplexArray], dict[int, FloatArray]]:
-    """Return points along each boundary, `PER_STATION` for each station, and how far the next boundary is from them, mm."""
+    """Return points along each boundary, `PER_STATION` for each station, and their distance to the nearest other boundary,
+    mm.
+    """
     numbers = np.unique(boundary).tolist()
     curves = {number: _between(points[boundary == number]) for number in numbers}
     thickness = {
