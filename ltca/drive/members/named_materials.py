@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
@@ -82,8 +83,6 @@ def named_materials() -> dict[str, NamedMaterial]:
     >>> sorted(named_materials())[:3]
     ['100Cr6', '16MnCr5', '42CrMo4']
     """
-    import tomllib
-
     table = tomllib.loads((resources.files("ltca") / "drive" / "members" / FILE).read_text(encoding="utf-8"))
     sources = table.pop("sources")
     found = {}
