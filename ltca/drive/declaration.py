@@ -108,12 +108,7 @@ class Table:
 
 
 def attribute_sentences(owner: type) -> dict[str, str]:
-    """Return what the docstring of a dataclass says of each attribute.
-
-    Parameters
-    ----------
-    owner : type
-        A dataclass with a numpydoc section ``Attributes``.
+    """Return the sentences on each attribute in the docstring of a dataclass with a numpydoc section ``Attributes``.
 
     Examples
     --------
@@ -205,7 +200,7 @@ def known_paths() -> tuple[str, ...]:
 
 
 def _walk(owner: type, prefix: str, grows: Grows | None) -> Iterator[Field | Table]:
-    """Yield the fields and tables of a dataclass whose lengths grow in a way, unless they say otherwise."""
+    """Yield the fields and tables of a dataclass; `grows` is the growth of lengths that declare no other."""
     meanings = attribute_sentences(owner)
     defaults = {item.name: item for item in fields(owner)}
     for name, annotated in get_type_hints(owner, include_extras=True).items():

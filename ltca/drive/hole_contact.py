@@ -6,7 +6,7 @@ from ltca.drive.parts import Drive, contact_modulus
 
 RIGID_SHAFT_PINS = (
     "shaft pins are rigid at their holes (pin_shaft.elastic_contact = false), their material is not used; "
-    "elastic ones of the disc's own would read about 1/√2 of it"
+    "with elastic ones of the disc's material it would be about 1/√2 of that"
 )
 """Note on the pressure of rigid shaft pins."""
 SPRINGS_ALONE = (

@@ -37,7 +37,7 @@ def describe_mistakes(
 
 
 GONE = {
-    "disc.torque_share": "is no field any more: what each disc carries is computed (disc.number_of_discs); leave it out"
+    "disc.torque_share": "is no longer a field: the load of each disc is computed (disc.number_of_discs); leave it out"
 }
 """Fields of earlier versions, and their replacement."""
 UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")

@@ -87,7 +87,7 @@ class Check:
     def bounds(self) -> str:
         """The bounds as text."""
         if self.lowest == 0.0:
-            return "says nothing" if np.isinf(self.highest) else f"at most {self.highest:g}"
+            return "no bound" if np.isinf(self.highest) else f"at most {self.highest:g}"
         return f"at least {self.lowest:g}" if np.isinf(self.highest) else f"{self.lowest:g} to {self.highest:g}"
 
     @property
@@ -210,7 +210,7 @@ def _check_near_field(dataset: xr.Dataset) -> Iterator[Check]:
         ratio = np.log(dataset["wide_half_width"].values / dataset["station_half_width"].values[wide])
         slopes = (own - broad) / ratio / near_field_unit(dataset, "disc")
         most = 1.0 + NEAR_FIELD_LIMIT + wall_bending(dataset, wide)
-        # Of all stations the one that comes nearest to its own bounds, or is farthest beyond them; one that is no number first.
+        # The station that is nearest to its bounds, or farthest beyond them; NaN first.
         used = np.where(slopes > 1.0, (slopes - 1.0) / (most - 1.0), (1.0 - slopes) / NEAR_FIELD_LIMIT)
         worst = int(np.argmax(used))
         lowest, value = 1.0 - NEAR_FIELD_LIMIT, float(slopes[worst])
@@ -339,12 +339,12 @@ def _slope(values: ComplexArray, at: FloatArray | None = None) -> ComplexArray:
 
 
 def _opening_of_walls(dataset: xr.Dataset) -> float:
-    """How far the worst wall fails to close again by its own strain and displacement, of the change of its length.
+    """Largest gap of a wall that is closed again by its strain and displacement, relative to the change of its length.
 
-    Along a wall with unit tangent t and normal m the strain is ε = u_t′ + u_m t·m′; all around it u_t comes back to where
-    it began, so ∮ε ds = ∮u_m t·dm. A wall without load of its own has ε = σ(1 − ν²)/E (plane strain), and u_m is the
-    approach with its sign. So stresses are tied to approaches, in size and sign, by the loads on the other walls: of all of
-    them the best factor between both sides counts, since few stations miss the peak beside a load near by.
+    Along a wall with unit tangent t and normal m the strain is ε = u_t′ + u_m t·m′; over the closed wall u_t returns to its
+    initial value, so ∮ε ds = ∮u_m t·dm. An unloaded wall has ε = σ(1 − ν²)/E (plane strain), and u_m is the approach with
+    its sign. So stresses are related to approaches, in size and sign, by the loads on the other walls; the best factor
+    between both sides over all of them counts, since few stations miss the peak beside a near load.
     """
     boundary, stressed = dataset["station_boundary"].values, dataset["stress_station_boundary"].values
     parameter = dataset["stress_station_parameter"].values
@@ -362,7 +362,7 @@ def _opening_of_walls(dataset: xr.Dataset) -> float:
         # Approaches are counted into the body, normals point out of it.
         displaced = -(turning / np.count_nonzero(own)) @ dataset["disc_approach"].values[np.ix_(own, ~own)]
         if np.max(np.abs(displaced), initial=0.0) <= least:
-            continue  # a body whose walls do not feel each other says nothing
+            continue  # walls of this body are not coupled
         length = np.abs(_slope(points[own], parameter[seen])) / np.count_nonzero(seen)
         strained = length @ dataset["disc_stress"].values[np.ix_(seen, ~own)] / stiffness
         found.append(abs(float(strained @ displaced / (displaced @ displaced)) - 1.0))
@@ -390,7 +390,7 @@ def _check_stresses(dataset: xr.Dataset) -> Iterator[Check]:
         name=WALLS_CLOSE,
         value=_opening_of_walls(dataset),
         lowest=0.0,
-        # Both sums are off by what is missed; where all of it may be, they say nothing of each other.
+        # Both sums have the error of the missed part; where all may be missed, there is no bound.
         highest=WALLS_CLOSE_LIMIT + 2.0 * missed / (1.0 - missed) if missed < 1.0 else np.inf,
         reason="a wall strained all around stays closed (∮ε ds = ∮u·dm); means over patches and arcs for points, and what "
         "stations farther apart than walls are thick miss",

@@ -124,7 +124,7 @@ def _misshapen(dataset: xr.Dataset) -> Iterator[str]:
     for name, words in LABELS.items():
         if name in dataset.variables and not _in_order(dataset, name):
             told = f", or {', '.join(words)}" if words else ""
-            yield f"{name} must count its entries 0, 1, 2, …{told}: they are taken in their order"
+            yield f"{name} must number its entries 0, 1, 2, …{told}: they are used in their order"
     if dataset.sizes.get("motion", 3) != 3:
         yield f"motion has length {dataset.sizes['motion']}: must be 3 (x, y, rotation)"
     if dataset.sizes.get("roller_end", 2) != 2:

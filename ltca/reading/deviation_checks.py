@@ -70,7 +70,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
     if entries and not all(told) and (any(told) or cranks > 1):
         number = told.index(False)
         yield (
-            f"{entry_words(number)}: disc is left out: every entry must say its disc"
+            f"{entry_words(number)}: disc is left out: every entry must give its disc"
             + (f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none")
         )
         return
@@ -87,7 +87,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
             )
         if entry.crank is None and cranks > 1:
             yield (
-                f"{entry_words(number)}: crank is left out: every entry must say its disc and its crank (crank.number = "
+                f"{entry_words(number)}: crank is left out: every entry must give its disc and its crank (crank.number = "
                 f"{cranks})"
             )
         if entry.disc is not None and (place := (entry.disc, entry.crank or 0)) in seen:

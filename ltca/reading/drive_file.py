@@ -164,7 +164,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     problems += found
     problems = problems or find_absent(tolerances, drives.values())
     if problems:
-        raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
+        raise DriveError(problems, source, f"{left} cases not checked" if left else "")
     each = {name: {**limits, **own.get(name, {})} for name in drives}
     return DriveFile(
         name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, limits=each, text=text

@@ -354,7 +354,7 @@ def _holes(drive: Drive) -> Iterator[str]:
             f"less than {root - radius:.6g} mm",
         )
     elif wall <= 0.0 and drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset > 0.0:
-        # No circle has room for the holes; where the offset leaves no pin circle at all, the flank has said so.
+        # No circle has room for the holes; an offset that leaves no pin circle is reported with the flank.
         wheel = drive.pin_wheel
         yield (
             f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: holes cut through the root circle of the disc "

@@ -51,8 +51,8 @@ def _one_compliance(shaft: PinShaft) -> Iterator[str]:
         yield "pin_shaft.stiffness: is missing; pins of the shaft need it, or pin_shaft.beam in its place"
     elif shaft.beam is not None and shaft.stiffness is not None:
         yield (
-            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which says how the pins "
-            "bend"
+            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which determines how "
+            "the pins bend"
         )
 
 
@@ -136,6 +136,6 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
         )
     sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
     widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)
-    of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"the pin's own ({path}.pin_radius)"
+    of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"that of the pin ({path}.pin_radius)"
     if beam.diameter is not None and beam.diameter > widest + ROUNDING:
         yield f"{path}.beam.diameter = {beam.diameter:g} mm: must be at most {widest:g} mm, {of}"

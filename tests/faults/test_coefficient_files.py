@@ -182,9 +182,9 @@ def of_rings(drive):
             "roller against the compressed cylinder",
         ),
         "core": (lambda dataset: dataset.assign_attrs(core_radius=20.0), "pin against the held ring is nan"),
-        "stations": (labelled("station", lambda count: np.arange(count)[::-1]), "station must count its entries"),
+        "stations": (labelled("station", lambda count: np.arange(count)[::-1]), "station must number its entries"),
         "ends": (labelled("roller_end", lambda count: ["outer", "inner"]), "or inner, outer"),
-        "loaded": (labelled("station_loaded", lambda count: ["a"] * count), "station_loaded must count its entries"),
+        "loaded": (labelled("station_loaded", lambda count: ["a"] * count), "station_loaded must number its entries"),
     }.values(),
 )
 def test_half_widths_and_labels_are_checked(change, told, drive, tmp_path):

@@ -131,7 +131,7 @@ def judge(
     told = {value.quantity for value in values} | {_BOTH.get(value.quantity) for value in values}
     for limit in limits.values():
         if limit.quantity not in told:
-            reason = "there is none in this drive, or this engine cannot say it"
+            reason = "not in this drive, or not computed by this engine"
             checks.append(
                 Check(value=Value(quantity=limit.quantity, value=None, reason=reason), limit=limit, asked=True)
             )
