@@ -73,7 +73,7 @@ WRONG = [
     # beams
     ({"pin_wheel.beam.span": 21.9}, "pin_wheel.beam.span = 21.9 mm: must be at least 22 mm, or disc 0 from -11 to -1 mm"),
     ({"pin_wheel.beam.span": 0.0}, "pin_wheel.beam.span = 0.0: must be greater than 0 mm"),
-    ({"pin_wheel.beam.diameter": 7.1}, "pin_wheel.beam.diameter = 7.1 mm: must be at most 7 mm, that of the pin (pin_wheel.pin_r"),
+    ({"pin_wheel.beam.diameter": 7.1}, "pin_wheel.beam.diameter = 7.1 mm: must be at most 7 mm, that of the pin (pin_wheel.pin_"),
     ({"pin_wheel.beam.diameter": -1.0}, "pin_wheel.beam.diameter = -1.0: must be greater than 0 mm"),
     ({"pin_wheel.beam.ends": "hinged"}, "pin_wheel.beam.ends = 'hinged': must be 'supported' or 'clamped'"),
     (BEAMS | {"pin_shaft.beam.span": 20.0}, "pin_shaft.beam.span = 20 mm: must be at least 22 mm, or disc 0 from -11 to -1 mm"),
