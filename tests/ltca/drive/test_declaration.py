@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ltca.drive.declaration import (
@@ -16,12 +18,15 @@ from ltca.drive.declaration import (
     find_fields,
     gathered,
 )
-from ltca.drive.fields import field_kinds
-from ltca.drive.members.temperatures import Growth
+from ltca.drive.fields import absence, field_kinds, read_field
+from ltca.drive.materials import PARTS
+from ltca.drive.members.operation import Temperature
+from ltca.drive.members.temperatures import Growth, warm_drive
 from ltca.errors import DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
 
 DECLARED = declared_fields()
+ROOT = Path(__file__).parents[3]
 
 
 def is_a_sentence(told):
@@ -70,6 +75,31 @@ def test_every_length_grows():
     for path, field in DECLARED.items():
         assert field.grows is None or isinstance(getattr(Growth, field.grows.part), object), path
         assert field.grows is None or field.grows.upon == "" or DECLARED[field.grows.upon].unit == "mm", path
+
+
+@pytest.mark.parametrize("name", ["paper", "robot-joint", "rv", "sleeved", "contract"])
+def test_a_drive_of_one_material_at_one_temperature_is_larger_in_every_length(name):
+    """Each length by 1 + α ΔT, deviations included: a growth forgotten in the definition shows by its path.
+
+    Tolerance: deviations are differences of lengths of 100 mm, with their rounding.
+    """
+    source = ROOT / "tests" / "contract" / "drive.toml" if name == "contract" else None
+    file = parse_drive(source.read_text(encoding="utf-8") if source else shipped_drive(name), name)
+    cold = next(iter(file.cases.values()))
+    materials = {part: replace(getattr(cold.materials, part), thermal_expansion=2e-5) for part in PARTS}
+    hot = Temperature(housing=70.0, disc=70.0, shaft=70.0)
+    warm = warm_drive(replace(cold, materials=replace(cold.materials, **materials), temperature=hot))
+    compared = 0
+    for path, field in DECLARED.items():
+        place = path.replace(".N.", ".0.")
+        if field.grows is not None and absence(cold, place) is None:
+            try:
+                before = read_field(cold, place)
+            except DriveError:
+                continue  # left out
+            assert read_field(warm, place) == pytest.approx(np.multiply(before, 1.001), abs=1e-12), path
+            compared += bool(np.any(before))
+    assert compared > 10
 
 
 @pytest.mark.parametrize(
