@@ -33,9 +33,9 @@ from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main as cyclo
+from ltca.drive.engine_support import refusal
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.reference.engine_support import refusal
 from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -172,12 +172,12 @@ def main() -> int:
                     # Refused of a drive as such, or `cyclo fields` does not tell that full finite elements refuse it.
                     with contextlib.suppress(CycloError):
                         tables(with_fields(base, change))
-                        ignored.append(f"{path}: refused, which ltca.drive.reference.engine_support does not tell")
+                        ignored.append(f"{path}: refused, which ltca.drive.engine_support does not tell")
                 if not is_refused_by_name(path, str(error)):
                     ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
                 continue
             if name == "full-fe" and refusal(kind, path.replace(".0.", ".N.")) is not None:
-                ignored.append(f"{path}: taken, though ltca.drive.reference.engine_support tells it as refused")
+                ignored.append(f"{path}: taken, though ltca.drive.engine_support tells it as refused")
             key = repr(base)
             if key not in known:
                 known[key] = answer(base)

@@ -9,11 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from fem.drive.expected_contacts import require_supported
 from fem.options import SolutionOptions
+from ltca.drive.engine_support import require
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.reading.drive_file import DriveFile
 from validation.compare.compared_positions import ComparedPosition, compare_case
@@ -117,8 +116,7 @@ def plan_study(
         cases = list(dict.fromkeys([names[0], names[(len(names) - 1) // 2], names[-1]]))
     drives = file.select_warm(cases)
     for drive in drives.values():
-        require_plane_strain(drive, VALIDATION)
-        require_supported(drive, VALIDATION)
+        require(drive, "full FE")
     if not crank_angles:
         count = QUICK_ANGLES if level == "quick" else FULL_ANGLES
         teeth = next(iter(drives.values())).disc.number_of_teeth

@@ -9,7 +9,7 @@ import numpy as np
 from fem.errors import MeshError
 from fem.shapes import Curve, DiscShape, Shape
 from ltca.arrays import ComplexArray, FloatArray, IntArray
-from ltca.reading.held_ring import LARGEST_DISTANCE, missed_between_stations
+from ltca.reading.station_walls import LARGEST_DISTANCE, missed_between_stations
 
 # Error of cubic interpolation on the paper's disc, in units of 2(1 − ν²)/(πEt), of approaches of 10 to 14: with 32
 # for each lobe 0.045 in the roots and 0.005 along the working flank (with 16 0.45 and 0.05); with 32 in a hole 0.02,

@@ -62,11 +62,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
-    from fem.drive.expected_contacts import require_supported
     from fem.reducer.solution import expect_shares
+    from ltca.drive.engine_support import require
     from ltca.drive.single_discs import single_discs
 
-    require_supported(drive)
+    require(drive, "FE mesh")
     print(f"{name} {case}, {drive.load_words()}, φ_C = {arguments.angle:g} rad", flush=True)
     title = f"{name}, {case}, crank angle {arguments.angle:g} rad"
     singles = single_discs(drive)

@@ -14,19 +14,11 @@ import numpy as np
 
 from fem.drive.rigid_bodies import DISC_ROTATION, WHEEL_ANGLE, RigidBodies, X, Y
 from ltca.arrays import BoolArray, ComplexArray, FloatArray
+from ltca.drive.engine_support import require
+from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import (
-    hole_modulus,
-    require_fixed_pins,
-    require_frictionless,
-    require_rigid_members,
-    shaft_pins_yield,
-)
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
-
-FULL_FINITE_ELEMENTS = "full finite elements"
-"""What refusals call this analysis."""
 
 # Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
 SMALLEST_LOAD_SHARE = 0.05
@@ -181,13 +173,6 @@ class ExpectedContacts:
     hole_points: ComplexArray
 
 
-def require_supported(drive: Drive, by: str = FULL_FINITE_ELEMENTS) -> None:
-    """Raise DriveError, naming `by`, where cranks or the wheel's axis yield, there is friction, or pins are not fixed."""
-    require_rigid_members(drive, by)
-    require_frictionless(drive, by)
-    require_fixed_pins(drive, by)
-
-
 def require_one_disc(drive: Drive) -> None:
     """Raise DriveError for a drive of several discs, where each disc is a problem by itself."""
     count = drive.disc.number_of_discs
@@ -233,17 +218,6 @@ def _minimise(rigid: RigidBodies, stiffness: FloatArray, moment: float) -> tuple
     )
 
 
-def _refuse_wheel_axis(drive: Drive) -> None:
-    offset = drive.pin_wheel.axis_offset
-    if offset.place != 0.0:
-        raise DriveError(
-            [
-                f"pin_wheel.axis_offset = ({offset.x:g}, {offset.y:g}) mm: must be (0, 0) mm for finite elements, which turn "
-                "the wheel about the axis of the pin shaft (the LTCA takes it)"
-            ]
-        )
-
-
 @names_unit_mistakes
 def expect_contacts(
     drive: Drive, crank_angle: float, *, torque: float | None = None, wheel_moment: float | None = None
@@ -271,12 +245,10 @@ def expect_contacts(
     ConvergenceError
         When nothing can carry the load.
     DriveError
-        When the wheel turns about another axis than the pin shaft's: the finite elements have one axis for both; for
-        several discs; where cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
+        For several discs, and for what full finite elements refuse at any length (`ltca.drive.engine_support`).
     """
     rigid = RigidBodies.of_drive(drive, crank_angle)
-    _refuse_wheel_axis(drive)
-    require_supported(drive)
+    require(drive, "FE mesh")
     profile, placement = rigid.profile, rigid.placement
     hertz = HertzContacts(drive=drive, rigid=rigid, smallest_share=SMALLEST_LOAD_SHARE)
     pins, rollers = len(placement.wheel_pin_radii), len(placement.roller_radii)

@@ -18,11 +18,9 @@ import numpy as np
 from fem.drive.condensed import condense_drive, keep_rounds
 from fem.drive.contact_results import DeformedContacts, deformed_contacts, summarise_contacts
 from fem.drive.expected_contacts import (
-    FULL_FINITE_ELEMENTS,
     ExpectedContacts,
     expect_contacts,
     require_one_disc,
-    require_supported,
 )
 from fem.drive.full_solution import FullSolution
 from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
@@ -34,8 +32,8 @@ from fem.errors import MeshError
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 from ltca.errors import ConvergenceError, DriveError
@@ -246,13 +244,11 @@ def solve_disc(
     ConvergenceError
         When nothing can carry the load or an iteration does not settle.
     DriveError
-        When the drive is not the same all along its thickness: shorter rollers, crown or relief; for several discs; where
-        cranks or the wheel's axis yield, or pins are loose, sleeved or beams.
+        For several discs, and for what full finite elements refuse (`ltca.drive.engine_support`).
     MemoryLimitError
         When the meshes would not fit into memory.
     """
-    require_plane_strain(drive, FULL_FINITE_ELEMENTS)
-    require_supported(drive)
+    require(drive, "full FE")
     say, watch = progress or (lambda _: None), _Stopwatch()
     shapes, rigid = DriveShapes.of_drive(drive), RigidBodies.of_drive(drive, crank_angle)
     guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)

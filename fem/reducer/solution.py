@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fem.drive.condensed import keep_rounds
-from fem.drive.expected_contacts import expect_contacts, require_supported
+from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import FullSolution
 from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
@@ -22,6 +22,7 @@ from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.reducer.shares import SharedAnswer, share_moment
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
@@ -212,12 +213,11 @@ def solve_reducer(
     ConvergenceError
         When nothing can carry the load, an iteration does not settle, or a disc carries nothing.
     DriveError
-        When the drive is not the same all along its thickness; where cranks or the wheel's axis yield, or pins are loose,
-        sleeved or beams.
+        For what full finite elements refuse (`ltca.drive.engine_support`).
     MemoryLimitError
         When the meshes would not fit into memory.
     """
-    require_supported(drive)
+    require(drive, "full FE")
     singles = single_discs(drive)
     task = _Task(
         drive=drive,

@@ -21,10 +21,10 @@ from fem.drive.full_solution import FullSolution
 from fem.mesh.mesh_file import body_stem, write_vtu
 from fem.reducer.solution import ReducerSolution
 from fem.reducer.verdict import judge_solution
+from ltca.drive.hole_contact import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limit
 from ltca.drive.members.verdict_words import check_content
-from ltca.drive.plane_strain import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.errors import CycloError
 from ltca.geometry.placement import place_coordinates
 from ltca.output.files import whole_file, write_json

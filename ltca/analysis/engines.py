@@ -21,12 +21,9 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
+from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
@@ -191,8 +188,7 @@ class HalfSpace:
         """Return the engine built for a drive."""
         drive = warm_drive(drive)
         if self.method != "tables":
-            require_frictionless(drive, f"method {self.method}")
-            require_fixed_pins(drive, f"method {self.method}")
+            require(drive, self.method)
         singles = single_discs(drive)
         tables = model = _on_tables(drive, singles)
         if self.contacts == "grids":

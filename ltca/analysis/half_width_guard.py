@@ -20,7 +20,6 @@ from ltca.arrays import FloatArray
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.response import ContactPressures, DiscModel, Response, split_shifts
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import pins_are_fixed
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
@@ -174,7 +173,7 @@ def separation_warning(
         return None
     angle, pose = balanced.crank_angle[row : row + 1], balanced.pose[row : row + 1]
     at = f"φ_C = {angle[0]:.4g} rad"
-    if not pins_are_fixed(drive):
+    if not drive.pins_are_fixed:
         most = max(float(departure[row].max()), rollers)
         name = "rollers" if most == rollers else f"{PIN} {int(np.argmax(departure[row]))}"
         told = f"at {at} the surfaces at {name} depart from the parabola of the tables by {100.0 * most:.2g} % at the edge of"

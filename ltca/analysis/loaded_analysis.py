@@ -21,10 +21,10 @@ from ltca.analysis.half_width_guard import (
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
+from ltca.drive.hole_contact import hole_words
 from ltca.drive.members.named_materials import strength_warning
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
-from ltca.drive.plane_strain import hole_words
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes, unit_warnings
 from ltca.drive.units.table import range_of

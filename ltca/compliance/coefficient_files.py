@@ -21,8 +21,8 @@ from typing import Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NearField
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
@@ -126,7 +126,7 @@ def find_coefficients(
         When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
     if near_field == "plane-strain":
-        require_plane_strain(drive, "compliance fe")
+        require(drive, "fe")
     if files is not None:
         return _load_first_that_fits(files, drive)[1]
     found = _kept(drive, plane)
@@ -169,7 +169,7 @@ def find_case_coefficients(
     """
     for drive in cases.values():
         if near_field == "plane-strain":
-            require_plane_strain(drive, "compliance fe")
+            require(drive, "fe")
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files)

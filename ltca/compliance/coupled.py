@@ -43,8 +43,8 @@ from ltca.compliance.response import (
 from ltca.compliance.rollers import RollerState
 from ltca.compliance.undeformed import UndeformedBodies
 from ltca.contact.tracked_grid import ContactKind
+from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry

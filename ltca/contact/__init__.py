@@ -14,5 +14,6 @@ end_pressure    The largest pressure of a contact and its ratio to that at mid-w
 subsurface      Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929)
 hertz           Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical
                 point contact
+round_bodies    Closed forms of round bodies in plane elasticity, the references of wheel pins, rollers and races
 ==============  ============================================================
 """

@@ -19,9 +19,9 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.drive.engine_support import refusal
 from ltca.drive.materials import JUDGED_BY
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.reference.engine_support import refusal
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer

@@ -11,8 +11,8 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
+from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import shaft_pins_yield
 from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 

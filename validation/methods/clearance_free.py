@@ -30,8 +30,8 @@ from scipy.sparse.linalg import SuperLU, splu
 from ltca.arrays import FloatArray
 from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.drive.plane_strain import require_fixed_pins, require_frictionless, require_one_bore, require_rigid_members
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import carrying_holes, carrying_rollers, first_contact
@@ -119,10 +119,7 @@ def analyse_without_clearance(
 
 
 def _refuse_clearance(drive: Drive) -> None:
-    require_rigid_members(drive, "the clearance-free analysis")
-    require_frictionless(drive, "the clearance-free analysis")
-    require_fixed_pins(drive, "the clearance-free analysis")
-    require_one_bore(drive, "the clearance-free analysis")
+    require(drive, "clearance-free")
     problems = [
         f"clearance.{name} = {value:g} mm: must be 0 mm for the clearance-free analysis"
         for name, value in (("bearing", drive.clearance.bearing), ("pin_hole", drive.clearance.pin_hole))

@@ -20,12 +20,11 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, take_positions
 from ltca.compliance.response import Response, Start
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_one_bore, require_rigid_members
 from ltca.equilibrium.balance import Equilibrium, lever_arms, solve_equilibrium
 from ltca.equilibrium.newton import TOLERANCE
 from ltca.equilibrium.output_torque import balance_at_output
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 
 MAX_ITERATIONS = 60
@@ -266,19 +265,8 @@ def prepare(drive: Drive, tables: Reducer, model: Reducer) -> HeldWheel:
     Parameters
     ----------
     drive : Drive
-        At its temperatures.
+        At its temperatures, without anything that method paper refuses (`ltca.drive.engine_support`).
     tables, model : Reducer
         On tabulated laws, and what is to be balanced.
-
-    Raises
-    ------
-    DriveError
-        For several discs or cranks, and for members that yield.
     """
-    require_rigid_members(drive, "method paper")
-    require_one_bore(drive, "method paper")
-    if len(model.discs) > 1:
-        raise DriveError(
-            [f"disc.number_of_discs = {len(model.discs)}: must be 1 for method paper, which knows one disc"]
-        )
     return HeldWheel(drive=drive, tables=tables, model=model)

@@ -272,7 +272,7 @@ def test_reverse_drive_mirrors_forward():
     [
         ({"crank_bearing.roller_length": 8.0}, r"crank_bearing.roller_length = 8 mm: must be 11.8 mm"),
         ({"crank_bearing.roller_profile.crown_drop": 0.01}, r"crank_bearing.roller_profile.crown_drop = 0.01 mm"),
-        ({"pin_wheel.pin_profile.logarithmic_factor": 1.0}, r"pin_wheel.pin_profile.logarithmic_factor = 1: must be 0"),
+        ({"pin_wheel.pin_profile.logarithmic_factor": 1.0}, r"pin_wheel.pin_profile.logarithmic_factor = 1"),
     ],
 )
 def test_what_varies_along_the_length_is_refused_before_any_work(fields, named, monkeypatch):
@@ -282,9 +282,7 @@ def test_what_varies_along_the_length_is_refused_before_any_work(fields, named, 
         raise AssertionError("work was begun")
 
     monkeypatch.setattr("fem.drive.solution.expect_contacts", never)
-    with pytest.raises(
-        DriveError, match=f"{named}.* in two dimensions .full finite elements.; use --compliance hybrid"
-    ):
+    with pytest.raises(DriveError, match=f"{named}.* for full finite elements .*; use --compliance hybrid"):
         solve_drive(with_fields(drive(), fields), 0.5)
 
 
