@@ -172,8 +172,8 @@ def dataset_page() -> str:
     text = """# The dataset
 
 `results.nc` of `cyclo run` is a netCDF file; `result.dataset` in Python has the same contents for one case. `pressure.nc`
-(`--pressure`) and `fem.nc` (`cyclo fem`) use the same names. Dimensions are in the order `case`, `disc`, `crank`, `position`, then `pin`,
-`roller`, `hole` or `lobe`; dimensions of size 1 are kept.
+(`--pressure`) and `fem.nc` (`cyclo fem`) use the same names. Dimensions are in the order `case`, `disc`, `crank`, `position`,
+then `pin`, `roller`, `hole` or `lobe`; dimensions of size 1 are kept.
 The attribute `units` has the unit of a variable, `long_name` its meaning. Discs, cranks, pins, rollers and holes are
 numbered from 0, counter-clockwise; signs and frames: [Conventions](../../theory/conventions.md).
 

@@ -2,7 +2,7 @@
 Orders of the transmission error
 ================================
 
-The transmission error has the periods of the disc teeth and of the pin holes. A simultaneous least-squares fit of the known orders
+The transmission error has the periods of the disc teeth and of the pin holes. A simultaneous fit of the known orders
 separates these contributions.
 """
 
