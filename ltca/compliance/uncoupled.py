@@ -30,7 +30,7 @@ from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import BoreMotion, FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.contact_law import EnergyLaw
+from ltca.laws.contact_law import ContactLaw
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +49,7 @@ class UncoupledContacts(ABC, Generic[Law]):
     ----------
     geometry : ContactGeometry
         The contact geometry of the drive.
-    hole_law : EnergyLaw
+    hole_law : ContactLaw
         Law of shaft pins and holes: springs k_PS, with what is before them.
     kinds : ContactKinds
         The contacts as grids see them.
@@ -58,7 +58,7 @@ class UncoupledContacts(ABC, Generic[Law]):
     coefficients: ClassVar[None] = None
 
     geometry: ContactGeometry
-    hole_law: EnergyLaw
+    hole_law: ContactLaw
     kinds: ContactKinds
 
     @abstractmethod
