@@ -17,7 +17,7 @@ from ltca.drive.deviations import ProfileErrors
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.flank import FlankProfile
-from ltca.reading.deviation_checks import deviation_bound
+from ltca.reading.disc_checks import deviation_bound
 from ltca.reading.measured.points import MeasuredPoints
 
 LEAST_PER_LOBE = 4
