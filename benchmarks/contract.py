@@ -29,12 +29,13 @@ import numpy as np
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
+from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main as cyclo
+from ltca.drive.engine_support import refusal
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.reference.engine_support import refusal
 from ltca.errors import CycloError, DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -89,7 +90,7 @@ def program(words: list[str], answer: str, extra: str = "", study: bool = False)
 
 def full_solution(drive: Drive) -> np.ndarray:
     """Return results of full finite elements on a coarse mesh."""
-    found = solve_reducer(warm_drive(drive), 0.5, scale=4.0)
+    found = solve_reducer(warm_drive(drive), 0.5, SolutionOptions(size=4.0))
     numbers = [np.array([found.wheel_angle, found.transmission_error, *found.disc_torques])]
     for disc in found.discs:
         contacts, pose = disc.contacts, disc.pose
@@ -110,7 +111,7 @@ def tables(drive: Drive) -> None:
 
 def optimum(drive: Drive) -> np.ndarray:
     """Return all quantities that an optimisation computes for a candidate."""
-    from ltca.studies.optimiser import Limit, Problem, batch_analysis, parse_variable
+    from ltca.studies.optimiser import Bound, Problem, batch_analysis, parse_variable
     from ltca.studies.quantities import quantities_for
 
     problem = Problem(
@@ -118,7 +119,7 @@ def optimum(drive: Drive) -> np.ndarray:
         variables=(parse_variable("disc.equidistant_offset", drive),),
         aims=("max_pin_load",),
         limits=tuple(
-            Limit(quantity=name, sense=1, value=1e9)
+            Bound(quantity=name, sense=1, value=1e9)
             for name in quantities_for(drive, ("all",))
             if name != "max_pin_load"
         ),
@@ -173,12 +174,12 @@ def main() -> int:
                     # Either no engine accepts the drive, or `cyclo fields` does not list the refusal by full finite elements.
                     with contextlib.suppress(CycloError):
                         tables(with_fields(base, change))
-                        ignored.append(f"{path}: refused, but not listed in ltca.drive.reference.engine_support")
+                        ignored.append(f"{path}: refused, but not listed in ltca.drive.engine_support")
                 if not is_refused_by_name(path, str(error)):
                     ignored.append(f"{path}: refused without its name: {' '.join(str(error).split())[:200]}")
                 continue
             if name == "full-fe" and refusal(kind, path.replace(".0.", ".N.")) is not None:
-                ignored.append(f"{path}: accepted, but listed as refused in ltca.drive.reference.engine_support")
+                ignored.append(f"{path}: accepted, but listed as refused in ltca.drive.engine_support")
             key = repr(base)
             if key not in known:
                 known[key] = answer(base)

@@ -82,7 +82,7 @@ def measure_others(paper: Drive, angles: np.ndarray, rounds: int, base: float) -
     print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'time by one disc':>20}")
     for name, drive in other_reducers(paper).items():
         model = HalfSpace().prepare(drive).model
-        found, seconds = best(rounds, partial(solve_at_output, model, drive, angles, drive.load.torque))
+        found, seconds = best(rounds, partial(solve_at_output, model, [drive], angles, drive.load.torque))
         print(f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{seconds / base:>20.1f}")
 
 

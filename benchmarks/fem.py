@@ -45,11 +45,12 @@ def measure(size: float, further: bool) -> dict:
     import time
 
     from fem.drive.solution import solve_drive, solve_load
+    from fem.options import SolutionOptions
     from ltca.reading.drive_file import load_drive
 
     drive = load_drive("paper").cases[CASE]
     cpu = time.process_time()
-    solution = solve_drive(drive, ANGLE, scale=size)
+    solution = solve_drive(drive, ANGLE, SolutionOptions(size=size))
     row = {
         "size": size,
         "unknowns": solution.unknowns,
@@ -69,7 +70,7 @@ def measure(size: float, further: bool) -> dict:
                 "same_meshes": more.model is solution.model,
             }
         start, cpu = time.perf_counter(), time.process_time()
-        solve_drive(drive, ANGLE + 0.3, scale=size, rounds=solution.rounds)
+        solve_drive(drive, ANGLE + 0.3, SolutionOptions(size=size), rounds=solution.rounds)
         row["further position"] = {"seconds": time.perf_counter() - start, "cpu_seconds": time.process_time() - cpu}
     return row
 
@@ -81,6 +82,7 @@ def solve_series(size: float, positions: int, refereed: int, keep: Path | None) 
     import tempfile
     import time
 
+    from fem.options import SolutionOptions
     from fem.reducer.series import solve_positions
     from ltca.errors import CycloError
     from ltca.reading.drive_file import load_drive
@@ -88,7 +90,7 @@ def solve_series(size: float, positions: int, refereed: int, keep: Path | None) 
     angles = [ANGLE + 2.0 * math.pi * position / positions for position in range(positions)]
     chosen = {round(place * positions / refereed) for place in range(refereed)}
     rows: list[dict] = []
-    solutions = solve_positions(load_drive("paper").cases[CASE], angles, scale=size)
+    solutions = solve_positions(load_drive("paper").cases[CASE], angles, SolutionOptions(size=size))
     with tempfile.TemporaryDirectory() as folder:
         for position in range(positions):
             start, cpu = time.perf_counter(), time.process_time()
@@ -166,12 +168,13 @@ def compare(size: float, penalties: list[float], keep: Path | None) -> dict:
     import time
 
     from fem.drive.solution import solve_drive
+    from fem.options import SolutionOptions
     from fem.referee.calculix import RefereeAnswer, tabulate_answers
     from fem.referee.calculix_deck import PENALTY_FACTOR
     from ltca.reading.drive_file import load_drive
 
     cpu = time.process_time()
-    solution = solve_drive(load_drive("paper").cases[CASE], ANGLE, scale=size)
+    solution = solve_drive(load_drive("paper").cases[CASE], ANGLE, SolutionOptions(size=size))
     row: dict = {"size": size, "unknowns": solution.unknowns, "cpu_seconds": time.process_time() - cpu}
     row["ours"] = arcseconds(solution.pose.wheel_angle)
     row["half_the_pressures"] = [arcseconds(halve_pressures(solution, first)) for first in (1, 2)]

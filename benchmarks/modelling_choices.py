@@ -30,7 +30,9 @@ from ltca.arrays import FloatArray
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
+from fem.body.elasticity import PlaneState
 from fem.coefficients.dataset import derive_coefficients
+from fem.options import SolutionOptions
 from fem.reducer.series import solve_positions
 from fem.shapes import DriveShapes
 from ltca.analysis.engines import PlaneStrain
@@ -73,10 +75,10 @@ def by_coefficients(drive: Drive, angles: FloatArray, size: float, stations: flo
     )
 
 
-def by_full_solution(drive: Drive, angles: FloatArray, scale: float, **chosen: Any) -> Answer:
+def by_full_solution(drive: Drive, angles: FloatArray, size: float, plane: PlaneState = "strain") -> Answer:
     """Return the results of full finite elements."""
     loads, flank, hole, wheel = [], [], [], []
-    for solution in solve_positions(drive, angles.tolist(), scale=scale, **chosen):
+    for solution in solve_positions(drive, angles.tolist(), SolutionOptions(size=size, plane=plane)):
         (disc,) = solution.discs
         contacts = disc.contacts
         loads.append(np.concatenate((contacts.pin_load, contacts.roller_load, contacts.pin_shaft_load)))
@@ -137,7 +139,7 @@ def main() -> None:
         print(row(f"{name} (fe)", base, by_coefficients(drive, angles, size, stations, **chosen)), flush=True)
     full = by_full_solution(drive, angles, size)
     print(
-        row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, state="stress")), flush=True
+        row("plane strain -> stress (full FE)", full, by_full_solution(drive, angles, size, plane="stress")), flush=True
     )
     elastic = with_fields(drive, {"pin_shaft.elastic_contact": True})
     print(row("shaft pins rigid -> elastic (full FE)", full, by_full_solution(elastic, angles, size)), flush=True)

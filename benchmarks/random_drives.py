@@ -47,7 +47,7 @@ def try_friction_drive(seed: int) -> tuple[str, str, int]:
         rubs = friction if driven_by == drive.load.driven_by else friction.reversed()
         moving = replace(model, friction=rubs)
         try:
-            balanced = solve_at_output(moving, own, np.array([angle]), drive.load.torque)
+            balanced = solve_at_output(moving, [own], np.array([angle]), drive.load.torque)
         except ConvergenceError as error:
             kind = "convergence error" if error.history else "error without history"
             return kind, f"driven by its {driven_by}: {error}", 0
@@ -72,7 +72,7 @@ def try_drive(seed: int, draw: Callable[[int], tuple[Drive, float] | None]) -> t
     drive, angle = drawn
     try:
         model = HalfSpace().prepare(drive).model
-        balanced = solve_at_output(model, drive, np.array([angle]), drive.load.torque)
+        balanced = solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
     except ConvergenceError as error:
         return ("convergence error" if error.history else "error without history"), str(error), 0
     problems = find_imbalance(drive, model, balanced, torque=drive.load.torque)

@@ -26,6 +26,7 @@ from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study
+from ltca.studies.study_results import read_failures
 from ltca.studies.tolerance_study import tolerance_study
 
 
@@ -80,7 +81,7 @@ def main() -> None:
         folders = [StudyFolder(path=Path(folder) / str(number)) for number in range(len(places))]
         rates = [measure(study, where, part) for where, part in zip(places, folders, strict=True)]
         print(f"  two workers by one: {rates[1][0] / rates[0][0]:.2f} whole, {rates[1][1] / rates[0][1]:.2f} steady")
-        failed = folders[0].failures(study)
+        failed = read_failures(folders[0].results)
         print(f"  failed samples: {len(failed)}")
         first = folders[0].results.read_bytes()
         print(f"  identical files: {all(folder.results.read_bytes() == first for folder in folders[1:])}")

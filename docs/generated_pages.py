@@ -38,8 +38,8 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def drive_file_page() -> str:
     """Return the page of all fields of a drive file."""
-    from ltca.drive.reference.engine_support import ENGINES, refusals
-    from ltca.drive.reference.field_descriptions import by_table, describe_fields, gathered, table_description
+    from ltca.drive.declaration import by_table, gathered, table_of
+    from ltca.drive.engine_support import ENGINES, refusals
 
     text = """# The drive file
 
@@ -59,8 +59,8 @@ Engines use every field or refuse it by name. They are
 """
     text += table(("engine", "meaning"), ENGINES.items())
     text += "A test changes every field in every engine and checks that the result changes (`tests/contract`).\n\n"
-    for name, fields in by_table(gathered(describe_fields())).items():
-        told = table_description(name) if name else None
+    for name, fields in by_table(gathered()).items():
+        told = table_of(name) if name else None
         text += f"## {name}\n\n" if name else "## Top level of the file\n\n"
         if told is not None:
             text += f"{told.meaning.replace('``', '`')}{' Optional.' if told.optional else ''}\n\n"
@@ -70,7 +70,7 @@ Engines use every field or refuse it by name. They are
             text += "".join(f"Refused by {', '.join(by)}: {why}.\n\n" for why, by in refused[0].items())
         rows = []
         for field, by in zip(fields, refused, strict=True):
-            unit = field.unit or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
+            unit = field.label or {"quantity": "number", "count": "whole number"}.get(field.kind, field.kind)
             meaning = field.meaning.replace("``", "`")
             if not alike:
                 meaning += "".join(f" Refused by {', '.join(engines)}: {why}." for why, engines in by.items())

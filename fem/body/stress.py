@@ -15,7 +15,6 @@ from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
 from fem.body.elasticity import PlaneState
 from fem.mesh.body_mesh import BodyMesh
-from fem.mesh.mesh_file import element_nodes
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
 
@@ -72,24 +71,7 @@ def stress_of_strain(
 def recover_stress(
     body: BodyMesh, displacement: FloatArray, material: Material, *, state: PlaneState = "strain"
 ) -> Stress:
-    """Return averaged stresses at the nodes.
-
-    Parameters
-    ----------
-    body : BodyMesh
-        The mesh.
-    displacement : array, shape (2 nodes,)
-        Node by node, mm.
-    material : Material
-        Of the body.
-    state : {"strain", "stress"}
-        Plane strain or plane stress.
-
-    Returns
-    -------
-    Stress
-        Arrays of shape (nodes,).
-    """
+    """Return stresses at the nodes, averaged over elements, shape (nodes,), of nodal displacements of shape (2 nodes,), mm."""
     order = body.order
     basis = Basis(body.mesh, ElementVector(ElementTriP2() if order == 2 else ElementTriP1()), quadrature=SAMPLES)
     gradient = np.asarray(basis.interpolate(displacement).grad)
@@ -100,7 +82,7 @@ def recover_stress(
     spread = np.column_stack([np.ones(corners.shape[1]), corners.T]) @ np.linalg.inv(
         np.column_stack([np.ones(3), x, y])
     )
-    nodes = element_nodes(body)
+    nodes = body.element_nodes
     weight = np.repeat(np.abs(np.asarray(basis.dx)).sum(axis=1)[:, None], nodes.shape[1], axis=1).ravel()
     total = np.bincount(nodes.ravel(), weights=weight, minlength=body.node_count)
 

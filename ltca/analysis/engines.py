@@ -21,12 +21,9 @@ from ltca.compliance.grids import GridCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
+from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import (
-    require_fixed_pins,
-    require_frictionless,
-)
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
@@ -50,6 +47,11 @@ class PreparedEngine(Protocol):
     @property
     def model(self) -> Reducer:
         """The compliance whose loads balance."""
+        ...
+
+    @property
+    def batches(self) -> bool:
+        """Whether the model is balanced directly, so that several drives may be rows of one batch."""
         ...
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
@@ -89,30 +91,34 @@ class Engine(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OnTables:
+class _OnTables:
     """Equilibrium on a model whose loads come cheaply from anywhere; several drives may be balanced as one batch."""
+
+    batches: ClassVar[bool] = True
 
     drive: Drive
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
         """Return balanced positions at an output torque, N·mm, from poses near by if given."""
-        return solve_at_output(self.model, self.drive, crank_angle, torque, start)
+        return solve_at_output(self.model, [self.drive], crank_angle, torque, start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _FromTables:
     """Equilibrium on a dearer model, started from the solution on tables."""
 
+    batches: ClassVar[bool] = False
+
     drive: Drive
     tables: Reducer
     model: Reducer
 
     def balance(self, crank_angle: FloatArray, torque: float, start: FloatArray | None = None) -> Equilibrium:
-        near = solve_at_output(self.tables, self.drive, crank_angle, torque, start)
+        near = solve_at_output(self.tables, [self.drive], crank_angle, torque, start)
         # Grids wider than the bodies are curved have no separation: refused before they are laid.
         check_half_widths(self.drive, near.response, self.tables.pressures(near.response), torque)
-        return solve_at_output(self.model, self.drive, crank_angle, torque, near.pose, Start.after(near.response))
+        return solve_at_output(self.model, [self.drive], crank_angle, torque, near.pose, Start.after(near.response))
 
 
 def _on_tables(drive: Drive, singles: Sequence[Drive], *, in_batch: bool = False) -> Reducer:
@@ -182,8 +188,7 @@ class HalfSpace:
         """Return the engine built for a drive."""
         drive = warm_drive(drive)
         if self.method != "tables":
-            require_frictionless(drive, f"method {self.method}")
-            require_fixed_pins(drive, f"method {self.method}")
+            require(drive, self.method)
         singles = single_discs(drive)
         tables = model = _on_tables(drive, singles)
         if self.contacts == "grids":
@@ -193,7 +198,7 @@ class HalfSpace:
             return _method("paper")(drive, tables, model)
         if self.method == "direct":
             return _FromTables(drive=drive, tables=tables, model=model)
-        return OnTables(drive=drive, model=tables)
+        return _OnTables(drive=drive, model=tables)
 
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
         """Return the tables of a drive."""

@@ -13,6 +13,7 @@ from math import ceil, gcd
 
 import numpy as np
 
+from ltca.analysis.contact_arrays import array_of, contact_arrays
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.arrays import FloatArray
 from ltca.compliance.response import ContactPressures
@@ -371,7 +372,7 @@ def _solve(
     """Balance new positions of both torques in one batch and give them to their stages."""
     joined = np.concatenate([angles, light_angles])
     torque = np.repeat([full.torque, light.torque], [angles.size, light_angles.size])
-    found = solve_at_output(analysis.model, analysis.drive, joined, torque, start)
+    found = solve_at_output(analysis.model, [analysis.drive], joined, torque, start)
     if angles.size:
         signals = _full_signals(analysis, found, analysis.model.pressures(found.response))
         loaded = slice(angles.size)
@@ -388,7 +389,7 @@ def _wheel_signals(analysis: LoadedAnalysis, found: Equilibrium) -> dict[str, Fl
 
 
 def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: ContactPressures) -> dict[str, FloatArray]:
-    rollers, outer, inner = found.response.rollers, pressures.outer, pressures.inner
+    arrays = contact_arrays(found.response, pressures)
     push = bearing_forces(analysis.model, found.crank_angle, found.response).reshape(found.crank_angle.size, -1)
     tangential = push.imag
     return {
@@ -396,13 +397,5 @@ def _full_signals(analysis: LoadedAnalysis, found: Equilibrium, pressures: Conta
         **{f"tangential_{bearing}": column[:, None] for bearing, column in enumerate(tangential.T)},
         **{f"tangential_negative_{bearing}": -column[:, None] for bearing, column in enumerate(tangential.T)},
         "max_bearing_load": np.abs(push),
-        "max_pin_load": found.response.pin_load,
-        "max_roller_load": rollers.outer_load,
-        "max_pin_shaft_load": found.response.hole_load,
-        "max_pin_pressure_mid": pressures.pins.mid,
-        "max_pin_pressure_max": pressures.pins.largest,
-        "max_roller_pressure_mid": np.hstack([outer.mid, inner.mid]),
-        "max_roller_pressure_max": np.hstack([outer.largest, inner.largest]),
-        "max_pin_shaft_pressure_mid": pressures.holes.mid,
-        "max_pin_shaft_pressure_max": pressures.holes.largest,
+        **{name: values for name, scalar in REFINED.items() if (values := array_of(arrays, scalar.of)) is not None},
     }

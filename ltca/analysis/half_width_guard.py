@@ -18,10 +18,8 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.compliance.grids import GridCompliance
-from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.response import ContactPressures, Response, split_shifts
+from ltca.compliance.response import ContactPressures, DiscModel, Response, split_shifts
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import pins_are_fixed
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
@@ -151,13 +149,13 @@ def unborne_warning(pressures: ContactPressures) -> str | None:
 
 
 def separation_warning(
-    model: HalfSpaceCompliance, drive: Drive, balanced: Equilibrium, pressures: ContactPressures
+    model: DiscModel, drive: Drive, balanced: Equilibrium, pressures: ContactPressures
 ) -> str | None:
     """Return what to say where tables and the true separation of the surfaces disagree, None where they do not.
 
     Parameters
     ----------
-    model : HalfSpaceCompliance
+    model : DiscModel
         The tables.
     drive : Drive
         Their drive.
@@ -175,7 +173,7 @@ def separation_warning(
         return None
     angle, pose = balanced.crank_angle[row : row + 1], balanced.pose[row : row + 1]
     at = f"φ_C = {angle[0]:.4g} rad"
-    if not pins_are_fixed(drive):
+    if not drive.pins_are_fixed:
         most = max(float(departure[row].max()), rollers)
         name = "rollers" if most == rollers else f"{PIN} {int(np.argmax(departure[row]))}"
         told = f"at {at} the surfaces at {name} depart from the parabola of the tables by {100.0 * most:.2g} % at the edge of"
@@ -201,7 +199,7 @@ def separation_warning(
     )
 
 
-def _departures(model: HalfSpaceCompliance, contacts: Response, pressures: ContactPressures) -> FloatArray:
+def _departures(model: DiscModel, contacts: Response, pressures: ContactPressures) -> FloatArray:
     """Departure of pin and flank from their parabola at the edges of the contact, as `DEPARTURE` counts it."""
     profile, flank, half_width = model.geometry.profile, contacts.flank, pressures.pins.half_width
     radius = np.broadcast_to(model.geometry.placement.wheel_pin_radii, half_width.shape)

@@ -124,10 +124,10 @@ def torque_curve(
     opposing = (1.0 if drive.wheel_is_held else -1.0) * drive.driving_sign
     loads = np.tile(opposing * torque, angles.size)
     tables = replace(HalfSpace().prepare(drive).model, friction=None)
-    found = solve_at_output(tables, drive, held, loads)
+    found = solve_at_output(tables, [drive], held, loads)
     if not (engine is None or engine == HalfSpace()):
         model = replace(engine.prepare(drive).model, friction=None)
-        found = solve_at_output(model, drive, held, loads, found.pose)
+        found = solve_at_output(model, [drive], held, loads, found.pose)
     wheel = found.pose[:, WHEEL_ANGLE].reshape(angles.size, torque.size)
     output = drive.output_per_wheel_angle * wheel
 

@@ -21,8 +21,8 @@ from typing import Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NearField
+from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.plane_strain import require_plane_strain
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
 from ltca.output.process_pools import process_pool
@@ -97,7 +97,7 @@ def _forget(folder: str, process: int) -> None:
 
 def find_coefficients(
     drive: Drive,
-    files: Path | Sequence[Path] | None = None,
+    files: Sequence[Path] | None = None,
     plane: str = "strain",
     *,
     near_field: NearField = "half-space",
@@ -108,7 +108,7 @@ def find_coefficients(
     ----------
     drive : Drive
         The drive; its load and single-part errors do not matter.
-    files : Path or sequence of Path, optional
+    files : sequence of Path, optional
         Files of ``cyclo derive``, one of which must belong to the drive.
     plane : {"strain", "stress"}
         State of the body part when it has to be derived.
@@ -126,9 +126,9 @@ def find_coefficients(
         When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
     """
     if near_field == "plane-strain":
-        require_plane_strain(drive, "compliance fe")
+        require(drive, "fe")
     if files is not None:
-        return _load_first_that_fits([files] if isinstance(files, Path) else files, drive)[1]
+        return _load_first_that_fits(files, drive)[1]
     found = _kept(drive, plane)
     if found is None:
         _derive_missing({drive.name: drive}, plane)
@@ -169,7 +169,7 @@ def find_case_coefficients(
     """
     for drive in cases.values():
         if near_field == "plane-strain":
-            require_plane_strain(drive, "compliance fe")
+            require(drive, "fe")
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files)

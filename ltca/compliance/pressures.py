@@ -19,10 +19,8 @@ from ltca.compliance.response import KindPressures
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.contact.tracked_grid import ContactKind
 from ltca.geometry.placement import Placement
-from ltca.laws.backed import BackedLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.series import approach_at_load
 
 
 def pressures_of_law(
@@ -41,8 +39,7 @@ def pressures_of_law(
     effective_radius : array
         mm; broadcast to that shape.
     """
-    if isinstance(law, BackedLaw):
-        approach, law = law.contact_approach(approach, effective_radius), law.known_contact
+    law, approach = law.surface(approach, effective_radius)
     closed = approach > 0.0
     mid, half_width, largest = (np.zeros(closed.shape) for _ in range(3))
     pressed, radius = approach[closed], np.broadcast_to(effective_radius, closed.shape)[closed]
@@ -66,5 +63,5 @@ def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement
         For the radii.
     """
     law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
-    approach, _ = approach_at_load(law, load, radius)
+    approach, _ = law.approach_at_load(load, radius)
     return pressures_of_law(law, kind, approach, radius)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays
-from ltca.laws.contact_law import LoadLaw
+from ltca.laws.contact_law import ContactLaw
 
 ITERATIONS = 60
 SETTLED = 1e-6
@@ -24,7 +24,7 @@ SETTLED = 1e-6
 CLOSED = 1e-11
 """Last change of a share by bisection."""
 
-Law = TypeVar("Law", bound=LoadLaw)
+Law = TypeVar("Law", bound=ContactLaw)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +33,7 @@ class RollerLaws(Generic[Law]):
 
     Attributes
     ----------
-    inner, outer : LoadLaw
+    inner, outer : ContactLaw
         Laws on the inner race and in the bore.
     inner_radius, outer_radius : array, shape (rollers,)
         Effective radii of curvature, mm.

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.compliance.coupled import CoupledCompliance
-from ltca.compliance.response import ContactPressures, DiscResponse
-from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
+from ltca.compliance.response import ContactPressures, DiscModel, DiscResponse
+from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
 
 CLEAR_HALF_WIDTHS = 4.0
 """A wall is clear of a contact beyond this many of its half-widths."""
@@ -108,13 +107,13 @@ class _PlacedContacts:
 
 
 def wall_stresses(
-    model: CoupledCompliance, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
+    model: DiscModel, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> WallStresses:
     """Return the largest stresses along the walls and the stresses under the contacts.
 
     Parameters
     ----------
-    model : CoupledCompliance
+    model : DiscModel
         The model that answered.
     response : DiscResponse
         Its loads.
@@ -124,18 +123,19 @@ def wall_stresses(
         Rotation of the disc, rad: ``pose[:, 2]``.
     """
     positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
-    if not model.coefficients.stress.available:
+    stress = _stress_coefficients(model)
+    if stress is None:
         return _unknown(response, lobes)
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
-        _reduce(model, _take(placed, rows), lobes)
+        _reduce(model, stress, _take(placed, rows), lobes)
         for rows in np.array_split(np.arange(positions), max(1, -(-positions // CHUNK)))
     ]
     return WallStresses(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def wall_profiles(
-    model: CoupledCompliance,
+    model: DiscModel,
     response: DiscResponse,
     pressures: ContactPressures,
     disc_rotation: FloatArray,
@@ -151,13 +151,20 @@ def wall_profiles(
     refinement : int
         Places for each stress station, the first of them on it.
     """
-    if not model.coefficients.stress.available:
+    stress = _stress_coefficients(model)
+    if stress is None:
         return ()
-    return _profiles(model, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
+    return _profiles(model, stress, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
+
+
+def _stress_coefficients(model: DiscModel) -> StressCoefficients | None:
+    """Return the stress coefficients of a disc; None where it has none, or no body."""
+    coefficients = model.coefficients
+    return coefficients.stress if coefficients is not None and coefficients.stress.available else None
 
 
 def _place_contacts(
-    model: CoupledCompliance, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
+    model: DiscModel, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> tuple[_PlacedContacts, ...]:
     """Return the contacts of flank, each bore and each hole in the frame of the disc."""
     place, turn = model.geometry.placement, disc_rotation[:, None]
@@ -205,10 +212,10 @@ def _take(placed: tuple[_PlacedContacts, ...], rows: NDArray[np.intp]) -> tuple[
 
 
 def _profiles(
-    model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], refinement: int
+    model: DiscModel, coefficients: StressCoefficients, placed: tuple[_PlacedContacts, ...], refinement: int
 ) -> tuple[tuple[WallProfile, ...], FloatArray]:
     """Return the profiles of all walls, and the stress at the stations."""
-    place, coefficients = model.geometry.placement, model.coefficients.stress
+    place = model.geometry.placement
     centres = np.concatenate((place.bore_centres, place.hole_centres))
     radii = np.concatenate((np.full(place.cranks, place.bore_radius), place.hole_radii))
     stress = evaluate_wall_stress(coefficients, tuple(own.contacts for own in placed))
@@ -227,9 +234,11 @@ def _profiles(
     return tuple(profiles), stress
 
 
-def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes: int) -> dict[str, FloatArray]:
+def _reduce(
+    model: DiscModel, coefficients: StressCoefficients, placed: tuple[_PlacedContacts, ...], lobes: int
+) -> dict[str, FloatArray]:
     """Return the fields of `WallStresses` of some positions."""
-    profiles, stress = _profiles(model, placed, REFINEMENT)
+    profiles, stress = _profiles(model, coefficients, placed, REFINEMENT)
     flank, *round_walls = profiles
     nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
     roots = [flank.largest(nearest == root) for root in range(lobes)]
@@ -237,7 +246,7 @@ def _reduce(model: CoupledCompliance, placed: tuple[_PlacedContacts, ...], lobes
     cranks = model.geometry.placement.cranks
     worst = np.argmax(np.nan_to_num(values[:, :cranks], nan=-np.inf), axis=1)[:, None]
     under = []
-    for wall, own in zip(model.coefficients.stress.walls, placed, strict=True):
+    for wall, own in zip(coefficients.walls, placed, strict=True):
         stations, weights = wall.weights(own.contacts.parameter)
         rows = np.arange(stress.shape[0])[:, None, None]
         under.append(np.sum(stress[rows, stations] * weights, axis=-1))

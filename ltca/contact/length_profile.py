@@ -1,7 +1,7 @@
-"""Profiles of rollers and pins along their length: what crowning and relief take away from the cylinder.
+"""Profiles of rollers and pins along their length: crowning and relief.
 
-Each profile is symmetric about mid-width and gives the relief z(y) ≥ 0 and the half-length within which the
-undeformed bodies overlap at a given approach (no contact can reach beyond it), both in mm.
+Each profile is symmetric about mid-width and gives the relief z(y) ≥ 0, by which it falls short of the cylinder, and the
+half-length within which the undeformed bodies overlap at a given approach (no contact can reach beyond it), both in mm.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ltca.arrays import FloatArray
 
 
 class Relief(Protocol):
-    """What a contact needs to know of crowning and relief along the width; hashable, tables are cached by it."""
+    """Crowning or relief along the width; hashable, since tables are cached by it."""
 
     def __hash__(self) -> int:
         """Hash of the parameters."""

@@ -104,7 +104,7 @@ def solve_equilibrium(
     model: Reducer,
     crank_angle: FloatArray,
     wheel_moment: FloatArray | float,
-    start: FloatArray | Equilibrium | None = None,
+    start: FloatArray | None = None,
     inner: Start | None = None,
     gaps: bool = True,
     series: int = 1,
@@ -119,9 +119,8 @@ def solve_equilibrium(
         Held crank angles φ_C, rad.
     wheel_moment : float or array, shape (positions,)
         External moment on the wheel, ccw positive, N·mm.
-    start : array, shape (positions, coordinates), or Equilibrium, optional
-        Poses to start from, or what this model answered under other moments; by default the discs on the inner-race
-        centres and the wheel turned to first contact.
+    start : array, shape (positions, coordinates), optional
+        Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
     inner : Start, optional
         Inner unknowns near the poses to start from.
     gaps : bool
@@ -141,14 +140,24 @@ def solve_equilibrium(
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
+    search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)))
+    return _completed(search, _solve_by_neighbours(search, start, inner, series), gaps)
+
+
+def follow_equilibrium(model: Reducer, found: Equilibrium, wheel_moment: FloatArray, gaps: bool = True) -> Equilibrium:
+    """Balance positions under other moments, N·mm, from what this model answered; `gaps` as for `solve_equilibrium`."""
+    search = _search(model, found.crank_angle, wheel_moment, found.pose.copy())
+    return _completed(search, search.iterate(ITERATIONS, response=found.response), gaps)
+
+
+def _search(model: Reducer, angle: FloatArray, moment: FloatArray, pose: FloatArray) -> Search:
     lever = lever_arms(model)
-    load = np.abs(moment) / lever[..., WHEEL_ANGLE]
-    if isinstance(start, Equilibrium):
-        search = Search(model, angle, moment, lever, load, start.pose.copy())
-        left = search.iterate(ITERATIONS, begin=start.response)
-    else:
-        search = Search(model, angle, moment, lever, load, np.zeros((angle.size, lever.shape[-1])))
-        left = _solve_by_neighbours(search, start, inner, series)
+    return Search(model, angle, moment, lever, np.abs(moment) / lever[..., WHEEL_ANGLE], pose)
+
+
+def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibrium:
+    """Balance what Newton's method has left over by other means, and return all positions."""
+    model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
     left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
     if left.size and not np.all(_below_round_off(search, left)):
@@ -158,7 +167,7 @@ def solve_equilibrium(
     response = search.contacts()[1]
     return Equilibrium(
         crank_angle=angle,
-        wheel_moment=np.array(moment),
+        wheel_moment=np.array(search.moment),
         pose=search.pose,
         response=complete(model, angle, search.pose, response) if gaps else response,
         residual=search.residual,

@@ -113,7 +113,11 @@ class Search:
         return gradient, response.tangent / (lever[..., :, None] * lever[..., None, :])
 
     def iterate(
-        self, most: int, rows: NDArray[np.intp] | None = None, begin: Start | Response | None = None
+        self,
+        most: int,
+        rows: NDArray[np.intp] | None = None,
+        begin: Start | None = None,
+        response: Response | None = None,
     ) -> NDArray[np.intp]:
         """Move positions towards balance; return those of them that do not balance, ascending.
 
@@ -123,13 +127,16 @@ class Search:
             Iterations.
         rows : array of int, optional
             Which positions, ascending; all by default.
-        begin : Start or Response, optional
-            Inner unknowns near the poses of these positions, or their contacts there.
+        begin : Start, optional
+            Inner unknowns near the poses of these positions.
+        response : Response, optional
+            Their contacts at these poses, where they are known.
         """
         active = asked = np.arange(self.angle.size) if rows is None else rows
         first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
         damping, bound = np.full(self.angle.size, 1e-6), np.full(self.angle.size, first_bound)
-        response = begin if isinstance(begin, Response) else self.evaluate(active, self.pose[active], begin)
+        if response is None:
+            response = self.evaluate(active, self.pose[active], begin)
         gradient, tangent = self.scaled(active, response)
         residual = self.residual
         residual[active] = np.max(np.abs(gradient), axis=1)

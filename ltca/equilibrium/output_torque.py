@@ -22,15 +22,12 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, put_positions, take_positions
 from ltca.compliance.response import Response, Start, bearing_pushes
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
-from ltca.equilibrium.friction.turning import TurningFriction
+from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 """What balances positions: crank angles, moments on the wheel and poses to start from."""
-Begin = FloatArray | Equilibrium | None
-"""Poses to start from, or what was found under other moments."""
 
 ROUNDS = 30
 CLOSED = 1e-10
@@ -108,7 +105,7 @@ JAMMED = 2.0
 
 def solve_at_output(
     model: Reducer,
-    drives: Drive | Sequence[Drive],
+    drives: Sequence[Drive],
     crank_angle: FloatArray,
     torque: FloatArray | float,
     start: FloatArray | None = None,
@@ -123,8 +120,8 @@ def solve_at_output(
     ----------
     model : Reducer
         Loads at a pose, of one drive or of a batch.
-    drives : Drive or sequence of Drive
-        The drive, or the drives of a batch that have equal numbers of positions each, drive by drive.
+    drives : sequence of Drive
+        The drives of the batch, often one; all have the same number of positions, drive by drive.
     crank_angle : array, shape (positions,)
         φ_C, rad.
     torque : float or array, shape (positions,)
@@ -146,7 +143,7 @@ def solve_at_output(
         When a position does not balance.
     """
     friction = model.friction
-    if not isinstance(friction, TurningFriction):
+    if friction is None or not friction.turns:
         return _solve(model, drives, crank_angle, torque, start, inner, gaps)
     smooth = _solve(replace(model, friction=None), drives, crank_angle, torque, start, inner, gaps=False)
     try:
@@ -180,7 +177,7 @@ def solve_at_output(
 
 
 def _jam(
-    drives: Drive | Sequence[Drive],
+    drives: Sequence[Drive],
     crank_angle: FloatArray,
     reached: float,
     lost: float,
@@ -195,8 +192,7 @@ def _jam(
     the search made of the whole friction at once (that the teeth slip) tells nothing of that.
     """
     row = int(np.argmax(grown / np.maximum(without, 1e-300)))
-    each = [drives] if isinstance(drives, Drive) else list(drives)
-    friction = each[row * len(each) // grown.size].friction
+    friction = drives[row * len(drives) // grown.size].friction
     names = () if friction is None else ("pin", "seat", "hole", "roller", "support_bearing")
     given = {name: value for name in names if (value := getattr(friction, name))}
     told = ", ".join(
@@ -215,7 +211,7 @@ def _jam(
 
 def _solve(
     model: Reducer,
-    drives: Drive | Sequence[Drive],
+    drives: Sequence[Drive],
     crank_angle: FloatArray,
     torque: FloatArray | float,
     start: FloatArray | None,
@@ -223,22 +219,19 @@ def _solve(
     gaps: bool,
 ) -> Equilibrium:
     """Balance positions at output torques, the way `solve_at_output` says."""
-    each = [drives] if isinstance(drives, Drive) else list(drives)
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
-    repeats = angle.size // len(each)
-    mean = np.repeat([drive.wheel_moment(1.0) for drive in each], repeats) * loads
-    held = np.repeat([drive.wheel_is_held for drive in each], repeats)
-    signed = np.repeat([drive.driving_sign for drive in each], repeats) * loads
+    repeats = angle.size // len(drives)
+    mean = np.repeat([drive.wheel_moment(1.0) for drive in drives], repeats) * loads
+    held = np.repeat([drive.wheel_is_held for drive in drives], repeats)
+    signed = np.repeat([drive.driving_sign for drive in drives], repeats) * loads
 
-    def balance(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
-        part = model if rows.size == angle.size else model.take(rows)
-        own = None if isinstance(begin, Equilibrium) else inner
-        series = len(each) if rows.size == angle.size else rows.size
-        return solve_equilibrium(part, angle[rows], moment, begin, own, gaps, series)
+    def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
+        return follow_equilibrium(model if rows.size == angle.size else model.take(rows), near, moment, gaps)
 
-    part = np.repeat([drive.input_per_crank_moment for drive in each], repeats)
-    return _at_output(model, balance, angle, mean, signed, held, part, start)
+    part = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
+    found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives))
+    return _at_output(model, follow, found, signed, held, part)
 
 
 def balance_at_output(
@@ -270,28 +263,29 @@ def balance_at_output(
     mean = np.full(angle.size, drive.wheel_moment(torque))
     held = np.full(angle.size, drive.wheel_is_held)
 
-    def at(rows: NDArray[np.intp], moment: FloatArray, begin: Begin) -> Equilibrium:
-        return balance(angle[rows], moment, begin.pose if isinstance(begin, Equilibrium) else begin)
+    def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
+        return balance(angle[rows], moment, near.pose)
 
     part = np.full(angle.size, drive.input_per_crank_moment)
-    return _at_output(model, at, angle, mean, np.full(angle.size, drive.driving_sign * torque), held, part, start)
+    signed = np.full(angle.size, drive.driving_sign * torque)
+    return _at_output(model, follow, balance(angle, mean, start), signed, held, part)
 
 
 def _at_output(
     model: Reducer,
-    balance: Callable[[NDArray[np.intp], FloatArray, Begin], Equilibrium],
-    angle: FloatArray,
-    mean: FloatArray,
+    follow: Callable[[NDArray[np.intp], FloatArray, Equilibrium], Equilibrium],
+    found: Equilibrium,
     signed: FloatArray,
     held: NDArray[np.bool_],
     share: FloatArray,
-    start: FloatArray | None,
 ) -> Equilibrium:
-    """Find the moments on held wheels by secants, from their mean over a turn."""
-    everything = np.arange(angle.size)
-    found = balance(everything, mean, start)
+    """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
+
+    `follow` balances some positions under other moments, from what they were balanced under last.
+    """
     if not np.any(held):
         return found
+    angle, mean = found.crank_angle, found.wheel_moment
     moment = mean.copy()
     left = moment + input_moment(model, angle, found.pose, found.response, share) + signed
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
@@ -305,9 +299,9 @@ def _at_output(
         step = -left[open_rows] / slope[open_rows]
         moment[open_rows] += step
         whole = open_rows.size == angle.size
-        begin = found if whole else take_positions(found, open_rows)
-        part = balance(open_rows, moment[open_rows], begin)
-        part = replace(part, iterations=begin.iterations + part.iterations)
+        near = found if whole else take_positions(found, open_rows)
+        part = follow(open_rows, moment[open_rows], near)
+        part = replace(part, iterations=near.iterations + part.iterations)
         found = part if whole else put_positions(found, open_rows, part)
         before = left[open_rows]
         model_part = model if whole else model.take(open_rows)

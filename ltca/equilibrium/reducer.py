@@ -38,6 +38,39 @@ from ltca.geometry.pairs import ContactGeometry
 class JointFriction(Protocol):
     """Friction of the joints at a pose."""
 
+    @property
+    def pin(self) -> float:
+        """Coefficient with which wheel pins rub."""
+        ...
+
+    @property
+    def hole(self) -> float:
+        """Coefficient with which shaft pins rub."""
+        ...
+
+    @property
+    def rolling(self) -> float:
+        """Moment between crank and disc by the load of a crank bearing, mm."""
+        ...
+
+    @property
+    def motion(self) -> int:
+        """+1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked."""
+        ...
+
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns: its friction goes with the loads alone and may be followed from none."""
+        ...
+
+    def scaled(self, strength: float) -> JointFriction:
+        """Return the friction with all coefficients times a factor."""
+        ...
+
+    def reversed(self) -> JointFriction:
+        """Return the friction of the same drive as it turns the other way."""
+        ...
+
     def of_disc(
         self, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: DiscResponse, disc: int
     ) -> Rubbing:
@@ -124,18 +157,17 @@ class Reducer:
 
         def respond(moved: ComplexArray | None) -> tuple[DiscResponse, ...]:
             if moved is None and self.friction is not None:
-                moved = self._unmoved(crank_angle.size)  # with which slopes come
-            each = [None] * count if moved is None else list(moved.swapaxes(0, 1))
-            found = tuple(
-                disc.respond(crank_angle, pose[:, own], own_start, own_shifts)
-                for own, disc, own_start, own_shifts in zip(places, self.discs, starts, each, strict=True)
-            )
-            if self.friction is None:
-                return found
-            return tuple(
-                _rubbed(self.friction, self.discs[disc].geometry, crank_angle, pose[:, own], part, disc)
-                for disc, (own, part) in enumerate(zip(places, found, strict=True))
-            )
+                moved = self._unmoved(crank_angle.size)  # friction needs the slopes that come with displacements
+            parts = []
+            for number, (own, disc) in enumerate(zip(places, self.discs, strict=True)):
+                shift = None if moved is None else moved[:, number]
+                part = disc.respond(crank_angle, pose[:, own], starts[number], shift)
+                if self.friction is not None:
+                    rubbing = self.friction.of_disc(disc.geometry, crank_angle, pose[:, own], part, number)
+                    force, tangent = part.force + rubbing.force, part.tangent + rubbing.tangent
+                    part = replace(part, force=force, tangent=tangent, friction=rubbing.tangential)
+                parts.append(part)
+            return tuple(parts)
 
         shifts, settled, size = None, None, coordinates.size
         if self.pins is None:
@@ -181,21 +213,6 @@ class Reducer:
         kinds = ("pins", "outer", "inner", "holes")
         joined: dict[str, Any] = {kind: _beside_kinds([getattr(each, kind) for each in found]) for kind in kinds}
         return ContactPressures(**joined, rigid_shaft_pins=found[0].rigid_shaft_pins)
-
-
-def _rubbed(
-    friction: JointFriction,
-    geometry: ContactGeometry,
-    crank_angle: FloatArray,
-    pose: FloatArray,
-    part: DiscResponse,
-    disc: int,
-) -> DiscResponse:
-    """Contacts of a disc with their friction."""
-    found = friction.of_disc(geometry, crank_angle, pose, part, disc)
-    return replace(
-        part, force=part.force + found.force, tangent=part.tangent + found.tangent, friction=found.tangential
-    )
 
 
 def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:

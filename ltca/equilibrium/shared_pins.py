@@ -132,11 +132,8 @@ class SharedTangent:
         # A pin moves against a disc as the disc moves the other way against it; shape (positions, pairs, discs, 2).
         self.normal = -gradient.swapaxes(1, 2)
         self.slip = -along.swapaxes(1, 2)
-        force = self.load.swapaxes(1, 2)[..., None] * self.normal
-        if parts[0].friction is not None:
-            rubbed = np.stack([part.friction[:, self.own] for part in parts if part.friction is not None], axis=2)
-            force = force + rubbed[..., None] * self.slip
-        self.force: ComplexArray = np.ascontiguousarray(force).view(complex)[..., 0]
+        # Against the pins' displacements.
+        self.force = np.stack([-part.pin_forces[:, self.own] for part in parts], axis=2)
         self.bend = (self.load * sense * bending).swapaxes(1, 2)
         self.on_flank = (self.load * (sense < 0.0)).swapaxes(1, 2)
         positions, pairs, discs = self.bend.shape

@@ -1,4 +1,4 @@
-"""The tabulated law of a roller or pin with the generator that the drive gives it."""
+"""The tabulated law of a roller or pin, with the profile along its length that the drive defines."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from ltca.contact.generator import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
 
 
 def law_for_profile(
@@ -19,24 +20,12 @@ def law_for_profile(
     contact_modulus: float,
     effective_radii: FloatArray,
 ) -> ContactLaw:
-    """Return the tabulated law of a roller or pin.
+    """Return the tabulated law of a roller or pin of a length and radius in mm and a contact modulus E* in MPa.
 
-    Parameters
-    ----------
-    profile : LengthProfile
-        Crown and relief along the length.
-    length, radius : float
-        Length of the contact and radius of the part, mm.
-    contact_modulus : float
-        E*, MPa.
-    effective_radii : array
-        Effective radii the law will be asked for, mm; only their range matters, and only for profiled parts.
+    Of `effective_radii`, mm, at which the law will be evaluated, only the range matters, and only for profiled parts.
     """
     generator = generator_profile(profile, length, radius)
     if generator is None:
         return LineContactLaw(length, contact_modulus)
-    # Tables of profiles build for a second or so: cylinders do without their module.
-    from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
-
     smallest, largest = float(np.min(effective_radii)), float(np.max(effective_radii))
     return ProfiledLineContactLaw.for_radii(generator, contact_modulus, smallest, largest)

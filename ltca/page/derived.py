@@ -22,14 +22,9 @@ Rows = list[tuple[str, str]]
 
 
 def derived_rows(written: Drive, drive: Drive, *, plays: bool = True) -> Rows:
-    """Return what follows from the inputs, a name and a text each.
+    """Return what follows from the inputs of a drive, as it was given and at its temperatures: names and texts.
 
-    Parameters
-    ----------
-    written, drive : Drive
-        As it was given, and at its temperatures.
-    plays : bool
-        Whether gaps and backlash over a turn are wanted, which take most of the time.
+    `plays` are gaps and backlash over a turn, which take most of the time.
     """
     return [*_warmth(written), *_materials(written), *_properties(drive, plays)]
 
@@ -173,7 +168,7 @@ def _supports(drive: Drive) -> Rows:
     return rows
 
 
-THIN = 0.1
+THIN_WALL = 0.1
 """Wall between slots, or of a sleeve, by the radius of its bore: what is thinner yields more than the contacts in it say."""
 
 
@@ -214,4 +209,4 @@ def _seat(part: PinWheel | PinShaft, pins: str, seen_from: str) -> Rows:
 
 
 def _wall(wall: float, bore: float) -> str:
-    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN * bore else "")
+    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN_WALL * bore else "")

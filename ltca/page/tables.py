@@ -85,17 +85,7 @@ def word(text: str, *, note: str = "", state: str = "") -> Cell:
 
 
 def number(value: float | None, form: str = "{:.5g}", unit: str = "", *, note: str = "", state: str = "") -> Cell:
-    """Return a cell of a number.
-
-    Parameters
-    ----------
-    value : float or None
-        The number; a dash stands for none.
-    form : str
-        How it is printed.
-    unit, note, state : str
-        What stands behind it, below it, and its verdict.
-    """
+    """Return a cell of a number printed by `form`, a dash for none, with its unit behind it and a note below."""
     if value is None or not isfinite(value):
         return Cell(text=NOTHING, value="", note=note, state=state)
     sign = unit_sign(unit)

@@ -1,4 +1,4 @@
-"""Physical checks of deviations, counts and sizes, and of the flank they leave: it neither folds nor traps its pins."""
+"""Physical checks of deviations: their numbers and sizes, and the resulting flank, which neither folds nor traps its pins."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ltca.geometry.flank import CurveFrame, FlankProfile
 from ltca.geometry.rotation import unit
 
 POINTS_PER_WAVE = 24
-"""Points on which the flank is looked at, for each wave of the highest order."""
+"""Points at which the flank is checked, per wave of the highest order."""
 
 
 def deviation_bound(drive: Drive) -> float:
@@ -30,7 +30,7 @@ def deviation_bound(drive: Drive) -> float:
 
 
 def find_disc_problems(drive: Drive) -> Iterator[str]:
-    """Yield what is wrong with what is said of single discs: an entry for each of them, or none at all."""
+    """Yield the problems of values per disc, which need an entry for every disc or none at all, one sentence each."""
     discs = drive.disc.number_of_discs
     for path, entries in (
         ("disc.phases", drive.disc.phases),
@@ -47,7 +47,7 @@ def find_disc_problems(drive: Drive) -> Iterator[str]:
                 f"disc.planes holds {before:g} and {after:g} mm: must be at least {thickness:g} mm apart, the thickness of "
                 "a disc"
             )
-    # One disc may be one of several looked at alone; where shafts or pins bend, their zero is that of supports and beams.
+    # One disc may be one of several checked alone; where shafts or pins bend, the axis has its zero at supports and beams.
     shaft = drive.pin_shaft
     placed = (drive.crank.support, drive.pin_wheel.beam, None if shaft is None else shaft.beam)
     if discs > 1 and not any(placed) and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
@@ -64,13 +64,13 @@ def find_disc_problems(drive: Drive) -> Iterator[str]:
 
 
 def _eccentric_problems(drive: Drive) -> Iterator[str]:
-    """What is wrong with whose the entries of ``crank.of`` are said to be, and with the errors of bores."""
+    """Problems of the index keys of ``crank.of``, and of the errors of bores."""
     discs, cranks, entries = drive.disc.number_of_discs, drive.crank.number, drive.crank.of
     told = [entry.disc is not None for entry in entries]
     if entries and not all(told) and (any(told) or cranks > 1):
         number = told.index(False)
         yield (
-            f"{entry_words(number)}: disc is left out: every entry must say its disc"
+            f"{entry_words(number)}: disc is left out: every entry must give its disc"
             + (f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none")
         )
         return
@@ -87,7 +87,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
             )
         if entry.crank is None and cranks > 1:
             yield (
-                f"{entry_words(number)}: crank is left out: every entry must say its disc and its crank (crank.number = "
+                f"{entry_words(number)}: crank is left out: every entry must give its disc and its crank (crank.number = "
                 f"{cranks})"
             )
         if entry.disc is not None and (place := (entry.disc, entry.crank or 0)) in seen:
@@ -115,18 +115,18 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
 
 
 def _entry(drive: Drive, number: int) -> str:
-    """An entry of ``crank.of`` with whose it is, where it says so."""
+    """An entry of ``crank.of`` with disc and crank, where it gives them."""
     entry = drive.crank.of[number]
     told = [f"{name} {value}" for name, value in (("disc", entry.disc), ("crank", entry.crank)) if value is not None]
     return entry_words(number) + (f" ({', '.join(told)})" if told else "")
 
 
 def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
-    """Return a problem of a drive of one disc alone as that of the whole drive: by the fields the disc has of its own."""
+    """Return a problem of a drive of one disc as one of the whole drive, with the paths of the values per disc."""
     for common, own in OWN.items():
         table, _, name = own.replace(ANY, "").replace("..", ".").partition(".of.")
         if table == "crank" and drive.crank.number > 1:
-            continue  # of several cranks: looked at with the whole drive
+            continue  # several cranks are checked with the whole drive
         entry = (drive.disc.of[disc] if drive.disc.of else None) if table == "disc" else drive.crank.eccentric(disc)
         if entry is not None and getattr(entry, name) is not None:
             problem = re.sub(rf"\b{re.escape(common)}\b", own.replace(ANY, str(disc)), problem)
@@ -134,7 +134,7 @@ def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
 
 
 def find_deviation_problems(drive: Drive) -> Iterator[str]:
-    """Yield what is wrong with counts and sizes of the deviations, one sentence each."""
+    """Yield the problems of numbers and sizes of the deviations, one sentence each."""
     pins, holes = drive.pin_wheel.number_of_pins, drive.number_of_holes
     rollers = drive.crank_bearing.number_of_rollers
     parts: list[tuple[str, PlacementErrors | RollerErrors, int, str]] = [
@@ -168,7 +168,7 @@ def find_deviation_problems(drive: Drive) -> Iterator[str]:
 def _part_errors(
     path: str, errors: PlacementErrors | RollerErrors | BoreErrors, count: int, things: str, bound: float
 ) -> Iterator[str]:
-    """Counts and sizes of the errors of single pins, holes, rollers or bores."""
+    """Problems of numbers and sizes of the errors of single pins, holes, rollers or bores."""
     for name in ("radial", "tangential", "diameter"):
         values = getattr(errors, name, ())
         if values and len(values) != count:
@@ -207,7 +207,7 @@ def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
 
 
 def find_flank_problems(drive: Drive) -> Iterator[str]:
-    """Yield what no flank can be, designed or deviated: folded, or hollower than its pins are round."""
+    """Yield the problem of a flank, designed or deviated, that folds or is more hollow than its pins are round."""
     profile = FlankProfile.of_drive(drive)
     # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
     # is hollow at all.
@@ -220,7 +220,7 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
         places, direction, frame = _looked_at(
             float(profile.generating_radius), float(profile.eccentricity), profile.reduction_ratio, waves
         )
-        # As it is neither turned nor out of centre, which neither folds nor bends it.
+        # Without rotation and runout, which do not change its shape.
         flank = replace(profile, turn=1.0, centre=0.0).deviated(frame, direction)
         forward = (flank.tangent * frame.tangent.conjugate()).real
         if np.min(forward) <= 0.0:
@@ -236,7 +236,7 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
 
 
 def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Iterator[str]:
-    """A pin rounder than a hollow of the flank touches it at two points, and none of them is its nearest for long."""
+    """A pin rounder than a hollow of the flank touches it at two points."""
     nominal = drive.pin_wheel.pin_radius
     growth = max(drive.pin_wheel.pin_errors.diameter, default=0.0)
     largest = nominal + 0.5 * max(growth, 0.0)
@@ -255,7 +255,9 @@ def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Itera
 
 
 def _hollow_radius(curvature: float, offset: float) -> float:
-    """Radius of a flank where it is hollow, infinite elsewhere, mm, from the curvature of its parallel at an offset."""
+    """Radius of curvature where a flank is hollow, infinite elsewhere, mm; `curvature` is that of its parallel at an
+    offset.
+    """
     return 1.0 / max(-curvature / (1.0 - offset * curvature), 1e-300)
 
 
@@ -263,10 +265,10 @@ def _hollow_radius(curvature: float, offset: float) -> float:
 def _looked_at(
     radius: float, eccentricity: float, ratio: float, waves: int
 ) -> tuple[FloatArray, ComplexArray, CurveFrame]:
-    """Parameters θ at which a deviated flank is looked at, e^{iθ} and the design there: every wave of it, and the roots,
-    however sharp.
+    """Parameters θ at which a deviated flank is checked, e^{iθ} and the designed frame there.
 
-    They are kept, since studies check one design thousands of times.
+    They resolve every wave, and the roots however sharp. They are cached, since studies check one design thousands of
+    times.
     """
     even = np.linspace(0.0, 2.0 * pi, POINTS_PER_WAVE * waves, endpoint=False)
     # |c′|² = (R − e u)² + 2 R e u (1 − cos (u − 1)θ): what is special in a root is so within this of it.

@@ -25,13 +25,13 @@ from ltca.reading.toml_text import parse_toml, read_text
 
 NOMINAL_CASE = "nominal"
 BESIDE_THE_DRIVE = ("tolerances", "limits")
-"""Tables of a drive file that are no part of a drive."""
+"""Tables of a drive file that are no part of the drive."""
 MOST_NAMES = 10
-"""Names of cases in one message."""
+"""Largest number of cases named in one message."""
 MANY_CASES = 300
-"""Cases with contradictions after which no more are looked at."""
+"""Number of contradictory cases after which no more are checked."""
 MOST_EXPLAINED = 3
-"""Contradictions of cases whose cause is looked for."""
+"""Largest number of contradictions of cases whose cause is searched."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,15 +43,15 @@ class DriveFile:
     name : str
         Name of the drive.
     source : str
-        Where it was read from.
+        File or name that it was read from.
     cases : dict of str to Drive
         One complete drive for each case, in the order of the file.
     tolerances : dict of str to Distribution
-        How fields scatter, by dotted path; for studies alone.
+        Distributions of fields by dotted path, for studies alone.
     limits : dict of str to dict of str to Limit
-        What results of each case may reach, by case and key (`ltca.drive.members.limits`).
+        Limits of results by case and key (`ltca.drive.members.limits`).
     text : str
-        What was read.
+        Text of the file.
     """
 
     name: str
@@ -138,7 +138,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     table.setdefault("name", Path(source).stem)
     problems: list[str] = []
     measured = MeasuredFiles(Path(source).parent)
-    # Mistakes of the common part come back in every case: the base is validated alone, first.
+    # Mistakes of the common part would repeat in every case: it is validated first, alone.
     base_problems: list[str] = []
     base = _validate(table, base_problems, measured)
     tolerances = parse_tolerances(scatter, problems, base)
@@ -150,7 +150,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     drives: dict[str, Drive] = {}
     mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
-        # Parts that a case leaves alone are valid already; a measured flank deviates from that of each case for itself.
+        # Parts that a case does not change are valid already; a measured flank deviates from the design of every case.
         changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
         if without_files(table)[1]:
             changed.setdefault("disc", table["disc"])
@@ -164,7 +164,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     problems += found
     problems = problems or find_absent(tolerances, drives.values())
     if problems:
-        raise DriveError(problems, source, f"{left} cases not looked at" if left else "")
+        raise DriveError(problems, source, f"{left} cases not checked" if left else "")
     each = {name: {**limits, **own.get(name, {})} for name in drives}
     return DriveFile(
         name=str(table["name"]), source=source, cases=drives, tolerances=tolerances, limits=each, text=text
@@ -172,7 +172,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
 
 
 def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], int]:
-    """What cannot be, once each: that of the common part which no case mends, then that of the cases; cases left over."""
+    """Contradictions of the common part and of the cases, each once, and the number of cases that were not checked."""
     common = find_contradictions(base)
     found: dict[str, list[str]] = {}
     wrong = 0
@@ -183,7 +183,7 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
             break
     problems, mends = find_cause(base, common)
     suffering = {name for name, those in found.items() if those and mends(drives[name])}
-    if suffering:  # one field of the common part is behind it, whatever else differs from case to case
+    if suffering:  # one field of the common part causes them, whatever else differs from case to case
         everywhere = [] if suffering < set(found) else problems
         told = {name: [] if everywhere else problems for name in suffering}
         problems = everywhere
@@ -196,7 +196,7 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
         if name in told:
             continue
         own = tuple(problem for problem in those if problem not in everywhere)
-        # Looking for the field behind a contradiction takes a tenth of a second: the first few are enough.
+        # The search for the cause of a contradiction takes a tenth of a second: the first few are enough.
         if own and own not in explained and len(explained) < MOST_EXPLAINED:
             explained[own] = explain_contradictions(drives[name], [*own])
         told[name] = explained.get(own, [*own])
@@ -217,7 +217,7 @@ def _once(mistakes: dict[str, list[str]], drives: dict[str, Drive]) -> list[str]
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names in a row, the first few of many."""
+    """Return names separated by commas, the first few of many."""
     names = [*names]
     shown = ", ".join(names[:MOST_NAMES])
     return shown if len(names) <= MOST_NAMES else f"{shown} and {len(names) - MOST_NAMES} more"
@@ -249,33 +249,29 @@ def _parts(drive: Drive) -> dict[str, Any]:
 
 def _merged(below: Any, value: Any) -> Any:
     if isinstance(value, dict) and LIKE in value:
-        return value  # a named material has all of its own
+        return value  # a named material replaces all of it
     if isinstance(below, str) and isinstance(value, dict):
-        return {LIKE: below, **value}  # numbers beside the name below
+        return {LIKE: below, **value}  # properties that differ from the named material
     if (
         not isinstance(below, dict)
         or not isinstance(value, dict)
         or below.get("kind") != value.get("kind", below.get("kind"))
     ):
-        return value  # a seat of another kind has nothing of the one below
+        return value  # a seat of another kind replaces all of it
     kept = {key: over for key, over in below.items() if INSTEAD.get(key) not in value}
     return {**kept, **{key: _merged(below.get(key), over) for key, over in value.items()}}
 
 
 INSTEAD = {"stiffness": "beam", "beam": "stiffness"}
-"""Fields of one table that stand for each other: a case that gives one takes the other away."""
+"""Alternative fields of one table: a case that gives one removes the other."""
 _ADAPTER = TypeAdapter(Drive)
 
 
 def build_drive(table: dict[str, Any]) -> Drive:
-    """Return the drive of nested plain tables (as in a drive file without cases), fully checked.
+    """Return the fully checked drive of nested plain tables, as in a drive file without cases; DriveError with every
+    mistake.
 
-    Tolerances and limits are no part of a drive and are passed over.
-
-    Raises
-    ------
-    DriveError
-        With every mistake.
+    Tolerances and limits are no part of a drive and are ignored.
     """
     problems: list[str] = []
     drive = _validate({name: value for name, value in table.items() if name not in BESIDE_THE_DRIVE}, problems)

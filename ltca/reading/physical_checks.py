@@ -1,16 +1,14 @@
-"""Physical checks of a drive: what its numbers, each fine on its own, cannot be together."""
+"""Physical checks of a drive: contradictions between numbers that are valid by themselves."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
-from math import pi, sin
+from math import fsum, pi, sin
 
 import numpy as np
 
-from ltca.drive.members.duty_checks import find_duty_problems
-from ltca.drive.members.pin_checks import find_pin_problems
 from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, LengthProfile, Material, Temperature
 from ltca.drive.single_discs import single_discs, without_own
@@ -25,23 +23,19 @@ from ltca.reading.deviation_checks import (
     find_flank_problems,
     named_in_disc,
 )
+from ltca.reading.pin_checks import find_pin_problems
 
-# Parts that overlap are pressed together. Bodies strained by a tenth are no more linear-elastic; sharper limits need a load.
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
+"""Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
+SHARE_ROUNDING = 1e-9
+"""Round-off accepted in the sum of the shares of a duty."""
 
 
 def find_contradictions(drive: Drive) -> list[str]:
-    """Return every physical contradiction of a drive.
+    """Return every physical contradiction of a drive whose single numbers are valid, one sentence each; empty for a sound
+    drive.
 
-    Parameters
-    ----------
-    drive : Drive
-        A drive whose single numbers are already valid.
-
-    Returns
-    -------
-    list of str
-        One sentence each, with field, value, bound and unit; empty for a sound drive.
+    Sentences have field, value, bound and unit.
     """
     problems = [*_installation(drive), *find_disc_problems(drive)]
     if problems:
@@ -61,7 +55,7 @@ def find_contradictions(drive: Drive) -> list[str]:
 
 
 def _find_at_temperatures(drive: Drive) -> list[str]:
-    """Contradictions of the drive as written or, where it has none, as warm as it is."""
+    """Contradictions of the drive at 20 °C or, where there are none, at its temperatures."""
     cold = _cold(drive)
     if problems := find_contradictions(cold):
         return problems
@@ -79,7 +73,7 @@ def _find_at_temperatures(drive: Drive) -> list[str]:
 
 
 def _cold(drive: Drive) -> Drive:
-    """The drive as written, at 20 °C; materials that are there for their expansion alone are left out."""
+    """The drive at 20 °C, without materials that are given for their expansion alone."""
     return warm_drive(replace(drive, temperature=Temperature()))
 
 
@@ -95,7 +89,7 @@ def _find_in_disc(drive: Drive) -> list[str]:
 
 
 def is_sound(drive: Drive) -> bool:
-    """Tell whether a drive is without contradictions; quicker than naming them, for what is cheap comes first."""
+    """Tell whether a drive has no contradictions; faster than `find_contradictions`, since cheap checks come first."""
     checks = (*FIRST, *BESIDE, _flank, find_flank_problems)
     if any(next(check(drive), None) is not None for check in (_installation, find_disc_problems)):
         return False
@@ -112,7 +106,7 @@ def is_sound(drive: Drive) -> bool:
 
 
 def _installation(drive: Drive) -> Iterator[str]:
-    """What goes with one crank or with several alone, and supports."""
+    """Problems of fields that belong to one crank or to several, and of supports, pins and duty."""
     crank, stage = drive.crank, drive.installation.first_stage_ratio
     if crank.number == 1:
         if drive.pin_shaft is None:
@@ -144,7 +138,19 @@ def _installation(drive: Drive) -> Iterator[str]:
                 )
         if drive.materials.shaft_pin != Material():
             yield "materials.shaft_pin: must be left out without a pin shaft"
-    yield from (*_crank_support(drive), *find_pin_problems(drive), *find_duty_problems(drive))
+    yield from (*_crank_support(drive), *find_pin_problems(drive), *_duty(drive))
+
+
+def _duty(drive: Drive) -> Iterator[str]:
+    total = fsum(entry.share for entry in drive.duty)
+    if drive.duty and abs(total - 1.0) > SHARE_ROUNDING:
+        named = ", ".join(f"duty.{number}.share = {entry.share:g}" for number, entry in enumerate(drive.duty))
+        yield f"{named}: must add up to 1, they add up to {total:.10g}"
+    if drive.lubricant is not None and not drive.duty and drive.load.speed is None:
+        yield (
+            f"lubricant.viscosity = {drive.lubricant.viscosity:g} mm²/s: needs a speed, load.speed or those of [[duty]]; "
+            "without one no film can be computed"
+        )
 
 
 def _crank_support(drive: Drive) -> Iterator[str]:
@@ -227,7 +233,7 @@ def _flank(drive: Drive) -> Iterator[str]:
 
 @lru_cache(maxsize=64)
 def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:
-    """Smallest convex radius of the pin-centre path, mm; kept, since studies check one design thousands of times."""
+    """Smallest convex radius of the pin-centre path, mm; cached, since studies check one design thousands of times."""
     path = FlankProfile(generating_radius=radius, eccentricity=eccentricity, reduction_ratio=ratio, offset=0.0)
     largest = float(np.max(path.locus_curvature(np.linspace(0.0, 2.0 * pi / ratio, 4001))))
     return 1.0 / largest if largest > 0.0 else float("inf")
@@ -348,7 +354,7 @@ def _holes(drive: Drive) -> Iterator[str]:
             f"less than {root - radius:.6g} mm",
         )
     elif wall <= 0.0 and drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset > 0.0:
-        # No circle has room for the holes; where the offset leaves no pin circle at all, the flank has said so.
+        # No circle has room for the holes; an offset that leaves no pin circle is reported with the flank.
         wheel = drive.pin_wheel
         yield (
             f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: holes cut through the root circle of the disc "
@@ -391,7 +397,7 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
 
 
 def _bores(drive: Drive) -> Iterator[str]:
-    """Walls about the bores of several cranks."""
+    """Problems of the walls around the bores of several cranks."""
     crank, radius = drive.crank, drive.bore_radius
     if crank.number == 1 or crank.circle_radius is None:
         return
@@ -425,7 +431,7 @@ def _bores(drive: Drive) -> Iterator[str]:
 
 
 def _friction(drive: Drive) -> Iterator[str]:
-    """Coefficients of joints that are not there, and support bearings without radius."""
+    """Problems of coefficients of absent joints, and of support bearings without radius."""
     friction, shaft = drive.friction, drive.pin_shaft
     if friction is None:
         return
@@ -445,6 +451,6 @@ def _friction(drive: Drive) -> Iterator[str]:
 
 
 FIRST = (find_deviation_problems, _tooth_numbers)
-"""What the geometry needs."""
+"""Checks that the geometry needs."""
 BESIDE = (_pins, _bearing, _holes, _bores, _length_profiles, _friction)
-"""What is looked at whatever the flank is."""
+"""Checks that do not depend on the flank."""

@@ -94,13 +94,7 @@ class SampleResults:
 
 
 def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
-    """Return the solution of one drive at the angles of the settings.
-
-    Raises
-    ------
-    ConvergenceError
-        When it does not balance.
-    """
+    """Return the solution of one drive at the angles of the settings; `ConvergenceError` where it does not balance."""
     solved = _Batch([drive], settings)
     full = solved.balance([drive.load.torque], None)
     light = full
@@ -215,25 +209,10 @@ def solve_batch(
     nominal: Nominal | None = None,
     models: Sequence[Reducer] | None = None,
 ) -> SampleBatch:
-    """Solve several drives at all angles as one batch.
+    """Solve drives whose models have one `ltca.arrays.batch_layout` at all angles as one batch; `models` are theirs if known.
 
-    Parameters
-    ----------
-    drives : sequence of Drive
-        Drives whose models have one `ltca.arrays.batch_layout`.
-    settings : BatchSettings
-        Angles, quantities, engine.
-    nominal : Nominal, optional
-        Starting poses.
-    models : sequence of Reducer, optional
-        Their models, where they are known.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position of any of them does not balance.
-    DriveError
-        When a torque cannot be carried (`ltca.analysis.half_width_guard`).
+    Raises `ConvergenceError` when a position of any of them does not balance, and `DriveError` when a torque cannot be carried
+    (`ltca.analysis.half_width_guard`).
     """
     drives = [warm_drive(drive) for drive in drives]
     stages = {STAGES[name] for name in settings.quantities}

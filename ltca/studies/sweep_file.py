@@ -31,7 +31,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.drive.fields import MAY_BE_LEFT_OUT, field_kind, read_field
+from ltca.drive.fields import field_kind, may_be_left_out, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
@@ -69,24 +69,7 @@ class _Reader:
 
 
 def load_sweep(path: Path, engine: Engine | None = None) -> Study:
-    """Read a sweep from its TOML file.
-
-    Parameters
-    ----------
-    path : Path
-        ``study.toml``.
-    engine : Engine, optional
-        How bodies yield; half-spaces by default.
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    DriveError
-        When file, drive, design or a factor is wrong; all mistakes together.
-    """
+    """Read a sweep from ``study.toml``; `DriveError` names all mistakes of file, drive, design and factors together."""
     text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
     table = parse_toml(text, str(path), MOST_VALUES, MOST_VALUES)
     source = table.get("drive")
@@ -189,7 +172,7 @@ def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive],
                 found.append(SweepFactor(path=path, levels=tuple(names)))
             continue
         try:
-            if path not in MAY_BE_LEFT_OUT:
+            if not may_be_left_out(path):
                 read_field(drive, path)
         except DriveError as error:
             reader.problems += [f"factors.{problem}" for problem in error.problems]

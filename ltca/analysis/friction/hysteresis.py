@@ -16,7 +16,6 @@ from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.equilibrium.friction.sticking import StickingFriction
-from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
@@ -81,15 +80,15 @@ def locked_path(
     angles, path = np.atleast_1d(np.asarray(crank_angle, dtype=float)), np.atleast_1d(np.asarray(torque, dtype=float))
     model = (HalfSpace() if engine is None else engine).prepare(drive).model
     friction = model.friction
-    if not isinstance(friction, TurningFriction):
+    if friction is None:
         raise DriveError(["friction: must be given for a loop, which only friction makes"])
     smooth = replace(model, friction=None)
-    found = solve_at_output(smooth, drive, angles, float(path[0]))
+    found = solve_at_output(smooth, [drive], angles, float(path[0]))
     state = StickingFriction.at_rest(friction, smooth, found)
     wound = [found.pose[:, WHEEL_ANGLE]]
     for before, value in pairwise(path):
         try:
-            found = solve_at_output(replace(model, friction=state), drive, angles, float(value), found.pose)
+            found = solve_at_output(replace(model, friction=state), [drive], angles, float(value), found.pose)
         except ConvergenceError as error:
             error.add(f"torque path from {before:g} to {value:g} N·mm")
             raise

@@ -19,7 +19,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.response import DiscResponse, bearing_pushes
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
+from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 
 ROLLING = 1e-4
@@ -117,6 +117,11 @@ class TurningFriction:
             motion=drive.motion_sign,
         )
 
+    @property
+    def turns(self) -> bool:
+        """Whether the drive turns."""
+        return True
+
     def scaled(self, strength: float) -> TurningFriction:
         """Return a part of this friction."""
         return replace(self, strength=strength)
@@ -173,7 +178,8 @@ class TurningFriction:
         reduction_ratio : float
             u: the wheel turns against the shaft by 1/u of the crank.
         """
-        load = np.abs(sum(wheel_force(part) for part in parts))
+        pins = parts[0].pin_load.shape[1]
+        load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts))
         return np.asarray(self.motion * self.strength * self.support * np.sign(reduction_ratio) * load)
 
     def of_cranks(self, pushes: Sequence[ComplexArray]) -> FloatArray:
@@ -188,15 +194,6 @@ class TurningFriction:
         reactions = np.abs(np.matmul(forces, self.crank_bearings.T.astype(complex))).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
-
-
-def wheel_force(part: DiscResponse) -> ComplexArray:
-    """Return the force of the disc on the wheel, its friction included, N, shape (positions,)."""
-    pins = part.pin_load.shape[1]
-    total = np.einsum("bp,bpi->bi", part.pin_load, part.flank.gradient[..., DISC_PLACE])
-    if part.friction is not None:
-        total += np.einsum("bp,bpi->bi", part.friction[:, :pins], part.flank.along[..., DISC_PLACE])
-    return np.asarray(total[:, 0] + 1j * total[:, 1])
 
 
 def _bearing_loads(drive: Drive) -> FloatArray:

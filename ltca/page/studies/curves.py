@@ -14,7 +14,7 @@ from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.page.study_page import Curves, Section
 from ltca.page.tables import Table, minus, number, texts, word
 
-TOLD_ORDERS = 15
+ORDERS_SHOWN = 15
 
 
 def torque_section(curve: TorqueCurve, of: str) -> Section:
@@ -60,7 +60,7 @@ def orders_section(spectrum: Spectrum, over: str, of: str) -> Section:
             number(float(values[place])),
             number(float(spectrum.amplitude[place]) * ARCSEC, "{:.4f}", "arcsec"),
         ]
-        for place in np.argsort(-spectrum.amplitude, kind="stable")[:TOLD_ORDERS]
+        for place in np.argsort(-spectrum.amplitude, kind="stable")[:ORDERS_SHOWN]
     ]
     rows.append(
         [word("unexplained, root mean square"), word(""), number(spectrum.residual * ARCSEC, "{:.4f}", "arcsec")]

@@ -108,13 +108,6 @@ class Demand:
 def shown(value: float, unit: str) -> str:
     """Return a value in the unit that people use: N·m, N·m/arcmin, per cent where a unit has one.
 
-    Parameters
-    ----------
-    value : float
-        In its unit.
-    unit : str
-        Of the value.
-
     Examples
     --------
     >>> shown(412_000.0, "N mm")

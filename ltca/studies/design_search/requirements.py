@@ -188,18 +188,7 @@ class Requirements:
 
 
 def load_requirements(path: Path) -> Requirements:
-    """Read a requirement file.
-
-    Parameters
-    ----------
-    path : Path
-        TOML.
-
-    Raises
-    ------
-    DriveError
-        With every mistake: field, value, bound, unit.
-    """
+    """Read a requirement file (TOML); `DriveError` names every mistake: field, value, bound, unit."""
     return parse_requirements(read_text(path, NO_FILE), str(path), path.parent, path.stem)
 
 
@@ -208,16 +197,7 @@ def parse_requirements(
 ) -> Requirements:
     """Validate the text of a requirement file; see `load_requirements`.
 
-    Parameters
-    ----------
-    text : str
-        TOML.
-    source : str
-        Where it is from, for messages.
-    folder : Path, optional
-        In which a stock file is looked for.
-    name : str
-        Of the designs where the file gives none.
+    `source` is named in messages, a stock file is looked for in `folder`; `name` is that of the designs where the file has none.
     """
     table = parse_toml(text, source)
     table.setdefault("name", name)

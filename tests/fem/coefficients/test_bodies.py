@@ -19,11 +19,12 @@ from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_disc
 from fem.shapes import CircleShape, DriveShapes, RingShape
+from ltca.contact.round_bodies import compressed_cylinder
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Material
 from ltca.drive.single_discs import nominal_shape, single_discs
 from ltca.reading.changes import with_fields
-from ltca.reading.coefficient_laws import compressed_cylinder, project_rigid_motions
+from ltca.reading.coefficient_laws import project_rigid_motions
 from ltca.testing.field_changes import change_of, leaf_fields, sensible_change
 
 STEEL = Material(youngs_modulus=206_000.0, poisson_ratio=0.3)

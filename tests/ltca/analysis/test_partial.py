@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import ltca
-from ltca.analysis import engines
+from ltca.analysis import engines, loaded_analysis
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.equilibrium.balance import Equilibrium
@@ -28,14 +28,15 @@ def failing(monkeypatch):
     real = engines.solve_at_output
 
     def fail(which):
-        def solve(model, drive, angle, torque, start=None):
-            light = np.max(torque) < 0.5 * drive.load.torque
+        def solve(model, drives, angle, torque, start=None):
+            light = np.max(torque) < 0.5 * drives[0].load.torque
             bad = np.isclose(angle, ANGLES[2]) | np.isclose(angle, ANGLES[5])
             if np.any(bad) and (which == "both" or light == (which == "light")):
                 raise ConvergenceError("no equilibrium at some crank angle", [1.0, 2.0])
-            return real(model, drive, angle, torque, start)
+            return real(model, drives, angle, torque, start)
 
-        monkeypatch.setattr(engines, "solve_at_output", solve)
+        for module in (engines, loaded_analysis):  # case by case, and cases as one batch
+            monkeypatch.setattr(module, "solve_at_output", solve)
 
     return fail
 

@@ -1,4 +1,4 @@
-"""What seats and beams of pins cannot be: fields that do not go together, plays, spans and diameters out of bounds."""
+"""Checks of seats and beams of pins: fields that belong together, plays, spans and diameters."""
 
 from __future__ import annotations
 
@@ -10,18 +10,14 @@ from ltca.drive.members.pins import PinShaft, PinWheel, ShaftPinBeam, WheelPinBe
 from ltca.drive.parts import Drive
 
 ROUNDING = 1e-9
-"""Lengths that differ by less are one length, mm: round-off of a sum, and less play than any part has."""
+"""Difference up to which lengths are equal, mm: round-off of a sum, and less than any real play."""
 BELONGS = {"radius": "slot", "pin_radius": "sleeve", "bore_radius": "sleeve"}
-"""Fields of a seat, and the kind that has them."""
+"""Fields of a seat, and the kind of seat they belong to."""
 
 
 def find_pin_problems(drive: Drive) -> Iterator[str]:
-    """Yield what is wrong with seats and beams of pins, and with what they are made of, one sentence each.
-
-    Parameters
-    ----------
-    drive : Drive
-        The whole drive; its single numbers are valid.
+    """Yield the problems of seats and beams of pins and of their materials, one sentence each; single numbers are valid
+    already.
     """
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     yield from _seat(wheel, "pin_wheel", 1.0, drive.crank.eccentricity)
@@ -46,7 +42,7 @@ def find_pin_problems(drive: Drive) -> Iterator[str]:
 
 
 def _expands(drive: Drive, part: str) -> bool:
-    """Whether a material counts for its expansion, whatever else it is there for."""
+    """Whether a material is used for its thermal expansion, whatever else it is given for."""
     return drive.temperature is not None and getattr(drive.materials, part).thermal_expansion is not None
 
 
@@ -55,13 +51,13 @@ def _one_compliance(shaft: PinShaft) -> Iterator[str]:
         yield "pin_shaft.stiffness: is missing; pins of the shaft need it, or pin_shaft.beam in its place"
     elif shaft.beam is not None and shaft.stiffness is not None:
         yield (
-            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which says how the pins "
-            "bend"
+            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which determines how "
+            "the pins bend"
         )
 
 
 def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float) -> Iterator[str]:
-    """Fields and radii of a seat, its play at most a part of the eccentricity."""
+    """Problems of the fields and radii of a seat; the play is at most the fraction `most` of the eccentricity."""
     kind = part.seat.kind
     given = {name: getattr(part.seat, name, None) for name in BELONGS}
     said = f'{path}.seat.kind = "{kind}"' + (" (the default)" if kind == "fixed" else "")
@@ -119,7 +115,7 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
 
 def _slots(wheel: PinWheel) -> Iterator[str]:
     room, radius = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins), wheel.seat.radius or 0.0
-    # Where the pins overlap themselves, or have no hold in their slots, that is told.
+    # Pins that overlap, or have no hold in their slots, are reported elsewhere.
     if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
         yield (
             f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
@@ -140,6 +136,6 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
         )
     sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
     widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)
-    of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"the pin's own ({path}.pin_radius)"
+    of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"that of the pin ({path}.pin_radius)"
     if beam.diameter is not None and beam.diameter > widest + ROUNDING:
         yield f"{path}.beam.diameter = {beam.diameter:g} mm: must be at most {widest:g} mm, {of}"
