@@ -213,4 +213,4 @@ def test_the_check_itself_sees_every_kind_of_import():
     assert imports(path, relative_import) == {"ltca.geometry.pairs", "ltca.geometry.placement"}
     assert circle({"a": {"b"}, "b": {"a"}})
     assert floor("ltca.errors") == 0
-    assert floor("ltca.compliance.half_space") > floor("ltca.laws.series") > floor("ltca.drive.parts")
+    assert floor("ltca.compliance.half_space") > floor("ltca.laws.spring") > floor("ltca.drive.parts")

@@ -6,8 +6,7 @@ Modules in the order data passes:
 influence       Influence coefficients of uniformly pressed rectangles on an elastic half-space
 unilateral      Frictionless unilateral contact: pressures that never pull and surfaces that never overlap
 pressure_cells  Contact of two half-spaces over a rectangular patch: grid, solution, loads and pressures
-length_profile  Profiles of rollers and pins along their length: crowning and relief
-generator       Profile of a roller or pin as the drive defines it: sum of crown, logarithmic relief and end relief
+length_profile  Profiles of rollers and pins along their length: crown, logarithmic relief, end relief, and their sum
 grid_ladder     Shapes of the contact grids, in steps of half-width and reach, and which of them a contact is solved on
 tracked_grid    Contacts solved on grids at every approach of an equilibrium: load, stiffness, pressures
 end_pressure    The largest pressure of a contact and its ratio to that at mid-width

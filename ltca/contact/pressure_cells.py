@@ -17,13 +17,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.influence import assemble_influence_matrix
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 
-Separation = Callable[[FloatArray, FloatArray], FloatArray]
 ReliefFunction = Callable[[FloatArray], FloatArray]
 
 # Width of the grid by the expected half-width: the contact of an unrelieved end is up to 1.56 times as wide as at mid-width.
@@ -130,7 +128,7 @@ class PatchGrid:
             self.x_edges, self.y_edges, symmetric_x=self.symmetric_x, symmetric_y=self.symmetric_y
         )
 
-    def cell_means(self, function: Separation) -> FloatArray:
+    def cell_means(self, function: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
         """Return the mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
         x, y = (
             centres[:, None] + 0.5 * np.diff(edges)[:, None] * _GAUSS_POINTS
@@ -171,7 +169,7 @@ class PatchSolution:
     solution: UnilateralSolution
 
     @property
-    def contact(self) -> NDArray[np.bool_]:
+    def contact(self) -> BoolArray:
         """Cells in contact, shape (nx, ny)."""
         return self.pressure > 0.0
 
@@ -252,7 +250,7 @@ def solve_patch(
     contact_modulus: float,
     approach: float,
     *,
-    start: NDArray[np.bool_] | None = None,
+    start: BoolArray | None = None,
 ) -> PatchSolution:
     """Return the pressure over a patch at an approach of distant points, mm; nothing touches where the separation exceeds it.
 

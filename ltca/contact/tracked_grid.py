@@ -23,7 +23,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray, freeze
-from ltca.contact.generator import SummedProfile, generator_profile
 from ltca.contact.grid_ladder import (
     RUNG,
     SHADES,
@@ -36,6 +35,7 @@ from ltca.contact.grid_ladder import (
     find_width_place,
     unit_grid,
 )
+from ltca.contact.length_profile import SummedProfile, generator_profile
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution
 from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.parts import Drive, contact_modulus

@@ -11,12 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ltca.arrays import BoolArray, FloatArray
 from ltca.errors import ConvergenceError
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 MAX_ITERATIONS = 500
 """Factorisations."""
@@ -43,19 +40,19 @@ class UnilateralSolution:
         Number of offending cells before each solve.
     """
 
-    pressure: Array
-    active: Mask
-    opening: Array
-    rate: Array
+    pressure: FloatArray
+    active: BoolArray
+    opening: FloatArray
+    rate: FloatArray
     history: tuple[int, ...]
 
 
 def solve_unilateral_contact(
-    influence: Array,
-    penetration: Array,
+    influence: FloatArray,
+    penetration: FloatArray,
     *,
-    start: Mask | None = None,
-    load_direction: Array | None = None,
+    start: BoolArray | None = None,
+    load_direction: FloatArray | None = None,
 ) -> UnilateralSolution:
     """Solve p ≥ 0, A p − penetration ≥ 0, p·(A p − penetration) = 0 exactly by block principal pivoting.
 

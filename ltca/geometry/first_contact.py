@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, take_rows
+from ltca.arrays import BoolArray, FloatArray, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.pairs import ContactGeometry
@@ -70,7 +70,7 @@ def first_contact(
 
 def turn_to_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
-) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_], list[float]]:
+) -> tuple[FloatArray, NDArray[np.intp], BoolArray, list[float]]:
     """Return rotation and pin as `first_contact` does, whether contact was found, and the largest rotation of each iteration.
 
     Rotations are in rad, zero where no contact was found.
@@ -178,7 +178,7 @@ def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate
 
 def _farthest_free(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int, start: FloatArray
-) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.bool_]]:
+) -> tuple[FloatArray, NDArray[np.intp], BoolArray]:
     """Return the rotation from a start at which a pin presses, that pin, and whether one does.
 
     Newton's method between a rotation where a pin presses and one where none does, with bisection where it leaves them. Where
@@ -230,7 +230,7 @@ def unloaded_transmission_error(
     return np.asarray(-driving_sign * np.min([-driving_sign * each for each in turned], axis=0))
 
 
-def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:
+def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> BoolArray:
     """Return which wheel pins can drive the wheel against its load, shape (positions, z_P).
 
     A pin carries when pressing it on the flank turns the wheel in the driving sense: the lever of its contact
@@ -241,7 +241,7 @@ def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_si
     return np.asarray(driving_sign * motion.gradient[..., WHEEL_ANGLE] < 0.0)
 
 
-def carrying_holes(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> NDArray[np.bool_]:
+def carrying_holes(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> BoolArray:
     """Return which pin holes can hold the disc against rotation (Eq. 2–4), shape (positions, z_PS).
 
     The product of n = (−sin θ, cos θ) at the hole and the direction from disc centre to crank axis is positive.
@@ -256,7 +256,7 @@ def carrying_rollers(
     crank_angle: FloatArray,
     load_direction: FloatArray,
     loaded_zone: float = 0.5 * np.pi,
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     """Return which rollers lie within ± `loaded_zone` (θ_predict, rad) of a direction (Eq. 5), shape (positions, n_BR).
 
     `load_direction` is the direction of the bearing force on the disc, θ_F, rad, shape (positions,).

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
+from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive, has_rows, take_rows
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank_deviation import ProfileDeviation
@@ -122,7 +122,7 @@ class FlankProfile:
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
 
-    def of_points(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> FlankProfile:
+    def of_points(self, rows: NDArray[np.intp] | BoolArray) -> FlankProfile:
         """Return the flanks of points that belong to these positions: itself for one drive."""
         return take_rows(self, rows)
 
@@ -363,7 +363,7 @@ class FlankProfile:
         return float(self.generating_radius + self.eccentricity - self.offset)
 
 
-def _picked(places: NDArray[np.bool_], *values: Any) -> Any:
+def _picked(places: BoolArray, *values: Any) -> Any:
     """Values of arrays at some places, as columns."""
     return [each[places][:, None] for each in values]
 

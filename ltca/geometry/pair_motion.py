@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 
 MARGIN = 1e-6
@@ -96,7 +95,7 @@ class FlankMotion(PairMotion):
     effective_radius: FloatArray
     point: ComplexArray
     turning: ComplexArray
-    left_out: NDArray[np.bool_]
+    left_out: BoolArray
 
     @staticmethod
     def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
@@ -129,7 +128,7 @@ class KnownPins:
         """Return the pins of pairs of pins and flank."""
         return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
 
-    def may_touch(self, point: ComplexArray) -> NDArray[np.bool_]:
+    def may_touch(self, point: ComplexArray) -> BoolArray:
         """Return which pins may touch the flank, from their centres in the frame of the disc, mm, shape (positions, z_P).
 
         A distance changes by no more than the displacement of the point from which it is measured.

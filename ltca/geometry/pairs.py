@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray, by_drive
+from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -211,7 +211,7 @@ class ContactGeometry:
         )
 
     def _touching_some(
-        self, pins: _Pins, start: FloatArray, near: NDArray[np.bool_], known: KnownPins, coordinates: Coordinates
+        self, pins: _Pins, start: FloatArray, near: BoolArray, known: KnownPins, coordinates: Coordinates
     ) -> FlankMotion:
         """Pairs of the pins that are near, computed as positions of one pin, among those of the pins known from another pose."""
         places = np.flatnonzero(near)

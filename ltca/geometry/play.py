@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray, take_positions, take_rows
+from ltca.arrays import BoolArray, FloatArray, take_positions, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE
 from ltca.geometry.pair_motion import KnownPins
@@ -83,7 +83,7 @@ class Play:
 
     forward: FloatArray
     backward: FloatArray
-    preloaded: NDArray[np.bool_]
+    preloaded: BoolArray
 
     @property
     def play(self) -> FloatArray:

@@ -118,8 +118,7 @@ class BackedLaw(ContactLaw):
         """
         near, last, slope_before = 0.5 * delta, np.zeros_like(delta), np.zeros_like(delta)
         history: list[float] = []
-        # The approach lies between these two, and every evaluation moves one of them. It may be more than the whole where
-        # something is taken off.
+        # Every evaluation moves one of these bounds. The approach may exceed the whole where an overlap is subtracted.
         low, high = np.zeros_like(delta), np.full_like(delta, np.inf)
         for iteration in range(MAX_ITERATIONS):
             load, stiffness = self.contact.load_and_stiffness(near, radius)
@@ -132,14 +131,14 @@ class BackedLaw(ContactLaw):
                 bend = np.divide(steep - slope_before, last, out=np.zeros_like(delta), where=last != 0.0)
                 step = step / (1.0 - (0.5 * step * bend / steep).clip(-0.3, 0.3))
             following = near - step
-            # Next to the root round-off may have taken it for a bound.
+            # Next to the root a bound may be wrong by round-off.
             outside = ((following <= 0.0) | (following < low) | (following > high)) & (np.abs(step) > SETTLED * near)
             following = np.where(outside, 0.5 * (low + np.minimum(high, 4.0 * near)), following)
             last, slope_before = following - near, steep
             history.append(float(np.max(np.abs(last) / following)))
             near = following
             if history[-1] < SETTLED:
-                # A tangent's length away from there: what is left is its square.
+                # Linearised about the last evaluation: the error is of the square of the step.
                 return near, load + stiffness * last, stiffness / steep
         raise ConvergenceError("contact and seat in series do not settle; relative change", history)
 

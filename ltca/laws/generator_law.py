@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.generator import generator_profile
+from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import SlendernessCurve
 
@@ -88,9 +88,7 @@ class LineContactLaw(ContactLaw):
     contact_modulus: float
     table: LineContactTable = field(default_factory=line_contact_table)
 
-    def _place(
-        self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray, BoolArray]:
         """Approach (zero where open), X (0 approach replaced by 1 mm where open) and the mask of closed contacts."""
         delta = np.asarray(approach, dtype=float)
         radius = np.asarray(effective_radius, dtype=float)

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.length_profile import Relief
 from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
 from ltca.errors import CycloError
@@ -221,7 +221,7 @@ class ProfiledLineContactLaw(ContactLaw):
 
     def _place(
         self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
+    ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
         """Approach (zero where open), X (arbitrary where open), radius and the mask of closed contacts."""
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)

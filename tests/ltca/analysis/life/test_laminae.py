@@ -8,8 +8,8 @@ from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
 from ltca.analysis.life.laminae import LAMINAE, RUNG, SolvedLaminae, solve_laminae
-from ltca.contact.generator import generator_profile
 from ltca.contact.hertz import solve_point_contact
+from ltca.contact.length_profile import generator_profile
 from ltca.drive.parts import LengthProfile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import solve_profiled_patch
