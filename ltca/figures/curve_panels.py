@@ -1,4 +1,4 @@
-"""Curves in panels of their own, the others grey behind; discs and cranks as cases of their own."""
+"""Curves in separate panels, the others grey behind; discs and cranks are shown as cases."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of a page: what each cell says, and the number behind it for who copies or downloads the table."""
+"""Tables of a page: cells with their text, and the full number for copies and downloads."""
 
 from __future__ import annotations
 

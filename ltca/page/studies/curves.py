@@ -70,7 +70,7 @@ def orders_section(spectrum: Spectrum, over: str, of: str) -> Section:
 
 
 def life_section(lines: Sequence[str], of: str) -> Section:
-    """Return what is told of the life of the crank bearings."""
+    """Return the section on the life of the crank bearings."""
     return Section(heading=f"{of}Life of the crank bearings", notes=[minus(line.strip()) for line in lines])
 
 
