@@ -17,6 +17,7 @@ from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
+from ltca.quantities import SCALARS
 
 Rows = list[tuple[str, str]]
 
@@ -67,7 +68,7 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
     return [
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
         (
-            "backlash at the output, all clearances",
+            SCALARS["backlash_output"].verdict_title,
             ", ".join(
                 filter(
                     None,

@@ -79,9 +79,9 @@ def minus(text: str) -> str:
     return "".join(parts)
 
 
-def word(text: str, *, note: str = "", state: str = "") -> Cell:
+def word(text: str) -> Cell:
     """Return a cell of words."""
-    return Cell(text=text, value=text, note=note, state=state)
+    return Cell(text=text, value=text)
 
 
 def number(value: float | None, form: str = "{:.5g}", unit: str = "", *, note: str = "", state: str = "") -> Cell:

@@ -13,6 +13,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.page.study_page import Curves, Section
 from ltca.page.tables import Table, minus, number, texts, word
+from ltca.quantities import SCALARS
 
 ORDERS_SHOWN = 15
 
@@ -30,7 +31,7 @@ def torque_section(curve: TorqueCurve, of: str) -> Section:
         lines=lines,
     )
     rows = [
-        ("backlash at the output, all clearances", _range(curve.backlash * ARCMIN) + "′"),
+        (SCALARS["backlash_output"].verdict_title, _range(curve.backlash * ARCMIN) + "′"),
         (
             f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque",
             _range(curve.lost_motion * ARCMIN) + "′",

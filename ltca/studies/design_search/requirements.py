@@ -181,11 +181,6 @@ class Requirements:
     limits: Limits
     text: str
 
-    @property
-    def input_speed(self) -> float:
-        """Turns a minute of the input at the ratio that is asked for."""
-        return self.asked.speed * self.asked.ratio
-
 
 def load_requirements(path: Path) -> Requirements:
     """Read a requirement file (TOML); `DriveError` names every mistake: field, value, bound, unit."""
