@@ -134,6 +134,7 @@ def solve_and_write(
     arguments: argparse.Namespace,
     out: Path,
 ) -> int:
+    """Solve every case, write curves.json, page and figures, print the results; return the exit status."""
     contents, figures = {}, []
     sections: list[Section] = []
     turns_of = {name: arguments.turns or drive.pin_wheel.number_of_pins for name, drive in cases.items()}

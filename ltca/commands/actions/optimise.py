@@ -44,6 +44,7 @@ from ltca.studies.study_results import field_column, quantity_column
 def search_and_write(
     problem: Problem, name: str, case: str, engine: Engine, arguments: argparse.Namespace, out: Path
 ) -> int:
+    """Search, solve starting drive and optimum finely, write, draw and print the results; return the exit status."""
     _tell_beforehand(problem, engine, arguments)
     with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
         optimum = optimise(
