@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ltca.analysis.loaded_analysis import LoadedAnalysis
+    from ltca.arrays import FloatArray
     from ltca.drive.parts import Drive
-    from ltca.geometry.pairs import FloatArray
 
 SUMMARY = "derived geometry, backlash, checks and a picture with contact normals and loads"
 EXAMPLES = (

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ltca.arrays import FloatArray
 from ltca.figures.curve_panels import (
     DASHES,
     TWO_COLUMNS_FROM,
-    FloatArray,
     case_names,
     degrees,
     label_all,

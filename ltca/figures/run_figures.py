@@ -16,12 +16,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ltca.analysis.summary import LOADED_FRACTION
+from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import ARCSEC
 from ltca.figures.crank_figures import HALF_TURN, draw_cranks, draw_rollers_of_each_crank, mark_a_half_turn
 from ltca.figures.curve_panels import (
     MARKED_POSITIONS,
     MOST_CURVES,
-    FloatArray,
     case_names,
     degrees,
     draw_panels,

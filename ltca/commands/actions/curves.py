@@ -20,12 +20,12 @@ from ltca.analysis.memory_need import positions_together
 from ltca.analysis.pressure_safety import PressureOfTurns, PressureSafety
 from ltca.analysis.torque_curve import TorqueCurve, curve_content, torque_curve
 from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders, least_turns
+from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
 from ltca.errors import DriveError
-from ltca.geometry.pairs import FloatArray
 from ltca.output.files import write_json
 from ltca.output.progress import progress
 from ltca.page.studies.curves import life_section, orders_section, pressure_section, torque_section
