@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Judge every case, print and write the checks; exit status 1 when one fails."""
+    """Judge every case, print and write the checks; the exit status is 1 when one fails."""
     from ltca.output.run_folder import claimed_folder, require_folder
     from ltca.reading.drive_file import load_drive
 

@@ -77,7 +77,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Solve every case, write curves.json and the figures, print what they say."""
+    """Solve every case; write curves.json and figures, print the results."""
     from glob import escape
 
     from ltca.output.run_folder import claimed_folder, figure_files, require_folder

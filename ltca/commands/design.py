@@ -1,4 +1,4 @@
-"""``cyclo design``: from requirements to drive files, or what stands in the way."""
+"""``cyclo design``: from requirements to drive files, or to the relaxations that would make a design feasible."""
 
 from __future__ import annotations
 

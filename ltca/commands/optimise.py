@@ -62,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Search, solve what was found and where it started finely, write, draw and print all of it."""
+    """Search, solve starting drive and optimum finely, write, draw and print the results."""
     from ltca.output.run_folder import claimed_folder, figure_files, require_folder
     from ltca.reading.drive_file import load_drive
 

@@ -68,7 +68,7 @@ def draw_rollers_of_each_crank(figure: Figure, data: xr.Dataset, place: FloatArr
 
 
 def mark_a_half_turn(axes: Any) -> None:
-    """Show places of rollers from −180° to 180°."""
+    """Set the axis of roller angles from −180° to 180°."""
     axes.set_xlim(-HALF_TURN, HALF_TURN)
     axes.set_xticks(np.arange(-HALF_TURN, HALF_TURN + 1.0, 90.0))
 

@@ -83,7 +83,7 @@ def _from_to(low: float, high: float) -> str:
 
 
 def _band(axes: Any, angle: FloatArray, torque: FloatArray, colour: str, label: str) -> None:
-    """Mean of curves at several crank angles and the range of all; curves that lie on each other hide each other."""
+    """Draw mean and range of curves at several crank angles, which would otherwise hide each other."""
     low, mean, high = angle.min(axis=0), angle.mean(axis=0), angle.max(axis=0)
     axes.fill_betweenx(torque, low, high, color=colour, alpha=0.25, linewidth=0.0)
     axes.plot(mean, torque, color=colour, label=label)

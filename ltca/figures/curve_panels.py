@@ -1,4 +1,4 @@
-"""Curves in panels of their own, the others grey behind; discs and cranks as cases of their own."""
+"""Curves in separate panels, the others grey behind; discs and cranks are shown as cases."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ MARKED_POSITIONS = 40
 """Positions below which each is marked."""
 TWO_COLUMNS_FROM = 4
 """Panels from which on they stand in two columns."""
+ROW_HEIGHT = 1.25
+"""Of panels, inches."""
 UNNAMED_CASE = "nominal"
 """Name of the case of a drive without cases: it tells nothing."""
 LETTERS = {1: 84, 2: 42}
@@ -68,14 +70,11 @@ def degrees(dataset: xr.Dataset) -> FloatArray:
     return np.asarray(np.degrees(dataset["crank_angle"].values))
 
 
-def panel_grid(figure: Figure, count: int, *, columns: int | None = None, height: float = 1.25) -> Any:
-    """Return axes, row by row, that share both scales, and give the figure the height they need.
-
-    Columns are one for few panels, else two, by default; `height` is that of a row in inches.
-    """
-    across = columns or (1 if count < TWO_COLUMNS_FROM else 2)
+def panel_grid(figure: Figure, count: int) -> Any:
+    """Return axes in one or two columns, row by row, that share both scales, and give the figure the height they need."""
+    across = 1 if count < TWO_COLUMNS_FROM else 2
     rows = -(-count // across)
-    figure.set_figheight(3.9 if count == 1 else max(3.6, 0.8 + height * rows))
+    figure.set_figheight(3.9 if count == 1 else max(3.6, 0.8 + ROW_HEIGHT * rows))
     grid = figure.subplots(rows, across, sharex=True, sharey=True, squeeze=False)
     for column, spare in enumerate(grid.ravel()[count:]):
         spare.set_visible(False)
@@ -95,7 +94,6 @@ def draw_panels(
     limits: tuple[float, float] | None = None,
     lines: Sequence[Line] | None = None,
     title: str = "",
-    columns: int | None = None,
 ) -> Any:
     """Draw each curve in a panel with its name above, all others grey behind it, to the same scales; return the axes.
 
@@ -104,9 +102,9 @@ def draw_panels(
     """
     order = np.argsort(x, kind="stable")
     lines = plain_lines(len(curves)) if lines is None else lines
-    panels = panel_grid(figure, len(curves), columns=columns)
+    panels = panel_grid(figure, len(curves))
     marker = "o" if x.size < MARKED_POSITIONS else None
-    across = columns or (1 if len(curves) < TWO_COLUMNS_FROM else 2)
+    across = 1 if len(curves) < TWO_COLUMNS_FROM else 2
     for number, (axes, line) in enumerate(zip(panels, lines, strict=True)):
         others = [curve for place, curve in enumerate(curves) if place != number]
         # Own curves first: who reads a panel's lines finds what it is about.

@@ -1,4 +1,4 @@
-"""Words beside points where nothing else stands: measured, tried place by place, joined by a line where far."""
+"""Labels beside points in free space: candidate places are compared by cost, distant ones get a leader line."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ class FreeLabels:
         self._lines: list[np.ndarray[Any, Any]] = []
 
     def keep(self, text: Any) -> None:
-        """Let no word stand where a text stands."""
+        """Keep labels off a text."""
         self._boxes = np.vstack([self._boxes, text.get_window_extent(self._renderer).extents])
 
     def keep_line(self, start: complex, end: complex) -> None:
-        """Let words rather not stand on a line, given in the scales of the axes."""
+        """Make labels avoid a line, in data coordinates."""
         points = np.array([[start.real, start.imag], [end.real, end.imag]])
         first, last = np.asarray(self._axes.transData.transform(points), dtype=float)
         self._lines.append(np.linspace(first, last, 12))

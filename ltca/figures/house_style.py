@@ -1,4 +1,4 @@
-"""One look for every picture: colours, maps, fonts, proper symbols, and files that are the same for the same input."""
+"""Style of all figures: colours, maps, fonts, symbols, and reproducible files."""
 
 from __future__ import annotations
 

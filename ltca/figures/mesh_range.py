@@ -1,4 +1,4 @@
-"""Which pin is shown over its mesh, and over which crank angles: one whose mesh is whole, and little beside it."""
+"""Choice of the pin that is shown over its mesh, and of the crank angles: the mesh is whole, with a small margin."""
 
 from __future__ import annotations
 

@@ -24,6 +24,8 @@ from ltca.geometry.flank import FlankProfile
 SIDES = ("outer", "inner")
 PRESSURE_FIGURES = ("fig27_contact_zone", "fig32_roller_pressure_along", "fig33_roller_pressure_across")
 """Drawn once for all cases."""
+ARC_POINTS = 4001
+"""Points at which the arc length of a flank is integrated."""
 
 
 def even_cells(edges: FloatArray, pressure: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -56,9 +58,9 @@ def _named(fields: xr.Dataset, side: str, place: dict[str, int]) -> str:
     return f"roller {place['roller']} on the {race}{disc}, crank angle {angle:.4g}°"
 
 
-def flank_arc_length(profile: FlankProfile, samples: int = 4001) -> tuple[FloatArray, FloatArray]:
+def flank_arc_length(profile: FlankProfile) -> tuple[FloatArray, FloatArray]:
     """Return parameters θ over one tooth from a root (θ = 0) and the arc length of the flank from there, mm."""
-    theta = np.linspace(0.0, 2.0 * np.pi / (profile.reduction_ratio - 1.0), samples)
+    theta = np.linspace(0.0, 2.0 * np.pi / (profile.reduction_ratio - 1.0), ARC_POINTS)
     _, tangent, _ = profile.locus(theta)
     speed = np.abs(tangent) * (1.0 - profile.offset * profile.locus_curvature(theta))
     step = theta[1] - theta[0]

@@ -1,4 +1,4 @@
-"""Files that are named to the program or found in its folders: regular ones of sane size are read, nothing else.
+"""Reading of files: only regular ones of bounded size are opened.
 
 A pipe nobody writes to would be waited for without end, a device such as ``/dev/zero`` read without end.
 """

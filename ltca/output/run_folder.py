@@ -36,7 +36,7 @@ NOT_OURS = f"is there and was not written by the last run ({MANIFEST} does not l
 
 
 class RunFolder:
-    """What a run knows of its folder while it holds it.
+    """Manifest and lock of an output folder.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def require_folder(path: Path) -> None:
 
 
 def _require_no_interrupted_study(path: Path) -> None:
-    """Its plan would be removed as a file of the last run; batches without one are of no use to anybody."""
+    """Refuse a folder with an interrupted study: without its plan, a file of the last run, its batches are useless."""
     if (path / PLAN).exists() and any((path / BATCHES).glob("*.npz")):
         raise PlaceError(
             f"--out {path}: holds an interrupted study; continue it with --resume, or choose another --out"

@@ -53,7 +53,7 @@ def supervise(folder: str, words: Sequence[str]) -> int:
 
 
 class _EndedError(Exception):
-    """SIGTERM has come."""
+    """Raised on SIGTERM."""
 
 
 def _end(number: int, frame: object) -> None:

@@ -35,7 +35,7 @@ MOST_POSITIONS = 3600
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compared:
-    """What stands beside a run.
+    """A second run or measured curve for comparison.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ def _of_run(results: Path) -> Compared:
 
 
 def _require_positions(arrays: dict[str, FloatArray]) -> None:
-    """Refuse what has not a number for every position."""
+    """Refuse arrays without a number for every position."""
     positions = arrays["angle"].shape
     for name, values in arrays.items():
         alone = name == "angle" or name.endswith("/te")

@@ -1,4 +1,4 @@
-"""What follows from the inputs of a drive: geometry, installation, walls, as names and texts."""
+"""Values derived from the inputs of a drive: geometry, installation, walls, as names and texts."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
+from ltca.quantities import SCALARS
 
 Rows = list[tuple[str, str]]
 
 
 def derived_rows(written: Drive, drive: Drive, *, plays: bool = True) -> Rows:
-    """Return what follows from the inputs of a drive, as it was given and at its temperatures: names and texts.
+    """Return values derived from the inputs of a drive, as it was given and at its temperatures: names and texts.
 
     `plays` are gaps and backlash over a turn, which take most of the time.
     """
@@ -67,7 +68,7 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
     return [
         ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
         (
-            "backlash at the output, all clearances",
+            SCALARS["backlash_output"].verdict_title,
             ", ".join(
                 filter(
                     None,
@@ -90,7 +91,7 @@ def _plays(geometries: list[ContactGeometry], leverage: float) -> Rows:
 
 
 def _warmth(drive: Drive) -> Rows:
-    """How warm the parts are; what is printed below are lengths at these temperatures."""
+    """Temperatures of the parts, which all lengths are at."""
     held = drive.temperature
     return [] if held is None else [("temperatures, of which all lengths are", temperature_words(held))]
 
@@ -104,7 +105,7 @@ def _materials(drive: Drive) -> Rows:
 
 
 def _walls(single: Drive, of: str) -> Rows:
-    """What is left between holes, bores and roots of a disc."""
+    """Walls between holes, bores and roots of a disc."""
     rows, found = [], dict(walls(single))
 
     def both(first: str, second: str) -> str:
@@ -122,7 +123,7 @@ def _walls(single: Drive, of: str) -> Rows:
 
 
 def _installation(drive: Drive) -> Rows:
-    """Who is held and turned, and how the discs stand."""
+    """Which member is held and which is driven, and the arrangement of the discs."""
     held = (
         "pin wheel held, pin shaft is the output" if drive.wheel_is_held else "pin shaft held, pin wheel is the output"
     )
@@ -154,7 +155,7 @@ def _installation(drive: Drive) -> Rows:
 
 
 def _supports(drive: Drive) -> Rows:
-    """What yields on its bearings, and what is taken for rigid."""
+    """Elastic supports, and what they leave out."""
     rows, support, wheel = [], drive.crank.support, drive.pin_wheel.support_stiffness
     if support is not None:
         first, second = (
@@ -173,7 +174,7 @@ THIN_WALL = 0.1
 
 
 def _pins(drive: Drive) -> Rows:
-    """How pins of wheel and shaft sit and bend, where they are not fixed and rigid."""
+    """Seats and beams of pins that are not fixed and rigid."""
     wheel, shaft = drive.pin_wheel, drive.pin_shaft
     rows = _seat(wheel, "wheel pins", "the flank")
     if wheel.seat.kind == "slot":

@@ -1,4 +1,4 @@
-"""What the page of a run tells beside its positions: wind-up of each case, life of its crank bearings.
+"""Sections of the page of a run beside its positions: wind-up and life of the crank bearings.
 
 Both are what ``cyclo curves`` has, in short, and of the answers that are there already: wind-up between the two torques of the
 run, and lives from its turn, which leave some thousandths to lives over many turns.
@@ -25,7 +25,7 @@ PLAY = SCALARS["backlash_output"]
 
 
 def wind_up(dataset: xr.Dataset, summaries: Mapping[str, Mapping[str, float | None]]) -> Section:
-    """Return what the two torques of a run, and the summaries of its cases, tell of the torque curve of every case."""
+    """Return the wind-up of every case between the two torques of the run."""
     rows, equal = list[list[Cell]](), list[str]()
     for place, name in enumerate(summaries):
         case = dataset.isel(case=place)

@@ -161,7 +161,7 @@ def _words(value: Any) -> str:
 
 
 def derived_tables(written: Mapping[str, Drive], drives: Mapping[str, Drive]) -> list[Table]:
-    """Return what follows from the inputs, as given and warm: cases side by side where they differ, otherwise once."""
+    """Return values derived from the inputs, as given and warm: cases side by side where they differ, otherwise once."""
     each = {name: dict(derived_rows(written[name], drive, plays=False)) for name, drive in drives.items()}
     titles = list(dict.fromkeys(title for rows in each.values() for title in rows))
     cases = list(each.values())

@@ -1,4 +1,4 @@
-"""What a page draws a drive from: outlines, radii and places of its parts, each in the frame of the body that carries it."""
+"""Geometry of a drive for drawing: outlines, radii and places of parts, in the frame of the body that carries them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DIGITS = 4
 
 
 def drive_scene(drive: Drive) -> dict[str, Any]:
-    """Return what does not move of a drive of one disc: the disc's outline in its frame and radii, mm."""
+    """Return the fixed shapes of a drive of one disc: the disc's outline in its frame and radii, mm."""
     geometry = ContactGeometry.of_drive(drive)
     place = geometry.placement
     count = POINTS_PER_LOBE * drive.disc.number_of_teeth

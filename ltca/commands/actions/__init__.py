@@ -1,4 +1,4 @@
-"""What commands do once their options are checked: modules that import whatever they need.
+"""The work of commands after their options are checked.
 
 A command of this name beside this folder adds its options, checks them and then imports its module here, which takes a second.
 

@@ -104,13 +104,13 @@ def _judge(
 
 
 def _seized(drive: Drive, limits: Limits, error: DriveError) -> tuple[list[Check], dict[str, list[Driver]], list[str]]:
-    """A drive that its warmth presses together more than its bodies carry: what is known without an answer."""
+    """Checks of a drive whose parts thermal growth presses together beyond what they carry: those known without a solution."""
     carried = Check(value=Value(quantity="carried_torque", value=0.0), limit=WHOLE)
     return [carried, *judge(drive, list(play_at_temperature(drive, warm_drive(drive))), limits)], {}, [*error.problems]
 
 
 def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:
-    """What drives what fails, and what would mend it."""
+    """Text on failed checks: the inputs that drive them, and changes that would mend them."""
     lines = []
     for check in checks:
         if not check.fails:

@@ -1,4 +1,4 @@
-"""Solve the cases of ``cyclo curves``; write curves.json, page and figures, print what they tell."""
+"""Solve the cases of ``cyclo curves``; write curves.json, page and figures, print the results."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class CurveSettings(NamedTuple):
 
 
 class CaseCurves(NamedTuple):
-    """What one case gives.
+    """Curves of one case.
 
     Attributes
     ----------
@@ -97,17 +97,17 @@ class CaseCurves(NamedTuple):
 
 
 def _orders(drive: Drive) -> tuple[Order, ...]:
-    """Return the orders that are looked for."""
+    """Return the orders that are fitted."""
     return known_orders(drive, harmonics=min(HARMONICS, max(2, HIGHEST_ORDER // drive.disc.number_of_teeth)))
 
 
 def positions_per_turn(drive: Drive) -> int:
-    """Return how many positions a turn needs for the highest order to be told from the others."""
+    """Return the number of positions in a turn that resolves the highest order."""
     return max(POSITIONS_PER_TURN, ceil(POSITIONS_PER_PERIOD * max(order.value for order in _orders(drive))))
 
 
 def require_turns(drive: Drive, turns: int) -> None:
-    """Refuse turns over which the orders of the transmission error look alike."""
+    """Refuse too few turns to separate the orders of the transmission error."""
     orders = _orders(drive)
     least = least_turns(orders, positions_per_turn(drive), drive.pin_wheel.number_of_pins)
     if turns < least:
@@ -119,7 +119,7 @@ def require_turns(drive: Drive, turns: int) -> None:
 
 
 def tell_of_turns(drive: Drive, turns: int, positions: int) -> None:
-    """Say before a long computation how many turns would do."""
+    """Print before a long computation how many turns would do."""
     least = least_turns(_orders(drive), positions_per_turn(drive), turns)
     if least < turns:
         told = f"all {turns} turns of the crank are {positions} positions; --turns {least} would tell the orders apart, too"
@@ -134,6 +134,7 @@ def solve_and_write(
     arguments: argparse.Namespace,
     out: Path,
 ) -> int:
+    """Solve every case, write curves.json, page and figures, print the results; return the exit status."""
     contents, figures = {}, []
     sections: list[Section] = []
     turns_of = {name: arguments.turns or drive.pin_wheel.number_of_pins for name, drive in cases.items()}
@@ -182,7 +183,7 @@ def _sections(found: CaseCurves, drive: Drive, settings: CurveSettings, of: str)
 
 
 def _life_speed(drive: Drive, settings: CurveSettings) -> str | None:
-    """Which speed the hours of the life are at."""
+    """The speed behind the hours of the life, as text."""
     speed = _crank_speed(drive, settings)
     return None if drive.duty or speed is None else _speed_words(drive, speed)
 
@@ -204,7 +205,7 @@ def _crank_speed(drive: Drive, settings: CurveSettings) -> float | None:
 def _solve(
     drive: Drive, turns: int, settings: CurveSettings, engine: Engine, advance: Callable[[int], None]
 ) -> CaseCurves:
-    """Solve a case, a part of its positions at a time: what is kept of them is little."""
+    """Solve a case, a part of its positions at a time, to bound memory."""
     engine = engine.with_coefficients(drive)
     mesh = 2.0 * np.pi / drive.disc.number_of_teeth
     settings = settings._replace(speed=_crank_speed(drive, settings))
@@ -272,7 +273,7 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, settings
 
 
 def _speed_words(drive: Drive, speed: float) -> str:
-    """Which speed it is, and what that of several cranks in the carrier is elsewhere."""
+    """The speed as text, for several cranks in the carrier also that of the input or against the housing."""
     told, ratio = f"{speed:g} turns a minute", drive.reduction_ratio
     if drive.crank.number == 1:
         return f"{told} of the crank against the held {drive.installation.held.replace('-', ' ')}"

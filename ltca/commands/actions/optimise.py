@@ -1,4 +1,4 @@
-"""Search of ``cyclo optimise``: solve what was found and where it started finely; write, draw and print all of it."""
+"""Search of ``cyclo optimise``; the starting drive and the optimum are solved finely, written, drawn and printed."""
 
 from __future__ import annotations
 
@@ -44,6 +44,7 @@ from ltca.studies.study_results import field_column, quantity_column
 def search_and_write(
     problem: Problem, name: str, case: str, engine: Engine, arguments: argparse.Namespace, out: Path
 ) -> int:
+    """Search, solve starting drive and optimum finely, write, draw and print the results; return the exit status."""
     _tell_beforehand(problem, engine, arguments)
     with progress("candidates", most_candidates(problem, arguments.generations), at_most=True) as bar:
         optimum = optimise(
@@ -74,7 +75,7 @@ def search_and_write(
 
 
 def problem_of(drive: Drive, arguments: argparse.Namespace) -> Problem:
-    """What is asked of a drive."""
+    """Return the problem that the arguments describe."""
     aims = tuple(arguments.minimise)
     unknown = [aim for aim in aims if aim not in STAGES]
     if unknown:
@@ -145,7 +146,7 @@ def _write_candidates(optimum: Optimum, path: Path) -> None:
 
 
 def _outcome(optimum: Optimum, fine: list[FineSolution], engine: Engine, positions: int) -> dict[str, Any]:
-    """What ``optimum.json`` holds: the drive as it is and the one found, solved finely, and as the search saw them."""
+    """Content of ``optimum.json``: starting drive and optimum, solved finely and at the positions of the search."""
     problem, nominal, found = optimum.problem, *fine
     return {
         "drive": problem.drive.name,

@@ -39,7 +39,7 @@ Summaries = dict[str, dict[str, float | None]]
 
 
 class RunTask(NamedTuple):
-    """What ``cyclo run`` was asked for.
+    """Settings of ``cyclo run``.
 
     Attributes
     ----------
@@ -184,14 +184,14 @@ def _checks(analyses: Analyses, summaries: Summaries, limits: Mapping[str, Limit
 
 
 def _proportions(analyses: Analyses) -> dict[str, list[str]]:
-    """What is odd about the sizes of each case that has an answer everywhere."""
+    """Unusual proportions of each case that has an answer everywhere."""
     return {
         name: [*odd_proportions(analysis.as_written)] for name, analysis in analyses.items() if analysis.is_complete
     }
 
 
 def _verdicts(checks: dict[str, list[Check]], proportions: dict[str, list[str]]) -> str:
-    """A line for each case, the check nearest to its limit in it, and what is odd."""
+    """A line for each case with the check nearest to its limit, then unusual proportions."""
     if not checks:
         return "no verdict on partial results"
     width = max(map(len, checks))
@@ -246,7 +246,7 @@ def _many(angles: FloatArray) -> str:
 
 
 def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[str]:
-    """What the values stand for: which positions, whether they see the mesh, and what to know of drive and answer."""
+    """Lines on the positions behind the values, and warnings on sampling, drive and solution."""
     many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]

@@ -1,4 +1,4 @@
-"""Run of a study: its folder is claimed, its samples are solved, and what they say is written, drawn and printed."""
+"""Run of a study: claim its folder, solve its samples, then write, draw and print the results."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MOST_REASONS = 5
 
 
 def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespace) -> int:
-    """Run a study with progress, write its figures and print what it says."""
+    """Run a study with progress; write its figures and page, print its results."""
     workers = Workers(processes=arguments.workers, scheduler=arguments.scheduler)
     if arguments.sample is not None:
         if not 0 <= arguments.sample < study.design.samples:
@@ -90,7 +90,7 @@ def _solve_and_write(study: Study, folder: StudyFolder, workers: Workers, argume
 
 
 def tell(message: str) -> None:
-    """Tell something beside the results, on stderr."""
+    """Print a message to stderr, beside the results."""
     print(message, file=sys.stderr)
 
 
@@ -125,7 +125,7 @@ def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: s
 
 
 def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> None:
-    """How many samples failed, and each reason once with its first sample."""
+    """Print how many samples failed, and their reasons with the first sample of each."""
     if not found.failures:
         return
     print(f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}")
@@ -140,7 +140,7 @@ def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> N
 
 
 def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
-    """What `cyclo run` has to be told to solve a sample as the study did."""
+    """Options with which `cyclo run` solves a sample as the study did."""
     options = study.engine.options
     words = "" if options["compliance"] == "half-space" else f" --compliance {options['compliance']}"
     words += "".join(f" --coefficients {path}" for path in coefficients or ())

@@ -1,4 +1,4 @@
-"""The page of ``cyclo design``: designs beside each other, the outline of each, what stands in the way."""
+"""The page of ``cyclo design``: designs compared, their outlines, relaxations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What candidates reach by closed forms: rigid bodies on linear contacts, Hertz, ISO 281; all candidates at once.
+"""Closed-form values of all candidates at once: rigid bodies on linear contacts, Hertz, ISO 281.
 
 The crank is held, disc and wheel touch where their common normals pass through the pitch point (distance e z_P from the axis
 of the wheel). A pin at φ has the lever l = e z_P R_C sin φ/d about that axis, d its distance from the pitch point, and the
@@ -37,7 +37,7 @@ TINY = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """What all candidates share.
+    """Values that all candidates share.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ def shape_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
 
 
 def flank_shape(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return what the flank and its pins alone give of `shape_values`."""
+    """Return those of `shape_values` that depend on the flank and its pins alone."""
     shop = setting.requirements.asked.shop
     generating = sizes.pin_radius + shop.equidistant_offset
     convex, hollow = _locus(sizes, np.cos(np.linspace(0.0, np.pi, CURVATURE_POINTS)))
@@ -135,7 +135,7 @@ def _locus_curvature(sizes: Sizes, cosine: FloatArray) -> FloatArray:
 
 
 def flank_values(sizes: Sizes, setting: Setting) -> dict[str, FloatArray]:
-    """Return what the flank reaches: pressure, load, forces on the disc, stiffness, play, losses; of one number of pins."""
+    """Return values of the flank for one number of pins: pressure, load, forces on the disc, stiffness, play, losses."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     pins = int(sizes.pins[0])
     angle = 2.0 * np.pi * (np.arange(pins)[:, None] + np.arange(PIN_PHASES) / PIN_PHASES) / pins
@@ -203,7 +203,7 @@ def wheel_torque(sizes: Sizes, setting: Setting) -> FloatArray:
 
 
 def inner_values(sizes: Sizes, setting: Setting, flank: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return what crank bearings, holes and the whole drive reach, from what the flank does (`flank_values`)."""
+    """Return values of crank bearings, holes and the whole drive, from those of the flank (`flank_values`)."""
     asked, shop = setting.requirements.asked, setting.requirements.asked.shop
     several, friction = asked.kind == "rv", asked.friction
     torque = wheel_torque(sizes, setting) / sizes.discs

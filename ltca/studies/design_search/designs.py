@@ -1,4 +1,4 @@
-"""What is told of the designs found: drive files, and a table that compares them."""
+"""Output of a search: drive files of the designs, and a table that compares them."""
 
 from __future__ import annotations
 

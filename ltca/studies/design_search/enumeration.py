@@ -56,7 +56,7 @@ BATCH_ROWS = 100_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Enumeration:
-    """What is left of all combinations.
+    """Best candidates of all combinations.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ def _scores(
     requirements: Requirements,
     shifts: Mapping[str, float],
 ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
-    """Number to make small, sum of what is broken, and whether closed forms leave a chance."""
+    """Objective, sum of violations, and whether a combination is kept as a candidate."""
     judged = [one for one in demands if one.kind != "shape" and one.quantity in reached]
     each = margins(judged, reached) + np.array([shifts.get(one.name, 0.0) for one in judged])
     free = np.array([one.name in relaxed for one in judged])
@@ -180,7 +180,7 @@ def teeth(requirements: Requirements) -> list[tuple[int, float, int, int]]:
 def _flanks(
     requirements: Requirements, setting: Setting, demands: Sequence[Demand], relaxed: Collection[str], torque: float
 ) -> Iterator[tuple[Sizes, dict[str, FloatArray], int]]:
-    """Flanks with their pins that closed forms leave a chance, by number of discs and pins."""
+    """Flanks with their pins that are kept by closed forms, by number of discs and pins."""
     asked, shop, stock = requirements.asked, requirements.asked.shop, requirements.stock
     wider = MAX_ROOM_FACTOR if "outer_diameter" in relaxed else 1.0
     longer = MAX_ROOM_FACTOR if "length" in relaxed else 1.0
@@ -248,7 +248,7 @@ def _different(
 def _inner(
     flank: Sizes, values: dict[str, FloatArray], requirements: Requirements
 ) -> Iterator[tuple[Sizes, dict[str, FloatArray]]]:
-    """Crank bearings and holes that go into flanks, in pieces; what closed forms say of the flanks goes along.
+    """Yield crank bearings and holes that fit into flanks, in batches, with the closed-form values of the flanks.
 
     Of rollers of one diameter the longest that the disc is thick for is taken, of shaft pins of one diameter as many as
     stand beside each other: neither is ever worse but in friction, which they do not change.

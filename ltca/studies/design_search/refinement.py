@@ -184,7 +184,7 @@ def _varied(task: Task) -> tuple[str, ...]:
 
 
 def _actual(solution: Solution, task: Task) -> FloatArray:
-    """Margins by the solution; of what it does not say, none."""
+    """Margins by the solution; not a number where it has no value."""
     values = {name: np.array([value]) for name, value in solution.values.items()}
     return np.asarray(margins(task.demands, values)[0])
 
@@ -212,7 +212,7 @@ def _aim(solution: Solution, each: FloatArray, task: Task) -> float:
 
 
 def _rounded(row: dict[str, float], task: Task) -> dict[str, float]:
-    """Sizes as a drawing has them, within the room there is."""
+    """Sizes rounded as on a drawing, within the room there is."""
     found = {name: round(value, DECIMALS) if name in CONTINUOUS else value for name, value in row.items()}
     asked, shop = task.requirements.asked, task.requirements.asked.shop
     if "outer_diameter" not in task.relaxed:
@@ -236,7 +236,7 @@ def _between(first: dict[str, float], second: dict[str, float]) -> dict[str, flo
 
 
 def _improve(row: dict[str, float], actual: FloatArray, task: Task) -> dict[str, float]:
-    """Optimise on closed forms that say at `row` what the solution said there."""
+    """Optimise on closed forms shifted so that they equal the solution at `row`."""
     from scipy.optimize import minimize
 
     setting, names, held = Setting.of(task.requirements), _varied(task), _held(task)

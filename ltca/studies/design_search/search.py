@@ -234,7 +234,7 @@ def _refine_all(
     executor: Executor,
     told: Callable[[str], None],
 ) -> list[Refined]:
-    """In the order of the rows, whoever is done first."""
+    """Refine candidates by the executor; results are in the order of the rows."""
     futures = {}
     for number, row in enumerate(rows):
         told(f"candidate {number + 1} of {len(rows)}")
@@ -294,7 +294,7 @@ def _least(relaxation: Relaxation) -> float:
 
 
 def factor_words(relaxation: Relaxation) -> str:
-    """Return by which factor a relaxed requirement gives, as told beside it; empty where nothing does."""
+    """Return the factor by which a requirement is relaxed, as text; empty where no relaxation was found."""
     if relaxation.refined is None:
         return ""
     return f"× {exp(relaxation.refined.given):.3g}"

@@ -1,4 +1,4 @@
-"""What the loaded drive of a candidate reaches, judged as `cyclo check` judges it."""
+"""Values of the loaded drive of a candidate, judged as by `cyclo check`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CURVE_POINTS = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solution:
-    """What a candidate reaches.
+    """Values of a candidate by a solution.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Solution:
 def solve_coarsely(
     row: dict[str, float], requirements: Requirements, demands: tuple[Demand, ...], life_factor: float | None = None
 ) -> Solution:
-    """Return what a candidate reaches over few positions.
+    """Return the values of a candidate over few positions.
 
     `life_factor` is that of an earlier solution of nearly the same sizes: lives then follow from the forces, as rollers in slices
     take longer than all else.
@@ -139,7 +139,7 @@ def solve_finely(
     *,
     lives: bool = True,
 ) -> Solution:
-    """Return what a drive reaches, with the checks of `cyclo check`.
+    """Return the values of a drive, with the checks of `cyclo check`.
 
     `row` and `drive` are the same candidate; `lives` tells whether lives are wanted where no limit asks for them.
     """

@@ -1,4 +1,4 @@
-"""Diameters and lengths that pins and rollers come in, eccentricities that grinders offer; typical ones are data."""
+"""Stock: diameters and lengths of pins and rollers, available eccentricities; typical ones are data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TYPICAL = "stock_sizes.toml"
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Stock:
-    """What there is to choose from.
+    """Sizes to choose from.
 
     Attributes
     ----------

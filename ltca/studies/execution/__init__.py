@@ -1,4 +1,4 @@
-"""Who solves the batches of a study, and where their results are kept.
+"""Solving the batches of a study, and storing their results.
 
 Modules in the order data passes:
 
