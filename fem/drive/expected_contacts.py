@@ -28,7 +28,7 @@ from ltca.errors import ConvergenceError, DriveError
 FULL_FINITE_ELEMENTS = "full finite elements"
 """What refusals call this analysis."""
 
-# Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
+# Contacts under this share of the largest load get elements as if they carried it.
 SMALLEST_LOAD_SHARE = 0.05
 # A contact open by less than this share of the largest approach may close in the real solution: refine it too.
 OPEN_MARGIN = 0.25
