@@ -20,7 +20,7 @@ from fem.drive.rigid_bodies import RigidBodies, RigidGaps
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 
-# Contacts under this share of the largest load of their kind get elements as if they carried it (design.md: 5 %).
+# Contacts under this share of the largest load of their kind get elements as if they carried it.
 FINE_SHARE = 0.05
 # Elements may be this much larger than asked for before the meshes are graded anew.
 EDGE_TOLERANCE = 1.1

@@ -19,7 +19,7 @@ from fem.drive.model import DriveModel, DrivePose
 from ltca.arrays import FloatArray
 from ltca.errors import ConvergenceError
 
-# design.md asks for 0.5 µm and 0.1 %; one more step of a linearly converging iteration costs a tenth of a second.
+# Well below the accuracy wanted, 0.5 µm and 0.1 %: one more step of a linearly converging iteration takes a tenth of a second.
 POSE_TOLERANCE = 5.0e-5
 LOAD_TOLERANCE = 2.0e-4
 # Farthest a body may travel in one step, mm: normals are those of the old pose.

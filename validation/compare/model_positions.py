@@ -17,6 +17,8 @@ from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
+FULL = "full FE"
+"""Label of the full solution beside the models."""
 DiscCoefficients: TypeAlias = InfluenceCoefficients | tuple[InfluenceCoefficients, ...]
 """Coefficients of the one disc of a drive, or of each of several."""
 

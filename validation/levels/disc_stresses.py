@@ -6,7 +6,7 @@ from typing import Any
 
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.disc_stresses import REGIONS, ComparedStress, Region
-from validation.levels.positions import FULL
+from validation.compare.model_positions import FULL
 from validation.rows import Row
 
 WALL_LIMIT, SHEAR_LIMIT = 2e-2, 3e-2

@@ -16,7 +16,7 @@ from ltca.geometry.placement import position_angles
 from ltca.quantities import SCALARS
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import Kind, PositionAnswer
-from validation.compare.model_positions import MODELS, DiscCoefficients, engine_of
+from validation.compare.model_positions import FULL, MODELS, DiscCoefficients, engine_of
 from validation.rows import Row, relative_row, rounded
 
 TURN_POSITIONS = 72
@@ -158,7 +158,7 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
     rows = []
     for name, change in full_solution_changes(compared).items():
         quantity = f"{SCALARS[f'max_{name}'].title} at the chosen angles, change from half-space to full FE"
-        rows.append(_change_row(case, quantity, change, "full FE"))
+        rows.append(_change_row(case, quantity, change, FULL))
     wheel = [
         (position.answers["half-space"].wheel_angle, position.full.answer.wheel_angle, position.full.crank_angle)
         for position in compared
@@ -177,7 +177,7 @@ def full_solution_rows(case: str, compared: list[ComparedPosition]) -> list[Row]
             case=case,
             crank_angle=angle,
             model="half-space",
-            against="full FE",
+            against=FULL,
         )
     )
     return rows

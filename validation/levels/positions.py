@@ -14,12 +14,12 @@ from validation.compare.comparison import (
     PositionAnswer,
     PositionDifference,
 )
+from validation.compare.model_positions import FULL
 from validation.rows import Row
 
 LOAD_LIMIT, PRESSURE_LIMIT, WHEEL_LIMIT = 5e-3, 2e-2, 0.3
 INTERPOLATED_LIMIT = 1e-2
 BETWEEN_STATIONS = 0.25
-FULL = "full FE"
 
 REASONS = {
     "load": "of the largest load of its kind; coefficients on meshes of their own, contacts as Hertz parabolas",

@@ -13,11 +13,11 @@ from ltca.page.scene import drive_scene
 from ltca.page.tables import minus
 from ltca.page.writing import page_text, script_data, write_page
 from validation.compare.finite_element_positions import disc_case
-from validation.compare.model_positions import MODELS
+from validation.compare.model_positions import FULL, MODELS
 from validation.levels.flexible_disc import TITLES, judge_half_space, turn_content
 from validation.report.headline import headline
 from validation.report.scene import position_scene
-from validation.report.verdict import FULL, verdict_lines
+from validation.report.verdict import verdict_lines
 from validation.rows import LEVELS, Row
 from validation.study import Study
 
@@ -55,7 +55,7 @@ def _context(study: Study) -> dict[str, Any]:
     plan, first = study.plan, next(iter(study.plan.drives.values()))
     positions = [position_scene(item) for items in study.compared.values() for item in items]
     data = {
-        "models": ["full FE", *MODELS],
+        "models": [FULL, *MODELS],
         "drives": {
             disc_case(case, disc, drive.disc.number_of_discs): drive_scene(single)
             for case, drive in plan.drives.items()

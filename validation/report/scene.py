@@ -12,6 +12,7 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.page.scene import circles, point
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import Kind, PositionAnswer
+from validation.compare.model_positions import FULL
 from validation.rows import rounded
 
 Line: TypeAlias = tuple[str, int, float | None]
@@ -24,7 +25,7 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
     A contact has its place, the direction of the force on the disc (inner race: on the roller) and, by model, load, pressure and
     half-width.
     """
-    answers = {"full FE": compared.full.answer, **compared.answers}
+    answers = {FULL: compared.full.answer, **compared.answers}
     parts = _places(compared)
     contacts = [
         {

@@ -11,10 +11,8 @@ from ltca.drive.members.judgement import Check
 from ltca.drive.members.verdict_words import WORDS, check_content
 from validation.compare.compared_positions import ComparedPosition
 from validation.compare.comparison import Kind, PositionAnswer
-from validation.compare.model_positions import MODELS
+from validation.compare.model_positions import FULL, MODELS
 from validation.study import Study
-
-FULL = "full FE"
 
 
 def verdicts(study: Study) -> dict[str, dict[str, list[Check]]]:

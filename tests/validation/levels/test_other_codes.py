@@ -51,8 +51,8 @@ def rows_of(kept=None):
 def test_todays_code_meets_the_stored_answers(alone, monkeypatch, solved):
     asked = []
 
-    def solve(drive, crank_angle, *, scale):
-        asked.append((drive, crank_angle, scale))
+    def solve(drive, crank_angle, options):
+        asked.append((drive, crank_angle, options.size))
         return solved
 
     monkeypatch.setattr(problems, "solve_drive", solve)
