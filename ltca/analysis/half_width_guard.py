@@ -34,16 +34,16 @@ from ltca.laws.backed import own_flexibility, shaft_pin_beam, wheel_pin_beam
 HALF_WIDTH_BOUND = 0.3
 """Largest contact half-width as a part of the smallest radius in contact: beyond it the bodies are no half-spaces
 and the separation is no parabola."""
-DEPARTURE = 0.02
+PARABOLA_DEPARTURE = 0.02
 """Departure from the parabola at the edge of a contact, as a part of it (squared where it leans to one side), below which
 tables and true separation differ by less than 0.4 % of the load: 0.39 % was the most among 592 pins of thirty drives."""
-LARGE_DEPARTURE = 0.05
-"""The same from which it is told where grids cannot say what it does to loads: by the figure above some 1 % of them."""
-DIFFERENCE = 0.01
-"""Difference of both by the largest load of their kind from which it is told."""
+LARGE_PARABOLA_DEPARTURE = 0.05
+"""The same from which a warning is given where grids cannot check the loads, which then are off by some 1 %."""
+LOAD_DIFFERENCE = 0.01
+"""Difference of loads by tables and by grids, relative to the largest of their kind, from which a warning is given."""
 SMALL_DISPLACEMENT = 0.1
-"""Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which it is told: directions of
-forces change by about that angle, rad."""
+"""Displacement of a pin, crank or wheel by what holds it, as a part of the eccentricity, from which a warning is given:
+directions of forces change by about that angle, rad."""
 PIN, OUTER, INNER = "wheel pin", "roller on the bore", "roller on the inner race"
 
 
@@ -170,7 +170,7 @@ def separation_warning(
     departure = _departures(model, contacts, pressures) * contacts.pin_load / largest
     row, _ = np.unravel_index(int(np.argmax(departure)), departure.shape)
     rollers = _roller_departure(drive, pressures)
-    if max(departure[row].max(), rollers) < DEPARTURE:
+    if max(departure[row].max(), rollers) < PARABOLA_DEPARTURE:
         return None
     angle, pose = balanced.crank_angle[row : row + 1], balanced.pose[row : row + 1]
     at = f"φ_C = {angle[0]:.4g} rad"
@@ -179,7 +179,7 @@ def separation_warning(
         name = "rollers" if most == rollers else f"{PIN} {int(np.argmax(departure[row]))}"
         told = f"at {at} the surfaces at {name} depart from the parabola of the tables by {100.0 * most:.2g} % at the edge of"
         more = "the contact: loads may be a percent off, or more (grids, which would say, know fixed pins alone)"
-        return f"{told} {more}" if most >= LARGE_DEPARTURE else None
+        return f"{told} {more}" if most >= LARGE_PARABOLA_DEPARTURE else None
     try:
         found = GridCompliance.of_drive(drive).respond(angle, pose)
     except ConvergenceError:
@@ -192,7 +192,7 @@ def separation_warning(
         difference = np.abs(tables - grids) / max(float(np.max(grids)), 1e-300)
         if np.max(difference) > worst:
             worst, name, number = float(np.max(difference)), kind, int(np.argmax(difference))
-    if worst < DIFFERENCE:
+    if worst < LOAD_DIFFERENCE:
         return None
     return (
         f"at {at} the load of {name} {number} differs by {100.0 * worst:.2g} % of the largest between the parabola of the "
@@ -201,7 +201,7 @@ def separation_warning(
 
 
 def _departures(model: DiscModel, contacts: Response, pressures: ContactPressures) -> FloatArray:
-    """Departure of pin and flank from their parabola at the edges of the contact, as `DEPARTURE` counts it."""
+    """Departure of pin and flank from their parabola at the edges of the contact, as `PARABOLA_DEPARTURE` counts it."""
     profile, flank, half_width = model.geometry.profile, contacts.flank, pressures.pins.half_width
     radius = np.broadcast_to(model.geometry.placement.wheel_pin_radii, half_width.shape)
     closed = half_width > 0.0

@@ -170,7 +170,7 @@ def _seized(drive: Drive, limits: Limits, error: DriveError) -> tuple[list[Check
 
 def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) -> str:
     """What drives what fails, and what would mend it."""
-    from ltca.analysis.verdict.advice import TOLD
+    from ltca.analysis.verdict.advice import MAX_INPUTS
 
     lines = []
     for check in checks:
@@ -184,10 +184,10 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
         helping = [driver for driver in each if driver.change]
         lines += [
             f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+.2f})"
-            for driver in helping[: 2 * TOLD]
+            for driver in helping[: 2 * MAX_INPUTS]
         ]
         if each and not helping:
-            named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:TOLD])
+            named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:MAX_INPUTS])
             lines.append(f"    driven by {named}; no single change by a factor of three mends it")
     return "".join(f"{line}\n" for line in lines)
 

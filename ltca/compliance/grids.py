@@ -28,8 +28,8 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.series import SpringLaw
 
-PLACES = 4096
-"""Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
+STATIONS_PER_WAVE = 4096
+"""Stations on the flank, per wave, at which separations are computed; between them they are interpolated,
 which errs by 3e-7 of what the curvature swings ((2π/4096)²/8), the load by a tenth of that."""
 
 SeparationOf = Callable[[int, int], Separation]
@@ -190,4 +190,4 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
         waves = round(profile.reduction_ratio)
         if profile.deviation is not None:
             waves = max(waves, profile.deviation.knots.size, *profile.deviation.orders)
-        return float(2.0 * np.pi / (PLACES * waves))
+        return float(2.0 * np.pi / (STATIONS_PER_WAVE * waves))

@@ -23,7 +23,7 @@ REFINEMENT = 4
 """Places on a wall for each stress station. On the paper's disc the largest stresses are then within 0.3 % (roots), 0.2 %
 (bore) and 1.1 % (holes) of those from twice the stations."""
 
-CHUNK = 128
+POSITIONS_PER_CHUNK = 128
 """Positions evaluated at once: distances of all places from all contacts stay small."""
 
 
@@ -129,7 +129,7 @@ def wall_stresses(
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
         _reduce(model, stress, _take(placed, rows), lobes)
-        for rows in np.array_split(np.arange(positions), max(1, -(-positions // CHUNK)))
+        for rows in np.array_split(np.arange(positions), max(1, -(-positions // POSITIONS_PER_CHUNK)))
     ]
     return WallStresses(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 

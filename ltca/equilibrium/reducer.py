@@ -111,13 +111,13 @@ class Reducer:
     by_position: bool = field(init=False, repr=False)
 
     @classmethod
-    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel], *, rubs: bool = True) -> Reducer:
-        """Return the reducer of a drive whose discs yield by these models; without friction where nothing `rubs`."""
+    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel]) -> Reducer:
+        """Return the reducer of a drive whose discs yield by these models."""
         return cls(
             discs=tuple(discs),
             supports=support_stiffness(drive, discs[0].geometry),
             pins=SharedPins.of_drive(drive),
-            friction=TurningFriction.of_drive(drive) if rubs else None,
+            friction=TurningFriction.of_drive(drive),
         )
 
     def __post_init__(self) -> None:

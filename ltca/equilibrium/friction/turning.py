@@ -22,9 +22,9 @@ from ltca.equilibrium.friction.slip import Slip
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 
-ROLLING = 1e-4
-"""Slip by the crank angle, as a part of the eccentricity, below which friction fades out: about the pitch point the sense of
-the slip turns over, and a contact that lies there neither slips one way nor the other."""
+FADING_SLIP = 1e-4
+"""Slip per crank angle, relative to the eccentricity, below which friction is reduced linearly to zero: at the pitch point the
+sense of the slip reverses."""
 
 
 def rubbing(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
@@ -154,7 +154,7 @@ class TurningFriction:
             When the contacts come without slopes.
         """
         slip, pins = Slip.of_disc(geometry, crank_angle, pose, part), part.pin_load.shape[1]
-        soft = ROLLING * geometry.placement.mean_eccentricity
+        soft = FADING_SLIP * geometry.placement.mean_eccentricity
         sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
         sense[:, :pins] *= self.pin
         sense[:, pins:] *= self.hole
