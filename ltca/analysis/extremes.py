@@ -88,14 +88,7 @@ def is_full_turn(crank_angle: FloatArray) -> bool:
 
 
 def sampling(drive: Drive, crank_angle: FloatArray) -> Sampling:
-    """Return how crank angles sample the mesh of a drive.
-
-    Parameters
-    ----------
-    drive : Drive
-        For its teeth.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
+    """Return how crank angles, rad, sample the mesh of a drive.
 
     Examples
     --------

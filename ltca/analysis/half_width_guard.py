@@ -112,16 +112,9 @@ def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ..
 
 
 def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
-    """Return what to say where shaft pins lie wider in their holes than half-spaces stand for, None where they do not.
+    """Return a warning where shaft pins touch their holes over more than a half-space stands for; None elsewhere.
 
-    Their loads go through springs and stay what they are; the pressures are those of bodies less curved.
-
-    Parameters
-    ----------
-    drive : Drive
-        For the radius.
-    pressures : ContactPressures
-        Of the solved positions.
+    Their loads go through springs and hold; the pressures are those of bodies that are less curved.
     """
     if drive.pin_shaft is None:
         return None
@@ -135,13 +128,7 @@ def wide_holes_warning(drive: Drive, pressures: ContactPressures) -> str | None:
 
 
 def unborne_warning(pressures: ContactPressures) -> str | None:
-    """Return what to say of pressures that no gear bears, None below them.
-
-    Parameters
-    ----------
-    pressures : ContactPressures
-        Of the solved positions.
-    """
+    """Return a warning where pressures are higher than any steel bears; None below."""
     kinds = (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
     largest = max(float(np.nanmax(kind.mid)) for kind in kinds if kind.mid.size)
     if largest <= BORNE:
@@ -152,18 +139,9 @@ def unborne_warning(pressures: ContactPressures) -> str | None:
 def separation_warning(
     model: DiscModel, drive: Drive, balanced: Equilibrium, pressures: ContactPressures
 ) -> str | None:
-    """Return what to say where tables and the true separation of the surfaces disagree, None where they do not.
+    """Return a warning where tables and the true separation of the surfaces disagree; None elsewhere.
 
-    Parameters
-    ----------
-    model : DiscModel
-        The tables.
-    drive : Drive
-        Their drive.
-    balanced : Equilibrium
-        Solved positions.
-    pressures : ContactPressures
-        Of them.
+    The model of the disc, its drive, balanced positions and their pressures are those of one disc alone.
     """
     contacts = balanced.response
     largest = max(float(np.max(contacts.pin_load)), 1e-300)
@@ -236,19 +214,7 @@ def _roller_departure(drive: Drive, pressures: ContactPressures) -> float:
 def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
     """Return how far pins that are beams move at a disc under the forces of all discs, mm, shape (positions, pairs).
 
-    Parameters
-    ----------
-    drive : Drive
-        Of one disc.
-    model : Reducer
-        Of that disc.
-    found : Equilibrium
-        Of that disc.
-
-    Returns
-    -------
-    dict of str to array
-        By name in the dataset; empty where no pins are beams.
+    Drive, model and balanced positions are those of one disc; keys are names of the dataset, none where no pins are beams.
     """
     contacts, geometry = found.response, model.discs[0].geometry
     moved, by_ring = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(found.pose)
@@ -265,14 +231,10 @@ def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[st
 
 
 def displacement_warning(eccentricity: float, moved: Mapping[str, tuple[str, FloatArray]]) -> str | None:
-    """Return a warning where displacements are no small ones any more, None elsewhere.
+    """Return a warning where displacements are no longer small; None elsewhere.
 
-    Parameters
-    ----------
-    eccentricity : float
-        mm.
-    moved : mapping of str to (str, array)
-        What moves by a field: the field that says how it yields, and displacements, mm; not a number where there is no answer.
+    `moved` has, by what moves, the field that says how it yields and the displacements, mm, not a number where there is no
+    answer; the eccentricity is in mm.
     """
     told = []
     for name, (field, values) in moved.items():

@@ -267,13 +267,7 @@ class LoadedAnalysis:
 
 
 def seizing_words(written: Drive) -> str | None:
-    """Return which plays of a drive its warmth has taken, in words; None where it has taken none.
-
-    Parameters
-    ----------
-    written : Drive
-        As given, with its temperatures.
-    """
+    """Return which plays of a drive, as given with its temperatures, its warmth has taken; None where it has taken none."""
     if written.temperature is None:
         return None
     gone = lost_play(warm_drive(replace(written, temperature=Temperature())), warm_drive(written))

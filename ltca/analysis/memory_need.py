@@ -23,13 +23,7 @@ KEPT_PER_POSITION = 1e3
 
 
 def positions_together(drive: Drive) -> int:
-    """Return how many positions of a drive are solved at once where they are solved part by part.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    """
+    """Return how many positions of a drive are solved at once where an analysis is solved part by part."""
     return max(1, int(MEMORY_PER_PART / (MEMORY_PER_PAIR * _pairs(drive))))
 
 

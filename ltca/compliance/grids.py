@@ -82,15 +82,7 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> GridCompliance:
-        """Return the grid model of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        cells : int
-            Cells over each half-width and over half of each length.
-        """
+        """Return the grid model of a drive, with so many cells over each half-width and over half of each length."""
         return cls(
             geometry=ContactGeometry.of_drive(drive),
             kinds=ContactKinds.of_drive(drive, cells),

@@ -49,15 +49,10 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
 
     @classmethod
     def of_drive(cls, drive: Drive, *, in_batch: bool = False) -> HalfSpaceCompliance:
-        """Return the half-space model of a drive.
+        """Return the half-space model of a drive of one disc.
 
-        Parameters
-        ----------
-        drive : Drive
-            The drive, of one disc.
-        in_batch : bool
-            Whether it is stacked with others (`ltca.arrays.stack_drives`): tables of profiled parts are then made for ranges
-            of radii on a ladder, so that drives that differ little have the same.
+        In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
+        that differ little have the same.
         """
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials

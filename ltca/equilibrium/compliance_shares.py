@@ -23,19 +23,9 @@ RELATIVE_TORQUE_STEP = 1e-4
 
 
 def compliance_shares(model: Reducer, found: Equilibrium) -> dict[str, FloatArray]:
-    """Return the shares of the wheel's compliance by part, crank held.
+    """Return the shares of the wheel's compliance by part (`PARTS`), crank held, shape (positions,); they add up to one.
 
-    Parameters
-    ----------
-    model : Reducer
-        What balanced.
-    found : Equilibrium
-        Balanced positions.
-
-    Returns
-    -------
-    dict of str to array, shape (positions,)
-        By `PARTS`; they add up to one. Not a number where nothing resists a free motion.
+    They are not a number where nothing resists a free motion.
     """
     response, size = found.response, found.pose.shape[1]
     if model.friction is not None:  # what bodies yield, not what rubs

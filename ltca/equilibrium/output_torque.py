@@ -39,18 +39,7 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
 
     It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
     crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they turn.
-    What rubs at the crank comes on top.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    response : Response
-        Contacts there.
+    Friction at the crank adds its own.
     """
     cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
     pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
@@ -65,13 +54,8 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
 def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
     """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
-    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-    the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
-
-    Parameters
-    ----------
-    model, crank_angle, pose, response : Reducer, array, array, Response
-        As for `crank_moments`.
+    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds the
+    cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
     """
     cranks = model.discs[0].geometry.placement.cranks
     total = np.zeros((crank_angle.size, cranks))
@@ -86,12 +70,7 @@ def input_moment(
 ) -> FloatArray:
     """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
 
-    Parameters
-    ----------
-    model, crank_angle, pose, response : Reducer, array, array, Response
-        As for `crank_moments`.
-    part : array, shape (positions,)
-        `Drive.input_per_crank_moment`.
+    `part` is `Drive.input_per_crank_moment` of each position.
     """
     return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
 
@@ -242,22 +221,9 @@ def balance_at_output(
     torque: float,
     start: FloatArray | None = None,
 ) -> Equilibrium:
-    """Balance positions of one drive at an output torque by any method that takes moments on the wheel.
+    """Balance positions of one drive at an output torque, N·mm, by any method that balances moments on the wheel.
 
-    Parameters
-    ----------
-    model : Reducer
-        Whose loads balance.
-    balance : callable
-        Crank angles, moments on the wheel and starting poses to balanced positions.
-    drive : Drive
-        The drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    torque : float
-        On the output, N·mm.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from.
+    `balance` takes crank angles, moments on the wheel and poses to start from, and returns balanced positions.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     mean = np.full(angle.size, drive.wheel_moment(torque))

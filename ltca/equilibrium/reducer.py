@@ -222,19 +222,7 @@ def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
 
 
 def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
-    """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    response : Response
-        Contacts there.
-    """
+    """Return a response with the gaps and places of the pins that were left out because they cannot touch (`Start.onward`)."""
     parts = []
     for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
         geometry, own = disc.geometry, model.coordinates.columns(number)
@@ -271,17 +259,7 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
 
 
 def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
-    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    response : Response
-        Contacts.
-    """
+    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N."""
     forces = []
     for geometry, part in zip(model.geometries, response.parts, strict=True):
         ahead = geometry.placement.eccentric_directions(crank_angle)

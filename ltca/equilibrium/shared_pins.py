@@ -54,26 +54,10 @@ class SharedPins:
         coordinates: Coordinates,
         shifts: ComplexArray,
     ) -> tuple[tuple[DiscResponse, ...], ComplexArray, SharedTangent]:
-        """Return the contacts of all discs with the pins where all forces hold them.
+        """Return the contacts of all discs with the pins displaced by all forces, the displacements, and how all follow the pose.
 
-        Parameters
-        ----------
-        respond : callable
-            Contacts of all discs for displacements of the pins.
-        coordinates : Coordinates
-            Of the whole.
-        shifts : array of complex, shape (positions, discs, pairs)
-            Displacements to start from, mm.
-
-        Returns
-        -------
-        responses, shifts, tangent
-            Contacts of every disc, displacements, and how all follow the pose.
-
-        Raises
-        ------
-        ConvergenceError
-            When the displacements do not settle.
+        `respond` returns the contacts of all discs for displacements, mm, complex, shape (positions, discs, pairs). A
+        ConvergenceError is raised where they do not settle.
         """
         history: list[float] = []
         parts = respond(shifts)
