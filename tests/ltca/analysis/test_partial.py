@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import ltca
-from ltca.analysis import engines
+from ltca.analysis import engines, loaded_analysis
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.equilibrium.balance import Equilibrium
@@ -35,7 +35,8 @@ def failing(monkeypatch):
                 raise ConvergenceError("no equilibrium at some crank angle", [1.0, 2.0])
             return real(model, drives, angle, torque, start)
 
-        monkeypatch.setattr(engines, "solve_at_output", solve)
+        for module in (engines, loaded_analysis):  # alone, and as rows of one batch
+            monkeypatch.setattr(module, "solve_at_output", solve)
 
     return fail
 
