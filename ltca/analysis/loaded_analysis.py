@@ -42,10 +42,10 @@ from ltca.errors import ConvergenceError, DriveError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
 
-SHARED = 24
-"""Positions at which shares of the compliance are looked at: they change slowly over the turn."""
-MOST_ROWS = 20_000
-"""Positions of all cases that are balanced as one batch: more gain nothing and take memory."""
+COMPLIANCE_SHARE_POSITIONS = 24
+"""Number of positions at which shares of the compliance are evaluated: they change slowly over the turn."""
+MAX_BATCH_POSITIONS = 20_000
+"""Most positions that are balanced as one batch: more take memory and save no time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,10 +188,12 @@ class LoadedAnalysis:
     def compliance_shares(self) -> dict[str, FloatArray]:
         """Which part yields how much of the output's compliance (`ltca.equilibrium.compliance_shares`).
 
-        At up to `SHARED` of the positions, evenly chosen; not a number where one has no answer.
+        At up to `COMPLIANCE_SHARE_POSITIONS` of the positions, evenly chosen; not a number where one has no answer.
         """
         positions = self.full.crank_angle.size
-        rows = np.unique(np.linspace(0, positions, min(positions, SHARED), endpoint=False).astype(int))
+        rows = np.unique(
+            np.linspace(0, positions, min(positions, COMPLIANCE_SHARE_POSITIONS), endpoint=False).astype(int)
+        )
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
         return compliance_shares(self.model, take_positions(self.full, rows))
@@ -265,13 +267,7 @@ class LoadedAnalysis:
 
 
 def seizing_words(written: Drive) -> str | None:
-    """Return which plays of a drive its warmth has taken, in words; None where it has taken none.
-
-    Parameters
-    ----------
-    written : Drive
-        As given, with its temperatures.
-    """
+    """Return which plays of a drive, as given with its temperatures, its warmth has taken; None where it has taken none."""
     if written.temperature is None:
         return None
     gone = lost_play(warm_drive(replace(written, temperature=Temperature())), warm_drive(written))
@@ -342,7 +338,7 @@ def analyse_cases(
         As `analyse` does.
     """
     angle, names = check_positions(crank_angle), list(cases)
-    many = max(1, MOST_ROWS // angle.size)
+    many = max(1, MAX_BATCH_POSITIONS // angle.size)
     for part in (names[first : first + many] for first in range(0, len(names), many)):
         prepared = [_prepared(cases[name], torque, engine) for name in part]
         for name, case, known in zip(part, prepared, _balanced_together(prepared, angle), strict=True):

@@ -94,12 +94,7 @@ def summarise(analysis: LoadedAnalysis) -> dict[str, float | None]:
 def scalars_of_positions(analysis: LoadedAnalysis, arrays: Mapping[str, FloatArray]) -> dict[str, float]:
     """Return the scalars that follow loads, poses and pressures of the positions smoothly, by their names in the registry.
 
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-    arrays : mapping of str to array
-        Its arrays, from `ltca.analysis.results.case_arrays`.
+    `arrays` are those of the case, from `ltca.analysis.results.case_arrays`.
     """
     radial, tangential = analysis.bearing_radial, analysis.bearing_tangential
     values = {

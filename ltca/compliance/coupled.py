@@ -11,7 +11,7 @@ zero where ε is negative, so that no contact has to be switched on or off, and 
 
 .. math:: R(\epsilon) = \epsilon + C f(\epsilon) - \delta(q) = 0 .
 
-Only contacts that may carry are unknowns: those pressed together, and open ones within `MARGIN`. The others' ε follows
+Only contacts that may carry are unknowns: those pressed together, and open ones within `CANDIDATE_MARGIN`. The others' ε follows
 from the loads; where one of them is positive after all, every contact is taken.
 
 Of a roller the outer contact is the unknown. Its inner contact carries F_i = F_o (n_o·n) and yields with the race,
@@ -52,11 +52,11 @@ from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness, tip_share
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.spring import SpringLaw
 
-ITERATIONS = 60
-CHUNK = 256
-"""Positions solved at once: the matrices of more would fall out of the cache."""
-MARGIN = 0.25
-"""Gap within which an open contact may carry, as a part of the largest overlap of its position."""
+MAX_ITERATIONS = 60
+POSITIONS_PER_CHUNK = 256
+"""Positions solved at once: the matrices of more would not fit into the processor's cache."""
+CANDIDATE_MARGIN = 0.25
+"""Gap within which an open contact is taken for a candidate to carry, relative to the largest overlap at its position."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,7 +170,7 @@ class CoupledCompliance:
         flank = self.geometry.flank(crank_angle, pose, None if start is None else start.parameter, moved[0])
         holes = self.geometry.holes(crank_angle, pose, moved[1])
         pins, parts = (flank, holes, shifts), []
-        for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // CHUNK))):
+        for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // POSITIONS_PER_CHUNK))):
             bodies = UndeformedBodies(self.geometry, *take_positions((crank_angle, pose, pins), rows))
             parts.append(self._solve(bodies, start, rows))
         joined: DiscResponse = join_positions(parts)
@@ -182,7 +182,7 @@ class CoupledCompliance:
             for row, warm in enumerate(start.warm_start[rows]):
                 if warm is not None:
                     guess[row] = warm
-        for margin in (MARGIN, np.inf):
+        for margin in (CANDIDATE_MARGIN, np.inf):
             batch = _Batch(self, bodies, margin)
             response = batch.response(batch.solve(guess))
             if response is not None:
@@ -308,7 +308,7 @@ class _Batch:
         residual, matrix = self.evaluate(near)
         size = np.max(np.abs(residual), axis=1)
         history: list[float] = []
-        for _ in range(ITERATIONS):
+        for _ in range(MAX_ITERATIONS):
             history.append(float(np.max(size, initial=0.0)))
             if history[-1] < 1e-13:
                 return near, matrix

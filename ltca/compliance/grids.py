@@ -29,8 +29,8 @@ from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.spring import SpringLaw
 
-PLACES = 4096
-"""Places on the flank for each of its waves at which separations are worked out; between them they are interpolated,
+STATIONS_PER_WAVE = 4096
+"""Stations on the flank, per wave, at which separations are computed; between them they are interpolated,
 which errs by 3e-7 of what the curvature swings ((2π/4096)²/8), the load by a tenth of that."""
 
 SeparationOf = Callable[[int, int], Separation]
@@ -83,15 +83,7 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
 
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> GridCompliance:
-        """Return the grid model of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        cells : int
-            Cells over each half-width and over half of each length.
-        """
+        """Return the grid model of a drive, with so many cells over each half-width and over half of each length."""
         return cls(
             geometry=ContactGeometry.of_drive(drive),
             kinds=ContactKinds.of_drive(drive, cells),
@@ -191,4 +183,4 @@ class GridCompliance(UncoupledContacts[_KindGrids]):
         waves = round(profile.reduction_ratio)
         if profile.deviation is not None:
             waves = max(waves, profile.deviation.knots.size, *profile.deviation.orders)
-        return float(2.0 * np.pi / (PLACES * waves))
+        return float(2.0 * np.pi / (STATIONS_PER_WAVE * waves))

@@ -23,11 +23,11 @@ from ltca.laws.contact_law import ContactLaw
 from ltca.laws.generator_law import law_for_profile
 from ltca.laws.spring import SpringLaw
 
-SAMPLES = 180
-"""Places of each lobe at which the range of effective radii is looked for."""
-ZOOMS = 3
-"""Times they are looked for, from the second time between the neighbours of the outermost: a tip close to undercut is sharper
-than a lobe's 180th part."""
+SAMPLES_PER_LOBE = 180
+"""Stations on a lobe at which the range of effective radii is searched."""
+REFINEMENTS = 3
+"""Searches for that range, each after the first between the neighbours of the extreme found: a tip close to undercut is
+sharper than the 180th part of a lobe."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,15 +49,10 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
 
     @classmethod
     def of_drive(cls, drive: Drive, *, in_batch: bool = False) -> HalfSpaceCompliance:
-        """Return the half-space model of a drive.
+        """Return the half-space model of a drive of one disc.
 
-        Parameters
-        ----------
-        drive : Drive
-            The drive, of one disc.
-        in_batch : bool
-            Whether it is stacked with others (`ltca.arrays.stack_drives`): tables of profiled parts are then made for ranges
-            of radii on a ladder, so that drives that differ little have the same.
+        In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
+        that differ little have the same.
         """
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
@@ -67,7 +62,7 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         if not drive.pin_wheel.pin_profile.is_cylinder:
             # A flank without deviations has the same radii on every lobe.
             lobes = 1 if geometry.profile.deviation is None else drive.pin_wheel.number_of_pins
-            turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES * lobes + 1)
+            turn = np.linspace(0.0, 2.0 * np.pi * lobes / drive.pin_wheel.number_of_pins, SAMPLES_PER_LOBE * lobes + 1)
             pin_radii = _effective_radii(geometry.profile, place.wheel_pin_radii, turn)
 
         def roller_law(race: Material, effective_radii: FloatArray) -> ContactLaw:
@@ -115,7 +110,7 @@ def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatAr
     ends = []
     for outermost, power in ((np.min, -1.0), (np.max, 1.0)):
         radius, places, found = outermost(pin_radii, axis=-1, keepdims=True), turn, []
-        for _ in range(ZOOMS):
+        for _ in range(REFINEMENTS):
             # Tops are looked for, of the curvature and of the radius: outward of either is a positive radius.
             values = profile.effective_radius(places, radius) ** power
             # Between three samples of a parabola its top is higher than they are by an eighth of their second difference.
@@ -123,7 +118,7 @@ def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatAr
             found.append(np.max(values))
             top = np.take_along_axis(places, np.argmax(values, axis=-1)[..., None], axis=-1)
             spacing = places[..., 1:2] - places[..., :1]
-            places = top + spacing * np.linspace(-1.0, 1.0, SAMPLES + 1)
+            places = top + spacing * np.linspace(-1.0, 1.0, SAMPLES_PER_LOBE + 1)
         ends.append(np.max(found) ** power)
     return np.array(ends)
 

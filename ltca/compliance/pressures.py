@@ -26,18 +26,10 @@ from ltca.laws.line_contact import LineContactLaw
 def pressures_of_law(
     law: ContactLaw, ends: ContactKind | None, approach: FloatArray, effective_radius: FloatArray
 ) -> KindPressures:
-    """Return pressures and half-widths of contacts at their approaches.
+    """Return pressures and half-widths of contacts at their approaches, mm, shape (positions, pairs).
 
-    Parameters
-    ----------
-    law : ContactLaw
-        Of the contacts.
-    ends : ContactKind or None
-        What pressures at the ends are read from; None in plane strain, which has no ends.
-    approach : array, shape (positions, pairs)
-        Of the contacts with what is behind them, mm.
-    effective_radius : array
-        mm; broadcast to that shape.
+    Approaches are those of the contacts with what is behind them; effective radii, mm, are broadcast to their shape. Pressures at
+    the ends are read from `ends`; None stands for plane strain, which has no ends.
     """
     law, approach = law.surface(approach, effective_radius)
     closed = approach > 0.0
@@ -51,16 +43,9 @@ def pressures_of_law(
 
 
 def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement) -> KindPressures:
-    """Return pressures and half-widths of elastic shaft pins in their holes, half-spaces of finite length.
+    """Return pressures and half-widths of elastic shaft pins in their holes by their loads, N, shape (positions, holes).
 
-    Parameters
-    ----------
-    kind : ContactKind
-        Of the holes, E* of disc and shaft pin.
-    load : array, shape (positions, holes)
-        N.
-    place : Placement
-        For the radii.
+    The bodies are half-spaces of finite length, E* that of disc and shaft pin.
     """
     law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
     approach, _ = law.approach_at_load(load, radius)

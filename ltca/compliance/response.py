@@ -231,13 +231,7 @@ class Start:
         return replace(cls.after(response), known=KnownPins.of(response.flank))
 
     def of_others(self, reach_beyond: FloatArray) -> Start:
-        """Return the start for other drives of which pins may be that much deeper in the flank at the same places.
-
-        Parameters
-        ----------
-        reach_beyond : array, shape (positions, pins)
-            `ltca.geometry.pairs.ContactGeometry.reach_beyond`, mm.
-        """
+        """Return the start for other drives, whose pins may be deeper in the flank by `reach_beyond`, mm, (positions, pins)."""
         known = self.known
         return replace(self, known=None if known is None else replace(known, approach=known.approach + reach_beyond))
 

@@ -18,11 +18,11 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import ContactLaw
 
-ITERATIONS = 60
-SETTLED = 1e-6
-"""Last change of a share by Newton's method: loads follow it in line, and what that leaves out is its square."""
-CLOSED = 1e-11
-"""Last change of a share by bisection."""
+MAX_ITERATIONS = 60
+NEWTON_TOLERANCE = 1e-6
+"""Last Newton change of a share: loads are corrected linearly for it, and the error left is of its square."""
+BISECTION_TOLERANCE = 1e-11
+"""Last change of a share where the step was a bisection."""
 
 Law = TypeVar("Law", bound=ContactLaw)
 
@@ -168,7 +168,7 @@ def _balance_pressed(
     along = direction.real * moved.real + direction.imag * moved.imag
     low, high = np.zeros_like(total), np.ones_like(total)
     history: list[float] = []
-    for _ in range(ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         place = outermost - share * total
         arm = place * direction - moved
         length = np.abs(arm)
@@ -193,7 +193,7 @@ def _balance_pressed(
         following = np.where(imbalance != 0.0, following, share)
         change = np.abs(following - share)
         history.append(float(np.max(change, initial=0.0)))
-        if np.all(change <= np.where(following == newton, SETTLED, CLOSED)):
+        if np.all(change <= np.where(following == newton, NEWTON_TOLERANCE, BISECTION_TOLERANCE)):
             break
         share = following
     else:

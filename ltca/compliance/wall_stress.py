@@ -23,7 +23,7 @@ REFINEMENT = 4
 """Places on a wall for each stress station. On the paper's disc the largest stresses are then within 0.3 % (roots), 0.2 %
 (bore) and 1.1 % (holes) of those from twice the stations."""
 
-CHUNK = 128
+POSITIONS_PER_CHUNK = 128
 """Positions evaluated at once: distances of all places from all contacts stay small."""
 
 
@@ -46,13 +46,7 @@ class WallProfile:
     clear: NDArray[np.bool_]
 
     def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> tuple[FloatArray, FloatArray]:
-        """Return the largest clear stress of each position and its parameter; not a number where nothing is clear.
-
-        Parameters
-        ----------
-        places : array of bool or slice
-            Which places count, all by default.
-        """
+        """Return the largest clear stress of each position and its parameter among some places; not a number where none is."""
         parameter = self.parameter[places]
         stress = np.where(self.clear[:, places], self.stress[:, places], -np.inf)
         best = np.argmax(stress, axis=1)
@@ -109,18 +103,9 @@ class _PlacedContacts:
 def wall_stresses(
     model: DiscModel, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> WallStresses:
-    """Return the largest stresses along the walls and the stresses under the contacts.
+    """Return the largest stresses along the walls and the stresses under the contacts of a response and its pressures.
 
-    Parameters
-    ----------
-    model : DiscModel
-        The model that answered.
-    response : DiscResponse
-        Its loads.
-    pressures : ContactPressures
-        ``model.pressures(response)``.
-    disc_rotation : array, shape (positions,)
-        Rotation of the disc, rad: ``pose[:, 2]``.
+    The rotation of the disc, rad, has shape (positions,).
     """
     positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
     stress = _stress_coefficients(model)
@@ -129,7 +114,7 @@ def wall_stresses(
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
         _reduce(model, stress, _take(placed, rows), lobes)
-        for rows in np.array_split(np.arange(positions), max(1, -(-positions // CHUNK)))
+        for rows in np.array_split(np.arange(positions), max(1, -(-positions // POSITIONS_PER_CHUNK)))
     ]
     return WallStresses(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
@@ -144,12 +129,7 @@ def wall_profiles(
 ) -> tuple[WallProfile, ...]:
     """Return the stress along flank, each bore and each hole wall; none where the coefficients have no stresses.
 
-    Parameters
-    ----------
-    model, response, pressures, disc_rotation
-        As for `wall_stresses`.
-    refinement : int
-        Places for each stress station, the first of them on it.
+    Arguments are those of `wall_stresses`; of so many places per stress station the first lies on it.
     """
     stress = _stress_coefficients(model)
     if stress is None:

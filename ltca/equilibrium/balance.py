@@ -29,15 +29,15 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
 from ltca.geometry.pairs import ContactGeometry
 
-ITERATIONS = 100
-"""Newton iterations after which a start counts as lost; usual are ten, and fifty where contacts take turns."""
-HEAVIER = 8.0
-"""Ratio of torques of a continuation; it shrinks where a step is too long, down to `LEAST_RATIO`."""
-HEAVIEST = 7
-"""Most times that the torque grows by `HEAVIER` to find a start."""
-LEAST_RATIO = 1.05
-FEW = 3
-"""Iterations from a start that is near."""
+MAX_ITERATIONS = 100
+"""Newton iterations after which a start is given up; ten are usual, and fifty where contacts alternate."""
+TORQUE_RATIO = 8.0
+"""Ratio of successive torques of the continuation; reduced where a step fails, down to `LEAST_TORQUE_RATIO`."""
+MAX_TORQUE_STEPS = 7
+"""Most increases of the torque by `TORQUE_RATIO` in search of a start that balances."""
+LEAST_TORQUE_RATIO = 1.05
+FEW_ITERATIONS = 3
+"""Iterations that a nearby start takes at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,7 +147,7 @@ def solve_equilibrium(
 def follow_equilibrium(model: Reducer, found: Equilibrium, wheel_moment: FloatArray, gaps: bool = True) -> Equilibrium:
     """Balance positions under other moments, N·mm, from what this model answered; `gaps` as for `solve_equilibrium`."""
     search = _search(model, found.crank_angle, wheel_moment, found.pose.copy())
-    return _completed(search, search.iterate(ITERATIONS, response=found.response), gaps)
+    return _completed(search, search.iterate(MAX_ITERATIONS, response=found.response), gaps)
 
 
 def _search(model: Reducer, angle: FloatArray, moment: FloatArray, pose: FloatArray) -> Search:
@@ -190,18 +190,18 @@ def _solve_by_neighbours(
     first = np.arange(angle.size)
     if series == 1:
         first = leading_positions(model.discs[0].geometry, angle, moment)
-    left = search.iterate(ITERATIONS, first, take_positions(inner, first))
+    left = search.iterate(MAX_ITERATIONS, first, take_positions(inner, first))
     rest = np.setdiff1d(np.arange(angle.size), first)
     if rest.size == 0:
         return left
     begin = take_positions(inner, rest)
     # A start that leads somewhere in a few steps is as good as what lies between neighbours.
-    if np.median(search.iterations[first]) > FEW and search.balanced:
+    if np.median(search.iterations[first]) > FEW_ITERATIONS and search.balanced:
         known, contacts = search.contacts()
         pose[rest] = pose_between(angle[known], pose[known], angle[rest], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_between(angle[known], Start.after(contacts), angle[rest], ratio)
-    return np.union1d(left, search.iterate(ITERATIONS, rest, begin))
+    return np.union1d(left, search.iterate(MAX_ITERATIONS, rest, begin))
 
 
 def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
@@ -212,7 +212,7 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
     if leading.size < count:
         leaders = leading[0] + count * np.arange(series)
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], search.moment[leaders])
-    left = search.iterate(ITERATIONS, leaders)
+    left = search.iterate(MAX_ITERATIONS, leaders)
     rest = np.setdiff1d(np.arange(angle.size), leaders)
     if rest.size == 0:
         return left
@@ -226,11 +226,11 @@ def _solve_beside_leaders(search: Search, series: int) -> NDArray[np.intp]:
         pose[beside] = pose_beside(angle[at], pose[at], angle[beside], model.coordinates)
         ratio = model.discs[0].geometry.placement.reduction_ratio
         begin = start_beside(angle[at], take_positions(Start.after(contacts), rows), angle[beside], ratio)
-        left = np.union1d(left, search.iterate(ITERATIONS, beside, begin))
+        left = np.union1d(left, search.iterate(MAX_ITERATIONS, beside, begin))
     alone = rest[~led[rest // count]]
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], search.moment[alone])
-        left = np.union1d(left, search.iterate(ITERATIONS, alone))
+        left = np.union1d(left, search.iterate(MAX_ITERATIONS, alone))
     return left
 
 
@@ -256,24 +256,24 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Solve positions from heavier torques down to their own; return those that have no balance there either."""
     pose = _at_first_contact(search.model.take(rows), search.angle[rows], search.moment[rows])
     level = np.full(rows.size, np.nan)
-    for power in range(1, HEAVIEST + 1):
+    for power in range(1, MAX_TORQUE_STEPS + 1):
         new = np.nonzero(np.isnan(level))[0]
         if new.size == 0:
             break
-        part = _part(search, rows[new], np.full(new.size, HEAVIER**power), pose[new])
-        found = np.setdiff1d(np.arange(new.size), part.iterate(ITERATIONS))
+        part = _part(search, rows[new], np.full(new.size, TORQUE_RATIO**power), pose[new])
+        found = np.setdiff1d(np.arange(new.size), part.iterate(MAX_ITERATIONS))
         search.iterations[rows[new]] += part.iterations
-        pose[new[found]], level[new[found]] = part.pose[found], HEAVIER**power
-    ratio = np.full(rows.size, HEAVIER)
+        pose[new[found]], level[new[found]] = part.pose[found], TORQUE_RATIO**power
+    ratio = np.full(rows.size, TORQUE_RATIO)
     going = np.nonzero(~np.isnan(level))[0]
     while going.size:
         target = np.maximum(level[going] / ratio[going], 1.0)
         part = _part(search, rows[going], target, pose[going])
-        lost = part.iterate(ITERATIONS)
+        lost = part.iterate(MAX_ITERATIONS)
         search.iterations[rows[going]] += part.iterations
         found = np.setdiff1d(np.arange(going.size), lost)
         pose[going[found]], level[going[found]] = part.pose[found], target[found]
-        ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, HEAVIER)
+        ratio[going[found]] = np.minimum(ratio[going[found]] ** 2, TORQUE_RATIO)
         ratio[going[lost]] = np.sqrt(ratio[going[lost]])
         there = going[found][target[found] == 1.0]
         if there.size:
@@ -281,7 +281,7 @@ def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
             own = np.isin(kept, found[target[found] == 1.0])
             search.pose[rows[there]], search.residual[rows[there]] = pose[there], part.residual[kept[own]]
             search.keep(rows[going[kept]], contacts, own)
-        going = going[(level[going] > 1.0) & (ratio[going] > LEAST_RATIO)]
+        going = going[(level[going] > 1.0) & (ratio[going] > LEAST_TORQUE_RATIO)]
     return np.asarray(rows[level != 1.0])
 
 

@@ -29,9 +29,9 @@ from ltca.errors import ConvergenceError
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 """What balances positions: crank angles, moments on the wheel and poses to start from."""
 
-ROUNDS = 30
-CLOSED = 1e-10
-"""Moment left over as a part of the output torque: below what the balance of the forces leaves."""
+MAX_ITERATIONS = 30
+TORQUE_TOLERANCE = 1e-10
+"""Unbalanced moment relative to the output torque; the balance of forces leaves more."""
 
 
 def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
@@ -39,18 +39,7 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
 
     It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on the
     crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they turn.
-    What rubs at the crank comes on top.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    response : Response
-        Contacts there.
+    Friction at the crank adds its own.
     """
     cranks, friction = model.discs[0].geometry.placement.cranks, model.friction
     pushes = [bearing_pushes(part.rollers, cranks) for part in response.parts]
@@ -65,13 +54,8 @@ def crank_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, res
 def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
     """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
 
-    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-    the cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
-
-    Parameters
-    ----------
-    model, crank_angle, pose, response : Reducer, array, array, Response
-        As for `crank_moments`.
+    Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds the
+    cage is the moment of the bearing's force at the displaced centre of the bore, the sum over all discs.
     """
     cranks = model.discs[0].geometry.placement.cranks
     total = np.zeros((crank_angle.size, cranks))
@@ -86,21 +70,16 @@ def input_moment(
 ) -> FloatArray:
     """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
 
-    Parameters
-    ----------
-    model, crank_angle, pose, response : Reducer, array, array, Response
-        As for `crank_moments`.
-    part : array, shape (positions,)
-        `Drive.input_per_crank_moment`.
+    `part` is `Drive.input_per_crank_moment` of each position.
     """
     return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
 
 
-STRENGTH_STEP, LEAST_STRENGTH_STEP = 0.25, 0.01
-"""Part of the friction by which it grows at first where positions do not balance at once, and below which a step that fails is
-taken for the end: a drive that jams is told at which hundredth of its friction it does."""
-JAMMED = 2.0
-"""Growth of the loads by friction from which an end of the balance is called a jam."""
+FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
+"""First and least step of the continuation in the strength of friction: where a step of the least size fails, the drive jams
+between two hundredths of its friction."""
+JAMMING_LOAD_RATIO = 2.0
+"""Ratio of the loads with and without friction from which the end of the continuation is reported as jamming."""
 
 
 def solve_at_output(
@@ -150,7 +129,7 @@ def solve_at_output(
         return _solve(model, drives, crank_angle, torque, smooth.pose, Start.after(smooth.response), gaps)
     except ConvergenceError as error:
         failure = error
-    found, reached, lost, step, loads = smooth, 0.0, 1.0, STRENGTH_STEP, smooth.response.pin_load.sum(axis=1)
+    found, reached, lost, step, loads = smooth, 0.0, 1.0, FIRST_FRICTION_STEP, smooth.response.pin_load.sum(axis=1)
     while reached < 1.0:
         strength = min(reached + step, 1.0)
         try:
@@ -158,7 +137,7 @@ def solve_at_output(
             found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
         except ConvergenceError:
             lost = strength
-            if step <= LEAST_STRENGTH_STEP:
+            if step <= LEAST_FRICTION_STEP:
                 raise _jam(
                     drives,
                     np.atleast_1d(crank_angle),
@@ -172,7 +151,7 @@ def solve_at_output(
             continue
         reached = strength
         if reached >= lost:  # the step was too long, nothing else
-            step = min(2.0 * step, STRENGTH_STEP)
+            step = min(2.0 * step, FIRST_FRICTION_STEP)
     return found
 
 
@@ -199,7 +178,7 @@ def _jam(
         f"friction.{name} = {reached * value:.3g} to {lost * value:.3g} of {value:g}" for name, value in given.items()
     )
     # Near the end loads grow without bound; where they have not, the search may as well have lost its way.
-    ended = "the drive jams" if grown[row] >= JAMMED * without[row] else "no balance was found"
+    ended = "the drive jams" if grown[row] >= JAMMING_LOAD_RATIO * without[row] else "no balance was found"
     jammed = ConvergenceError(
         f"{ended} between {reached:.1%} and {lost:.1%} of its friction ({told}): wheel pins carry {without[row]:.4g} N "
         f"without friction, {grown[row]:.4g} N at {reached:.1%} of it at crank angle {crank_angle[row]:.6g} rad (position {row} "
@@ -242,22 +221,9 @@ def balance_at_output(
     torque: float,
     start: FloatArray | None = None,
 ) -> Equilibrium:
-    """Balance positions of one drive at an output torque by any method that takes moments on the wheel.
+    """Balance positions of one drive at an output torque, N·mm, by any method that balances moments on the wheel.
 
-    Parameters
-    ----------
-    model : Reducer
-        Whose loads balance.
-    balance : callable
-        Crank angles, moments on the wheel and starting poses to balanced positions.
-    drive : Drive
-        The drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    torque : float
-        On the output, N·mm.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from.
+    `balance` takes crank angles, moments on the wheel and poses to start from, and returns balanced positions.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     mean = np.full(angle.size, drive.wheel_moment(torque))
@@ -291,9 +257,9 @@ def _at_output(
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
     slope = -signed / mean
     history = []
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         history.append(float(np.max(np.abs(np.where(held, left, 0.0)))))
-        open_rows = np.nonzero(held & (np.abs(left) > CLOSED * np.abs(signed)))[0]
+        open_rows = np.nonzero(held & (np.abs(left) > TORQUE_TOLERANCE * np.abs(signed)))[0]
         if open_rows.size == 0:
             return found
         step = -left[open_rows] / slope[open_rows]

@@ -111,13 +111,13 @@ class Reducer:
     by_position: bool = field(init=False, repr=False)
 
     @classmethod
-    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel], *, rubs: bool = True) -> Reducer:
-        """Return the reducer of a drive whose discs yield by these models; without friction where nothing `rubs`."""
+    def of_drive(cls, drive: Drive, discs: Sequence[DiscModel]) -> Reducer:
+        """Return the reducer of a drive whose discs yield by these models."""
         return cls(
             discs=tuple(discs),
             supports=support_stiffness(drive, discs[0].geometry),
             pins=SharedPins.of_drive(drive),
-            friction=TurningFriction.of_drive(drive) if rubs else None,
+            friction=TurningFriction.of_drive(drive),
         )
 
     def __post_init__(self) -> None:
@@ -222,19 +222,7 @@ def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
 
 
 def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
-    """Return a response whose pins that cannot touch were left out (`Start.onward`) with them: their gaps and places.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    response : Response
-        Contacts there.
-    """
+    """Return a response with the gaps and places of the pins that were left out because they cannot touch (`Start.onward`)."""
     parts = []
     for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
         geometry, own = disc.geometry, model.coordinates.columns(number)
@@ -271,17 +259,7 @@ def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPres
 
 
 def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) -> NDArray[np.complex128]:
-    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N.
-
-    Parameters
-    ----------
-    model : Reducer
-        What answered.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    response : Response
-        Contacts.
-    """
+    """Return the force of each crank bearing on its disc, radial + i tangential, shape (positions, discs, cranks), N."""
     forces = []
     for geometry, part in zip(model.geometries, response.parts, strict=True):
         ahead = geometry.placement.eccentric_directions(crank_angle)

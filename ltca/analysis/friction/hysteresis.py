@@ -20,8 +20,8 @@ from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
-SMALLEST = 1e-4
-"""Smallest torque as a part of the largest: zero itself would leave the discs floating."""
+LEAST_TORQUE_RATIO = 1e-4
+"""Smallest torque relative to the largest: at zero the discs would float."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,7 +137,7 @@ def hysteresis_loop(
     if not 0.0 < lost_motion < amplitude:
         raise DriveError([f"lost_motion = {lost_motion:g}: must be greater than 0 and less than {amplitude:g}"])
     read = lost_motion / amplitude
-    up = np.unique(np.concatenate([np.linspace(SMALLEST**0.5, 1.0, points) ** 2, [read]]))
+    up = np.unique(np.concatenate([np.linspace(LEAST_TORQUE_RATIO**0.5, 1.0, points) ** 2, [read]]))
     once = np.concatenate([-up[::-1], up])
     path = drive.load.torque * amplitude * np.concatenate([up, once[::-1][1:], once[1:]])
     # A torque that turns the output ccw opposes a crank driving ccw with the wheel as output; the pin shaft turns back.

@@ -54,17 +54,7 @@ LIVES = ("bearing_life_million_turns", "bearing_life_hours", "bearing_life_modif
 
 
 def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *, lives: bool = True) -> list[Value]:
-    """Return everything that may be judged of one case.
-
-    Parameters
-    ----------
-    analysis : LoadedAnalysis
-        The case.
-    summary : mapping of str to (float or None)
-        Its scalars (`ltca.analysis.summary.summarise`).
-    lives : bool
-        Whether lives of the crank bearings are wanted, which take a second.
-    """
+    """Return everything that may be judged of one case and its summary; bearing lives, which take 1 s, on demand."""
     found = [*_of_shape(analysis), *_of_loads(analysis, summary), *_of_pins(analysis), *_of_walls(analysis)]
     found += _of_lives(analysis) if lives else []
     return [*found, *_of_theory(analysis, summary), *assembly_values(analysis), *_of_friction(analysis, summary)]
@@ -73,15 +63,7 @@ def find_values(analysis: LoadedAnalysis, summary: Mapping[str, float | None], *
 def judge_analysis(
     analysis: LoadedAnalysis, summary: Mapping[str, float | None], limits: Mapping[str, Limit], *, lives: bool = True
 ) -> list[Check]:
-    """Return the checks of one case.
-
-    Parameters
-    ----------
-    analysis, summary, lives
-        As for `find_values`; lives that have a limit are told in any case.
-    limits : mapping of str to Limit
-        Of the drive file.
-    """
+    """Return the checks of one case against the limits of its drive file; lives that have a limit are judged in any case."""
     wanted = lives or any(limit.quantity in LIVES for limit in limits.values())
     values = worst_of_duty(analysis, find_values(analysis, summary, lives=wanted), find_values)
     return judge(analysis.drive, values, limits, DEMANDED)

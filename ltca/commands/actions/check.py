@@ -10,7 +10,7 @@ from typing import Any
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.analysis.verdict.advice import TOLD, Driver, advise
+from ltca.analysis.verdict.advice import MAX_INPUTS, Driver, advise
 from ltca.analysis.verdict.assembly import play_at_temperature
 from ltca.analysis.verdict.values import judge_analysis, notes as notes_of
 from ltca.drive.members.judgement import WHOLE, Check, Value, judge
@@ -123,10 +123,10 @@ def _advice(checks: Sequence[Check], drivers: Mapping[str, Sequence[Driver]]) ->
         helping = [driver for driver in each if driver.change]
         lines += [
             f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+.2f})"
-            for driver in helping[: 2 * TOLD]
+            for driver in helping[: 2 * MAX_INPUTS]
         ]
         if each and not helping:
-            named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:TOLD])
+            named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:MAX_INPUTS])
             lines.append(f"    driven by {named}; no single change by a factor of three mends it")
     return "".join(f"{line}\n" for line in lines)
 

@@ -102,17 +102,7 @@ class StickingFriction:
 
     @classmethod
     def at_rest(cls, friction: JointFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
-        """Return the friction of a drive without any force along a tangent yet.
-
-        Parameters
-        ----------
-        friction : JointFriction
-            Of the drive that turns, for its coefficients.
-        model : Reducer
-            Whose poses those are.
-        found : Equilibrium
-            Balanced without friction.
-        """
+        """Return the friction since a balance without friction, with the coefficients of the drive that turns."""
         return cls(pin=friction.pin, hole=friction.hole, **_state(model, found, rubbed=False))
 
     def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ltca.analysis.life.ratings import BEARING_STEEL, STATIC
+from ltca.analysis.life.ratings import BEARING_STEEL, STATIC_RATING_FACTOR
 from ltca.analysis.torque_curve import LOST_MOTION
 from ltca.arrays import FloatArray
 from ltca.drive.parts import contact_modulus
@@ -304,7 +304,7 @@ def lives_by_loads(sizes: Sizes, setting: Setting, most: FloatArray, mean: Float
     return {
         "bearing_life_million_turns": life,
         "bearing_life_hours": life * 1e6 / (60.0 * turns),
-        "static_safety_S0": STATIC * (1.0 - g) * sizes.rollers * sizes.roller_length * diameter / most,
+        "static_safety_S0": STATIC_RATING_FACTOR * (1.0 - g) * sizes.rollers * sizes.roller_length * diameter / most,
     }
 
 

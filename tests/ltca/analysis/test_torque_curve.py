@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import Hybrid
-from ltca.analysis.torque_curve import LOST_MOTION, SMALLEST, STIFF_FROM, torque_curve
+from ltca.analysis.torque_curve import LEAST_TORQUE_RATIO, LOST_MOTION, STIFF_FROM, torque_curve
 from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
@@ -149,7 +149,7 @@ def test_backlash_is_the_play_of_rigid_parts(paper_cases):
 def test_parts_of_the_rated_torque():
     """Makers of precision reducers read lost motion at ±3 %; stiffness is the slope over the upper half."""
     assert (LOST_MOTION, STIFF_FROM) == (0.03, 0.5)
-    assert SMALLEST <= 1e-3
+    assert LEAST_TORQUE_RATIO <= 1e-3
 
 
 def test_both_senses_mirror_each_other(paper_cases):

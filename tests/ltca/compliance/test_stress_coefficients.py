@@ -184,7 +184,7 @@ def test_stress_under_contacts(analysis):
 def test_many_positions_are_as_each_alone(analysis, monkeypatch):
     """Chunks join in order."""
     together = stresses_of(analysis)
-    monkeypatch.setattr(wall_stress, "CHUNK", 2)
+    monkeypatch.setattr(wall_stress, "POSITIONS_PER_CHUNK", 2)
     chunked = stresses_of(analysis)
     for name in ("root", "root_parameter", "bore", "hole", "roller_contact"):
         np.testing.assert_allclose(getattr(chunked, name), getattr(together, name), rtol=1e-12, err_msg=name)
