@@ -104,13 +104,13 @@ def _far_mean(lag: FloatArray, width: float, distance: FloatArray, receive: Floa
     return np.asarray((weights @ (np.sqrt(inverse_square) * series)) * receive * send)
 
 
-def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: float) -> FloatArray:
-    """Fourfold integrals per width² between cells at y and their images at ``sign·y``; (lags, n, n)."""
+def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: float, shift: float = 0.0) -> FloatArray:
+    """Fourfold integrals per width² between cells at y and their images at ``sign·y + shift``; (lags, n, n)."""
     lengths = np.diff(y_edges)
     centres = 0.5 * (y_edges[1:] + y_edges[:-1])
-    potential = _mean_line_potential(lags, width, y_edges[:, None] - sign * y_edges[None, :])
+    potential = _mean_line_potential(lags, width, y_edges[:, None] - sign * y_edges[None, :] - shift)
     block = sign * (potential[:, 1:, :-1] - potential[:, 1:, 1:] - potential[:, :-1, :-1] + potential[:, :-1, 1:])
-    distance = np.broadcast_to(centres[:, None] - sign * centres[None, :], block.shape)
+    distance = np.broadcast_to(centres[:, None] - sign * centres[None, :] - shift, block.shape)
     gap = np.maximum(np.abs(distance) - 0.5 * (lengths[:, None] + lengths[None, :]), lags[:, None, None] - width)
     longest = np.maximum(lengths[:, None], lengths[None, :])
     far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * width)
@@ -127,16 +127,22 @@ def lagged_influence(
     y_edges: FloatArray,
     *,
     mirrored: bool,
+    end_plane: float = 0.0,
+    end_factor: float = 0.0,
 ) -> FloatArray:
     """Return ∫∫ 1/r dA_i dA_j between cells of a tensor grid with uniform x cells, mm³, shape (lag_count, n, n).
 
     Axis 0 is the lag in x, 0, 1, … cells of `cell_width` (mm); `y_edges` are the n + 1 ascending edges along y, mm.
-    `mirrored` adds the images of the cells in the plane y = 0, where `y_edges` must then start.
+    `mirrored` adds the images of the cells in the plane y = 0, where `y_edges` must then start; `end_factor` times the images in
+    the planes y = ±`end_plane` (mm) are added for free ends (`ltca.contact.free_end`).
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
     for sign in (1.0, -1.0) if mirrored else (1.0,):
         total += _lagged_block(lags, cell_width, y_edges, sign)
+        if end_factor:
+            for shift in (2.0 * end_plane, -2.0 * end_plane):
+                total += end_factor * _lagged_block(lags, cell_width, y_edges, -sign, shift)
     return np.asarray(0.5 * cell_width**2 * (total + total.transpose(0, 2, 1)))
 
 
@@ -146,13 +152,16 @@ def assemble_influence_matrix(
     *,
     symmetric_x: bool = False,
     symmetric_y: bool = False,
+    end_plane: float = 0.0,
+    end_factor: float = 0.0,
 ) -> FloatArray:
     """Return the area-weighted influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
 
     It is symmetric and positive definite; divided by π E* it gives displacement moments. Edges are ascending, mm: uniform along
     the profile (x), of any spacing along the width (y). A symmetric direction is given by its positive half, edges from 0: the
     images of the cells are added, so that the matrix acts on that half alone and ``p·A·p / (2 π E*)`` is the energy of one half
-    (or quarter). Other edges are refused (ValueError).
+    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`end_plane` (mm) add their images times `end_factor`
+    (`ltca.contact.free_end`).
     """
     widths = np.diff(x_edges)
     count, width = widths.size, float(np.mean(widths))
@@ -165,6 +174,8 @@ def assemble_influence_matrix(
         2 * count if symmetric_x else count,
         y_edges,
         mirrored=symmetric_y,
+        end_plane=end_plane,
+        end_factor=end_factor,
     )
     ny = y_edges.size - 1
     index = np.arange(count)

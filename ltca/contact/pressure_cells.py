@@ -62,20 +62,28 @@ class PatchGrid:
         Edges along the width, mm; from 0 when ``symmetric_y``.
     symmetric_x, symmetric_y : bool
         Whether the edges are those of the positive half of a symmetric patch.
+    end_plane, end_factor : float
+        Free ends of the bodies at y = ±`end_plane`, mm, and the weight of their images (`ltca.contact.free_end`).
     """
 
     x_edges: FloatArray
     y_edges: FloatArray
     symmetric_x: bool = True
     symmetric_y: bool = True
+    end_plane: float = 0.0
+    end_factor: float = 0.0
 
     @classmethod
-    def fitted(cls, length: float, half_width: float, *, cells: int, grading: float) -> PatchGrid:
+    def fitted(
+        cls, length: float, half_width: float, *, cells: int, grading: float, end_factor: float = 0.0
+    ) -> PatchGrid:
         """Return a quarter grid: `cells` over the expected half-width, with room for bulging ends, and over half the length."""
         count = int(np.ceil(_ROOM * cells))
         return cls(
             x_edges=np.asarray(half_width / cells * np.arange(count + 1.0)),
             y_edges=graded_edges(length, cells, grading),
+            end_plane=0.5 * length,
+            end_factor=end_factor,
         )
 
     def whole(self) -> PatchGrid:
@@ -125,7 +133,12 @@ class PatchGrid:
     def influence(self) -> FloatArray:
         """Area-weighted influence matrix without its factor 1/(π E*), see `ltca.contact.influence`."""
         return assemble_influence_matrix(
-            self.x_edges, self.y_edges, symmetric_x=self.symmetric_x, symmetric_y=self.symmetric_y
+            self.x_edges,
+            self.y_edges,
+            symmetric_x=self.symmetric_x,
+            symmetric_y=self.symmetric_y,
+            end_plane=self.end_plane,
+            end_factor=self.end_factor,
         )
 
     def cell_means(self, function: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
@@ -302,6 +315,7 @@ def solve_cylinder_patch(
     cells: int = 16,
     half_width: float | None = None,
     grading: float | None = None,
+    end_factor: float = 0.0,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
     """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
@@ -324,6 +338,8 @@ def solve_cylinder_patch(
         Expected edge of the contact, mm; from a grid of half as many cells by default.
     grading : float, optional
         Exponent of the cells along y, see `graded_edges`.
+    end_factor : float, optional
+        Weight of the images in free ends at ±length/2 (`ltca.contact.free_end`); 0 is the half-space.
     start : PatchSolution, optional
         Solution on the grid of half as many cells, for the initial contact cells.
     """
@@ -332,7 +348,7 @@ def solve_cylinder_patch(
 
     def solve_on(edge: float, count: int, before: PatchSolution | None) -> PatchSolution:
         fitted = edge * (1.0 + _SHORT_EDGE / slenderness)
-        grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent)
+        grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent, end_factor=end_factor)
         x = grid.x_edges
         means = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * effective_radius)
         along = np.zeros(count) if relief is None else _means_along(relief, grid)

@@ -12,6 +12,14 @@ measured            Files of measured flanks, as deviations
 physical_checks     Physical checks of a drive: contradictions between numbers that are valid by themselves
 member_checks       Checks of the members together: cranks, values per disc, supports, seats and beams of pins, duty
 disc_checks         Checks of a drive of one disc: tooth numbers, flank, pins, bearing, holes and bores, deviations
+contradictions      Cause of contradictions: the field that alone can resolve all of them, not the one whose bound is
+                    violated
+changes             A drive with some fields replaced, validated like a drive file
+writing             A drive as the text of a drive file
+coefficient_schema  Schema of a file of influence coefficients, of this or another code
+station_walls       Walls of a disc between its stations: how they bend as beams, and what stations far apart miss of
+                    the load across them
+coefficient_laws    Checks of a file of influence coefficients by laws that need no second computation
 coefficient_file    Files of influence coefficients: written whole with a checksum, read only when schema, laws and
                     checksum hold
 ==================  ============================================================

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.contact.free_end import free_end_factor
 from ltca.contact.pressure_cells import PatchGrid, solve_cylinder_patch, solve_patch
 
 MODULUS = 113_187.0
@@ -152,3 +153,15 @@ def test_open_patch_gives_zeros():
     solution = solve_patch(grid, grid.cell_means(parabolic_separation(2.0)), MODULUS, -1e-3)
     assert solution.load == solution.stiffness == solution.energy == 0.0
     assert solution.half_width == solution.mid_pressure == solution.max_pressure == 0.0
+
+
+def test_free_ends_take_the_peak_away_and_soften_the_contact():
+    half_space = cylinder(5e-3)
+    mirrored = cylinder(5e-3, end_factor=1.0)
+    corrected = cylinder(5e-3, end_factor=free_end_factor(0.3))
+    # plain mirroring makes the load almost even along the length
+    assert mirrored.max_pressure == pytest.approx(mirrored.mid_pressure, rel=0.02)
+    assert corrected.load < mirrored.load < half_space.load
+    # the sizes stated in ltca.contact.free_end
+    assert corrected.load / half_space.load == pytest.approx(0.742, abs=0.005)
+    assert corrected.mid_pressure / half_space.mid_pressure == pytest.approx(0.906, abs=0.003)
