@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
-from fem.body.elasticity import PlaneState
+from fem.body.elasticity import PlaneState, plane_lame_parameters
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Material
@@ -60,12 +60,15 @@ def stress_of_strain(
     exx: FloatArray, eyy: FloatArray, exy: FloatArray, material: Material, state: PlaneState = "strain"
 ) -> Stress:
     """Return the stress of plane strains (exy = ½γ) by Hooke's law."""
-    modulus, nu = material.youngs_modulus, material.poisson_ratio
-    mu = 0.5 * modulus / (1.0 + nu)
-    lam = modulus * nu / (1.0 - nu**2) if state == "stress" else modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    lam, mu = plane_lame_parameters(material, state)
     volume = exx + eyy
     xx, yy = lam * volume + 2.0 * mu * exx, lam * volume + 2.0 * mu * eyy
-    return Stress(xx=xx, yy=yy, xy=2.0 * mu * exy, zz=nu * (xx + yy) if state == "strain" else np.zeros_like(xx))
+    return Stress(
+        xx=xx,
+        yy=yy,
+        xy=2.0 * mu * exy,
+        zz=material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx),
+    )
 
 
 def recover_stress(
@@ -92,4 +95,6 @@ def recover_stress(
 
     xx, yy, xy = averaged(sampled.xx), averaged(sampled.yy), averaged(sampled.xy)
     nu = material.poisson_ratio
-    return Stress(xx=xx, yy=yy, xy=xy, zz=nu * (xx + yy) if state == "strain" else np.zeros_like(xx))
+    return Stress(
+        xx=xx, yy=yy, xy=xy, zz=material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    )

@@ -224,6 +224,7 @@ class _Coupled:
         When an option is of another kind.
     """
 
+    compliance: ClassVar[Compliance]
     batches: ClassVar[bool] = False
 
     coefficients: Given = field(default=None, repr=False)
@@ -251,9 +252,8 @@ class _Coupled:
     @property
     def options(self) -> dict[str, str]:
         """Compliance, and whether hole walls yield."""
-        compliance: Compliance = self.compliance  # type: ignore[attr-defined]  # of the engines below
         near = "yes" if self.hole_near_field else "no"
-        return {"compliance": compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
+        return {"compliance": self.compliance, "method": "tables", "contacts": "tables", "hole_near_field": near}
 
     @property
     def _of_discs(self) -> tuple[InfluenceCoefficients, ...]:
@@ -268,7 +268,7 @@ class _Coupled:
             return self
         drive = warm_drive(drive)
         files: Any = self.coefficients
-        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
+        near_field = NEAR_FIELDS[self.compliance]
         found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
@@ -289,7 +289,7 @@ class _Coupled:
             raise DriveError(
                 [f"coefficients: are those of {len(found)} discs, must be those of {len(singles)} (or of one, for all)"]
             )
-        near_field = NEAR_FIELDS[self.compliance]  # type: ignore[attr-defined]  # of the engines below
+        near_field = NEAR_FIELDS[self.compliance]
         each = found if len(found) == len(singles) else found * len(singles)
         discs = [
             CoupledCompliance.of_drive(single, own, near_field, hole_near_field=self.hole_near_field)

@@ -50,7 +50,7 @@ class UncoupledContacts(ABC, Generic[Law]):
     geometry : ContactGeometry
         The contact geometry of the drive.
     hole_law : ContactLaw
-        Law of shaft pins and holes: springs k_PS, with what is before them.
+        Law of shaft pins and holes: springs of stiffness k_PS in series with the sleeves' seats.
     kinds : ContactKinds
         The contacts as grids see them.
     """

@@ -59,7 +59,7 @@ class Search:
         What turns the residual into forces, mm.
     load : array, shape (positions,)
         Moment by the lever of the wheel, N.
-    pose : array, shape (positions, 4)
+    pose : array, shape (positions, coordinates)
         Where to start; changed in place.
 
     Notes

@@ -66,13 +66,13 @@ def cage_moments(model: Reducer, crank_angle: FloatArray, pose: FloatArray, resp
 
 
 def input_moment(
-    model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response, part: FloatArray
+    model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response, input_per_crank_moment: FloatArray
 ) -> FloatArray:
     """Return the external moment of the input, ccw positive, N·mm, without what seals and oil take there.
 
-    `part` is `Drive.input_per_crank_moment` of each position.
+    `input_per_crank_moment` is that of the drive of each position.
     """
-    return np.asarray(part * crank_moments(model, crank_angle, pose, response).sum(axis=1))
+    return np.asarray(input_per_crank_moment * crank_moments(model, crank_angle, pose, response).sum(axis=1))
 
 
 FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
@@ -133,8 +133,8 @@ def solve_at_output(
     while reached < 1.0:
         strength = min(reached + step, 1.0)
         try:
-            part = replace(model, friction=friction.scaled(strength))
-            found = _solve(part, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
+            weakened = replace(model, friction=friction.scaled(strength))
+            found = _solve(weakened, drives, crank_angle, torque, found.pose, Start.after(found.response), gaps)
         except ConvergenceError:
             lost = strength
             if step <= LEAST_FRICTION_STEP:
@@ -208,9 +208,9 @@ def _solve(
     def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
         return follow_equilibrium(model if rows.size == angle.size else model.take(rows), near, moment, gaps)
 
-    part = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
+    input_per_crank_moment = np.repeat([drive.input_per_crank_moment for drive in drives], repeats)
     found = solve_equilibrium(model, angle, mean, start, inner, gaps, len(drives))
-    return _at_output(model, follow, found, signed, held, part)
+    return _at_output(model, follow, found, signed, held, input_per_crank_moment)
 
 
 def balance_at_output(
@@ -232,9 +232,9 @@ def balance_at_output(
     def follow(rows: NDArray[np.intp], moment: FloatArray, near: Equilibrium) -> Equilibrium:
         return balance(angle[rows], moment, near.pose)
 
-    part = np.full(angle.size, drive.input_per_crank_moment)
+    input_per_crank_moment = np.full(angle.size, drive.input_per_crank_moment)
     signed = np.full(angle.size, drive.driving_sign * torque)
-    return _at_output(model, follow, balance(angle, mean, start), signed, held, part)
+    return _at_output(model, follow, balance(angle, mean, start), signed, held, input_per_crank_moment)
 
 
 def _at_output(
@@ -243,7 +243,7 @@ def _at_output(
     found: Equilibrium,
     signed: FloatArray,
     held: NDArray[np.bool_],
-    share: FloatArray,
+    input_per_crank_moment: FloatArray,
 ) -> Equilibrium:
     """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
 
@@ -253,7 +253,7 @@ def _at_output(
         return found
     angle, mean = found.crank_angle, found.wheel_moment
     moment = mean.copy()
-    left = moment + input_moment(model, angle, found.pose, found.response, share) + signed
+    left = moment + input_moment(model, angle, found.pose, found.response, input_per_crank_moment) + signed
     # The cranks carry 1/u of the wheel's moment in the mean, the input its part of that: what is left grows with the moment.
     slope = -signed / mean
     history = []
@@ -273,7 +273,7 @@ def _at_output(
         model_part = model if whole else model.take(open_rows)
         left[open_rows] = (
             moment[open_rows]
-            + input_moment(model_part, angle[open_rows], part.pose, part.response, share[open_rows])
+            + input_moment(model_part, angle[open_rows], part.pose, part.response, input_per_crank_moment[open_rows])
             + signed[open_rows]
         )
         secant = (left[open_rows] - before) / step
