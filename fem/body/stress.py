@@ -63,12 +63,8 @@ def stress_of_strain(
     lam, mu = plane_lame_parameters(material, state)
     volume = exx + eyy
     xx, yy = lam * volume + 2.0 * mu * exx, lam * volume + 2.0 * mu * eyy
-    return Stress(
-        xx=xx,
-        yy=yy,
-        xy=2.0 * mu * exy,
-        zz=material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx),
-    )
+    zz = material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    return Stress(xx=xx, yy=yy, xy=2.0 * mu * exy, zz=zz)
 
 
 def recover_stress(
@@ -94,7 +90,5 @@ def recover_stress(
         return np.asarray(np.bincount(nodes.ravel(), weights=weight * at_nodes, minlength=body.node_count) / total)
 
     xx, yy, xy = averaged(sampled.xx), averaged(sampled.yy), averaged(sampled.xy)
-    nu = material.poisson_ratio
-    return Stress(
-        xx=xx, yy=yy, xy=xy, zz=material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx)
-    )
+    zz = material.poisson_ratio * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    return Stress(xx=xx, yy=yy, xy=xy, zz=zz)
