@@ -449,7 +449,7 @@ def made_small(words: list[str]) -> list[str]:
         small.remove("--no-figures")
     if kind == "derive" and "--check" in words:  # derives nothing
         small = []
-    if kind in ("derive", "run") and "paper" in words and "--case" not in words:
+    if kind in ("derive", "run") and {"paper", "my.toml"} & set(words) and "--case" not in words:
         small += ["--case", "CS-1"] * (kind == "derive" or "--coefficients" in words)  # clearances are those of a case
     return [*words, *small]
 
