@@ -57,7 +57,6 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
         geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive))
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
         inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
-        rungs = _rungs if in_batch else np.asarray
         pin_radii = np.ones(1)
         if not drive.pin_wheel.pin_profile.is_cylinder:
             # A flank without deviations has the same radii on every lobe.
@@ -71,7 +70,8 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
                 length=bearing.roller_length,
                 radius=bearing.roller_radius,
                 contact_modulus=contact_modulus(race, parts.roller),
-                effective_radii=rungs(effective_radii),
+                effective_radii=effective_radii,
+                on_ladder=in_batch,
             )
 
         on_flank = law_for_profile(
@@ -79,7 +79,8 @@ class HalfSpaceCompliance(UncoupledContacts[ContactLaw]):
             length=drive.disc.thickness,
             radius=drive.pin_wheel.pin_radius,
             contact_modulus=contact_modulus(parts.disc, drive.flank_pin),
-            effective_radii=rungs(pin_radii),
+            effective_radii=pin_radii,
+            on_ladder=in_batch,
         )
         return cls(
             geometry=geometry,
@@ -121,10 +122,3 @@ def _effective_radii(profile: FlankProfile, pin_radii: FloatArray, turn: FloatAr
             places = top + spacing * np.linspace(-1.0, 1.0, SAMPLES_PER_LOBE + 1)
         ends.append(np.max(found) ** power)
     return np.array(ends)
-
-
-def _rungs(radii: FloatArray) -> FloatArray:
-    """Range of radii rounded outward to powers of 1.25."""
-    step = np.log(1.25)
-    ends = np.log([np.min(radii), np.max(radii)]) / step
-    return np.asarray(np.exp(step * np.array([np.floor(ends[0]), np.ceil(ends[1])])))

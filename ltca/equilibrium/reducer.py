@@ -100,15 +100,13 @@ class Reducer:
         Pins that several discs bend.
     friction : JointFriction or None
         What rubs.
-    by_position : bool
-        Whether something differs from position to position: in a batch of drives, or in what rubs.
     """
 
     discs: tuple[DiscModel, ...]
     supports: FloatArray | None = by_drive(2, default=None)
     pins: SharedPins | None = None
     friction: JointFriction | None = None
-    by_position: bool = field(init=False, repr=False)
+    _by_position: bool | None = field(init=False, repr=False, compare=False, default=None)
 
     @classmethod
     def of_drive(cls, drive: Drive, discs: Sequence[DiscModel]) -> Reducer:
@@ -120,14 +118,11 @@ class Reducer:
             friction=TurningFriction.of_drive(drive),
         )
 
-    def __post_init__(self) -> None:
-        """Look once whether positions differ."""
-        parts = has_rows((self.discs, self.pins, self.friction)) or has_rows(self.supports, 2)
-        object.__setattr__(self, "by_position", parts)
-
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Reducer:
-        """Return the model of some positions: itself where no two differ."""
-        return take_rows(self, rows) if self.by_position else self
+        """Return the model of some positions: itself where no two differ, neither in their drives nor in their friction."""
+        if self._by_position is None:  # looked up once, and only for models that are solved
+            object.__setattr__(self, "_by_position", has_rows(self))
+        return take_rows(self, rows) if self._by_position else self
 
     @property
     def coordinates(self) -> Coordinates:
