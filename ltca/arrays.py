@@ -199,7 +199,7 @@ def _layout(value: Any, known: dict[int, Hashable]) -> Hashable:
             plain: Hashable = value
             return plain
     if id(value) not in known:
-        parts: list[Hashable] = [kind]
+        parts: list[Any] = [kind]
         for name, own in names:
             part = getattr(value, name)
             parts.append(_layout(part, known) if own is None else getattr(part, "shape", ()))
