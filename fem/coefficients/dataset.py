@@ -26,7 +26,7 @@ from fem.coefficients.bodies import (
     require_disc_memory,
     require_element_size,
 )
-from fem.coefficients.stations import DiscStations
+from fem.coefficients.stations import FLANK_CLUSTERING, DiscStations
 from fem.mesh.gmsh_session import load_gmsh
 from fem.shapes import DriveShapes
 from ltca.arrays import FloatArray
@@ -131,6 +131,7 @@ def derive_coefficients(
         fingerprint=nominal.shape_fingerprint(),
         shape=json.dumps(nominal.body_shape()),
         clearances_left_out=int(not keep_clearance),
+        flank_clustering=FLANK_CLUSTERING,
         plane=state,
         thickness=bodies.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,

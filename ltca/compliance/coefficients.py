@@ -31,7 +31,7 @@ from ltca.geometry.boundary_stations import (
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_file import read_coefficients
-from ltca.reading.coefficient_schema import shape_differences, shape_of
+from ltca.reading.coefficient_schema import flank_clustering, shape_differences, shape_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -343,7 +343,7 @@ def _coefficients_of_dataset(data: xr.Dataset, drive: Drive, *, shared: bool) ->
     same = boundary[:, None] == boundary[None, :]
     disc = data["disc_approach"].values + np.where(same, disc_logarithm * logarithm, 0.0)
 
-    flank, *walls = boundaries_of(boundary)
+    flank, *walls = boundaries_of(boundary, drive.disc.number_of_teeth, flank_clustering(data))
     pin_logarithm = logarithm_factor(drive.flank_pin, thickness, plane)
     roller_logarithm = logarithm_factor(parts.roller, thickness, plane)
     race_logarithm = logarithm_factor(parts.inner_race, thickness, plane)

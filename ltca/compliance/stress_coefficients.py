@@ -86,8 +86,9 @@ def read_stress_coefficients(data: xr.Dataset, loaded: tuple[Boundary, ...]) -> 
     """
     if "disc_stress" not in data:
         return NO_STRESSES
+    flank = loaded[0]
     return StressCoefficients(
-        walls=boundaries_of(data["stress_station_boundary"].values.astype(int)),
+        walls=boundaries_of(data["stress_station_boundary"].values.astype(int), flank.teeth, flank.clustering),
         loaded=loaded,
         stress=np.asarray(data["disc_stress"].values, dtype=float),
     )

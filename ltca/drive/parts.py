@@ -30,6 +30,8 @@ from ltca.drive.materials import (
 )
 from ltca.drive.members.crank import Crank as Crank, CrankBearing as CrankBearing, CrankSupport as CrankSupport
 from ltca.drive.members.operation import (
+    Analysis as Analysis,
+    Compliance as Compliance,
     Duty as Duty,
     Friction as Friction,
     Installation as Installation,
@@ -165,6 +167,8 @@ class Drive:
         Lubricant of rollers and races, for lives alone; unmodified when left out.
     temperature : Temperature or None
         Temperatures of the parts; lengths of a file are those at 20 °C.
+    analysis : Analysis
+        Engine of an analysis that does not name one; no property of the drive.
     case : str
         Name of the case in the file, for names of results; neither compared nor hashed.
     """
@@ -183,6 +187,7 @@ class Drive:
     duty: tuple[Duty, ...] = ()
     lubricant: Lubricant | None = None
     temperature: Temperature | None = None
+    analysis: Analysis = field(default_factory=Analysis)
     case: Name = field(default="nominal", compare=False)
 
     @property

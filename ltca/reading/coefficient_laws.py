@@ -10,7 +10,7 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.contact.round_bodies import compressed_cylinder, held_ring_approach
-from ltca.reading.coefficient_schema import shape_of
+from ltca.reading.coefficient_schema import shape_of, uniform_parameters
 from ltca.reading.station_walls import missed_between_stations, wall_bending
 
 if TYPE_CHECKING:
@@ -347,7 +347,6 @@ def _opening_of_walls(dataset: xr.Dataset) -> float:
     between both sides over all of them counts, since few stations miss the peak beside a near load.
     """
     boundary, stressed = dataset["station_boundary"].values, dataset["stress_station_boundary"].values
-    parameter = dataset["stress_station_parameter"].values
     points = dataset["station_x"].values + 1j * dataset["station_y"].values
     normals = dataset["station_normal_x"].values + 1j * dataset["station_normal_y"].values
     stiffness = float(dataset.attrs["disc_youngs_modulus"])
@@ -363,7 +362,8 @@ def _opening_of_walls(dataset: xr.Dataset) -> float:
         displaced = -(turning / np.count_nonzero(own)) @ dataset["disc_approach"].values[np.ix_(own, ~own)]
         if np.max(np.abs(displaced), initial=0.0) <= least:
             continue  # walls of this body are not coupled
-        length = np.abs(_slope(points[own], parameter[seen])) / np.count_nonzero(seen)
+        parameter = uniform_parameters(dataset, "stress_station", number)
+        length = np.abs(_slope(points[own], parameter)) / np.count_nonzero(seen)
         strained = length @ dataset["disc_stress"].values[np.ix_(seen, ~own)] / stiffness
         found.append(abs(float(strained @ displaced / (displaced @ displaced)) - 1.0))
     return max(found)

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Materials
 from ltca.errors import DamagedFileError
+from ltca.geometry.boundary_stations import uniform_parameter
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,6 +73,8 @@ STATEMENTS = ("symmetry", "rigid_residual", "convergence_estimate", "convergence
 POISSON_RATIOS = tuple(f"{body}_poisson_ratio" for body in PARTS)
 # Interpolation takes six stations; with fewer on a boundary some would count twice.
 FEWEST_STATIONS = 6
+# Beyond it stations at the tips are nine times as far apart as in the roots.
+MAX_CLUSTERING = 0.8
 # Relative rounding of numbers that stand in a file twice.
 REPEATED_TOLERANCE = 1e-9
 # Tolerance for uniform parameters and unit normals: the rounding of seven digits.
@@ -149,6 +153,9 @@ def _implausible(dataset: xr.Dataset) -> Iterator[str]:
     for name in POSITIVE_ATTRIBUTES:
         if not _number(dataset.attrs[name]) > 0.0:
             yield f"{name} = {dataset.attrs[name]}: must be greater than 0"
+    if not 0.0 <= flank_clustering(dataset) < MAX_CLUSTERING:
+        yield f"flank_clustering = {dataset.attrs['flank_clustering']}: must be at least 0 and less than {MAX_CLUSTERING:g}"
+        return
     for name in POISSON_RATIOS:
         if not 0.0 <= _number(dataset.attrs[name]) < 0.5:
             yield f"{name} = {dataset.attrs[name]}: must be at least 0 and less than 0.5"
@@ -160,6 +167,20 @@ def _implausible(dataset: xr.Dataset) -> Iterator[str]:
         if not np.all(dataset[name].values > 0.0):
             yield f"{name} must be greater than 0"
     yield from _misplaced(dataset)
+
+
+def flank_clustering(dataset: xr.Dataset) -> float:
+    """Return how much closer the stations of the flank stand in its roots, a of `ltca.geometry.boundary_stations`; 0 where a
+    file does not say, whose stations are uniform.
+    """
+    return _number(dataset.attrs.get("flank_clustering", 0.0))
+
+
+def uniform_parameters(dataset: xr.Dataset, kind: str, boundary: int) -> FloatArray:
+    """Return the parameters of one boundary in which its stations (`kind`: station, stress_station) are uniform, rad."""
+    parameter = dataset[f"{kind}_parameter"].values[dataset[f"{kind}_boundary"].values == boundary]
+    teeth = round(shape_of(dataset).get("disc.number_of_teeth", 1.0))
+    return uniform_parameter(parameter, teeth, 0.0 if boundary else flank_clustering(dataset))
 
 
 def elastic_constants(materials: Materials) -> dict[str, float]:
@@ -223,14 +244,15 @@ def _misplaced(dataset: xr.Dataset) -> Iterator[str]:
             if not np.array_equal(np.unique(own), numbers) or np.any(np.diff(own) < 0):
                 yield f"{kind}_boundary must have the boundaries of station_boundary, in their order"
                 return
-            values = dataset[f"{kind}_parameter"].values
-            places += [(f"{kind}_parameter of boundary {k}", values[own == k]) for k in numbers.tolist()]
+            places += [
+                (f"{kind}_parameter of boundary {k}", uniform_parameters(dataset, kind, k)) for k in numbers.tolist()
+            ]
     for name, values in places:
         count = len(values)
         if count < FEWEST_STATIONS:
             yield f"{name} has {count} values: must be at least {FEWEST_STATIONS}"
         elif np.max(np.abs(values - 2.0 * np.pi * np.arange(count) / count)) > UNIFORM:
-            yield f"{name} must be uniform over one turn and begin with 0 (rad)"
+            yield f"{name} must be uniform over one turn and begin with 0 (rad){_clustered(dataset, name)}"
     length = np.hypot(dataset["station_normal_x"].values, dataset["station_normal_y"].values)
     if np.max(np.abs(length - 1.0)) > UNIFORM:
         yield "station_normal_x and station_normal_y must be of unit length"
@@ -238,6 +260,12 @@ def _misplaced(dataset: xr.Dataset) -> Iterator[str]:
         wide = dataset["wide_station"].values
         if wide.size == 0 or wide.dtype.kind == "f" or wide.min() < 0 or wide.max() >= dataset.sizes["station"]:
             yield "wide_station must hold numbers of stations"
+
+
+def _clustered(dataset: xr.Dataset, name: str) -> str:
+    """Return in which parameter the flank of a file is uniform, for a message; nothing where that is the file's own."""
+    clustering = flank_clustering(dataset)
+    return f" in t of θ = t − {clustering:g}/z sin(z t)" if clustering and name.endswith("boundary 0") else ""
 
 
 def _number(value: object) -> float:

@@ -75,6 +75,24 @@ class Lubricant:
     contamination: Annotated[float, quantity("dimensionless", ge=0.0, le=1.0)]
 
 
+Compliance = Literal["half-space", "fe", "hybrid"]
+"""How the bodies of a drive yield, by the names of the engines (`ltca.analysis.engines`)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
+class Analysis:
+    """How a drive is analysed where a command or a call does not say otherwise.
+
+    Attributes
+    ----------
+    compliance : {"half-space", "fe", "hybrid"}
+        How the bodies yield: half-spaces, plane-strain finite elements, or half-spaces of finite length on finite elements.
+        The same in all cases.
+    """
+
+    compliance: Compliance = "hybrid"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, config=STRICT)
 class Installation:
     """Installation of the drive.
