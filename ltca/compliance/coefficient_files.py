@@ -29,10 +29,12 @@ from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
 from ltca.output.provenance import cache_home, code_hash, code_version
-from ltca.reading.coefficient_file import write_coefficients
+from ltca.reading.coefficient_file import require_laws, write_coefficients
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
+SHIPPED = Path(__file__).parents[1] / "drives" / "coefficients"
+"""Files of shipped drives (``python -m fem.coefficients.shipped``)."""
 INSTEAD = "CYCLO_TEMPORARY_CACHE"
 """Variable that names a cache that cannot be written and, on a line of its own, the folder of this run instead of it."""
 LEAST_CACHE_ROOM = 1 << 20
@@ -49,12 +51,24 @@ def cached_file(drive: Drive) -> Path:
     The folder carries version and hash of the code that derived them: other code derives its own. Where it cannot be
     written and has not got them, it is a temporary one of this run (`require_cache`).
     """
-    new, kept = (folder / _name(drive) for folder in (cache_folder(), _kept_folder()))
+    new, kept = (folder / file_name(drive) for folder in (cache_folder(), _kept_folder()))
     return kept if kept.exists() and not new.exists() else new
 
 
-def _name(drive: Drive) -> str:
+def file_name(drive: Drive) -> str:
+    """Return the name of a file of coefficients by the shape that they belong to."""
     return f"coefficients-{drive.shape_fingerprint()}-strain.nc"
+
+
+def shipped_file(drive: Drive) -> Path | None:
+    """Return the coefficients of a drive of one disc that come with the package: those of the shipped drives' shapes."""
+    path = SHIPPED / file_name(drive)
+    return path if path.exists() else None
+
+
+def has_coefficients(drive: Drive) -> bool:
+    """Tell whether coefficients of a drive of one disc are there without being derived."""
+    return shipped_file(drive) is not None or cached_file(drive).exists()
 
 
 def cache_folder() -> Path:
@@ -129,7 +143,7 @@ def find_coefficients(
     found = _kept(drive)
     if found is None:
         _derive_missing({drive.name: drive})
-        found = load_coefficients(cached_file(drive), drive)
+        found = load_coefficients(cached_file(drive), drive, lawful=False)
     return found
 
 
@@ -169,7 +183,10 @@ def find_case_coefficients(
         return _load_each(cases, files)
     kept = {name: _kept(drive) for name, drive in cases.items()}
     _derive_missing({name: drive for name, drive in cases.items() if kept[name] is None})
-    return {name: own or load_coefficients(cached_file(cases[name]), cases[name]) for name, own in kept.items()}
+    return {
+        name: own or load_coefficients(cached_file(cases[name]), cases[name], lawful=False)
+        for name, own in kept.items()
+    }
 
 
 def _discs(name: str, drive: Drive) -> list[tuple[str, Drive]]:
@@ -208,12 +225,16 @@ def _load_first_that_fits(files: Sequence[Path], drive: Drive) -> tuple[Path, In
 
 
 def _kept(drive: Drive) -> InfluenceCoefficients | None:
-    """Return the coefficients in the cache; None where there are none, or a damaged file that has to be made again."""
+    """Return the coefficients that are shipped or in the cache; None where there are none, or a damaged file that has to be
+    made again. They were checked when they were derived.
+    """
+    if (path := shipped_file(drive)) is not None:
+        return load_coefficients(path, drive, lawful=False)
     path = cached_file(drive)
     if not path.exists():
         return None
     try:
-        return load_coefficients(path, drive)
+        return load_coefficients(path, drive, lawful=False)
     except DamagedFileError as error:
         print(f"warning: {error}; derived again", file=sys.stderr)
         with suppress(OSError):
@@ -252,7 +273,7 @@ def _derive_missing(cases: Mapping[str, Drive]) -> None:
         return
     _derivation()
     require_cache()
-    missing = {cache_folder() / _name(cases[name]): name for name in missing.values()}
+    missing = {cache_folder() / file_name(cases[name]): name for name in missing.values()}
     each = expected_seconds(cases[name] for name in missing.values())
     whole = max(sum(each) / _processes(len(missing)), *each)
     print(
@@ -290,6 +311,7 @@ def _processes(derivations: int) -> int:
 def _derive_file(drive: Drive, path: Path, processes: int) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
     dataset = _derivation()(drive, state="strain", processes=processes)
+    require_laws(dataset, str(path))
     write_coefficients(dataset, path)
 
 

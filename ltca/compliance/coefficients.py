@@ -254,7 +254,7 @@ def logarithm_factor(material: Material, thickness: float, plane: str = "strain"
     return 2.0 * compliance / (np.pi * thickness)
 
 
-def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
+def load_coefficients(path: Path, drive: Drive, *, lawful: bool = True) -> InfluenceCoefficients:
     """Read the coefficients of a drive.
 
     Parameters
@@ -263,6 +263,8 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
         File of ``cyclo derive``.
     drive : Drive
         The drive they must belong to.
+    lawful : bool
+        Check their laws, which takes a second; not needed where that was done when they were derived.
 
     Returns
     -------
@@ -274,7 +276,7 @@ def load_coefficients(path: Path, drive: Drive) -> InfluenceCoefficients:
     CycloError
         When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
     """
-    data = read_coefficients(path)
+    data = read_coefficients(path, lawful=lawful)
     shared = _require_same_bodies(path, data, drive)
     boundaries = len(np.unique(data["station_boundary"].values))
     walls = 1 + drive.crank.number + drive.number_of_holes

@@ -21,9 +21,9 @@ from ltca.analysis.engines import Engine
 from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
-    cached_file,
     expected_seconds,
     find_case_coefficients,
+    has_coefficients,
     require_cache,
     told_seconds,
 )
@@ -56,7 +56,7 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
     shapes = [single.shape_fingerprint() for single in singles]
     key = (*engine.options.values(), repr(given), *shapes)
     if key not in _ENGINES:
-        there = given is not None or all(cached_file(single).exists() for single in singles)
+        there = given is not None or all(has_coefficients(single) for single in singles)
         with nullcontext() if there else _one_process(shapes[0]):
             _ENGINES[key] = engine.with_coefficients(drive)
         if len(_ENGINES) > MAX_KEPT_SHAPES:
@@ -105,7 +105,7 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
         return
     wanted = list(shapes.values())
     if given is None:
-        missing = [drive for drive in wanted if not cached_file(drive).exists()]
+        missing = [drive for drive in wanted if not has_coefficients(drive)]
         if missing:
             few = "1 shape has" if len(missing) == 1 else f"{len(missing)} shapes have"
             longest = told_seconds(max(expected_seconds(missing)))

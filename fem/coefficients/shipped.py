@@ -1,0 +1,76 @@
+"""Influence coefficients that come with the package: derive those of the shipped drives and compare, or write them anew.
+
+``python -m fem.coefficients.shipped`` derives every shape of `robot-joint`, `rv` and `sleeved` (some minutes) and prints by how
+much a new derivation differs from the shipped file, of the largest entry; exit status 1 beyond 1e-3. ``--write`` replaces the
+files, ``--only NAME`` takes one drive.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+import numpy as np
+
+from fem.coefficients.dataset import derive_coefficients
+from ltca.compliance.coefficient_files import SHIPPED, file_name
+from ltca.drive.parts import Drive
+from ltca.drive.single_discs import single_discs
+from ltca.reading.coefficient_file import read_coefficients, write_coefficients
+from ltca.reading.coefficient_laws import check_coefficients, project_rigid_motions, station_resultants
+from ltca.reading.drive_file import parse_drive, shipped_drive
+
+DRIVES = ("robot-joint", "rv", "sleeved")
+AGREEMENT = 1e-3
+"""Largest difference of a new derivation, of the largest entry: a fifth of what the mesh leaves (`convergence_estimate`)."""
+
+
+def shapes_of(name: str) -> dict[str, Drive]:
+    """Return the drive of one disc of each distinct shape of a shipped drive, by the name of its file."""
+    (drive,) = parse_drive(shipped_drive(name), name).cases.values()
+    return {file_name(single): single for single in reversed(single_discs(drive))}
+
+
+def differences(name: str, drive: Drive) -> dict[str, float]:
+    """Derive a shape and return by how much its matrices differ from those shipped, of the largest entry."""
+    shipped, new = read_coefficients(SHIPPED / name), derive_coefficients(drive)
+    found = {}
+    for variable in ("disc_approach", "disc_stress", "roller_approach", "race_approach", "pin_approach"):
+        old, derived = (np.asarray(data[variable].values, dtype=float) for data in (shipped, new))
+        if variable == "disc_approach":  # what no load in equilibrium can feel depends on the datum alone
+            old, derived = (project_rigid_motions(own, station_resultants(new)) for own in (old, derived))
+        found[variable] = float(np.max(np.abs(derived - old)) / np.max(np.abs(old)))
+    return found
+
+
+def main() -> int:
+    """Compare or write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", choices=DRIVES, action="append")
+    parser.add_argument("--write", action="store_true")
+    arguments = parser.parse_args()
+    status, wanted = 0, {}
+    for drive in arguments.only or DRIVES:
+        wanted |= {file: (drive, shape) for file, shape in shapes_of(drive).items()}
+    for file, (drive, shape) in wanted.items():
+        start = time.process_time()
+        if arguments.write:
+            dataset = derive_coefficients(shape)
+            if broken := [check.name for check in check_coefficients(dataset) if not check.passed]:
+                raise SystemExit(f"{drive}: breaks {', '.join(broken)}")
+            size = write_coefficients(dataset, SHIPPED / file).stat().st_size
+            print(
+                f"{drive}: {file}, {size / 1e6:.2f} MB, {time.process_time() - start:.1f} s of processor time",
+                flush=True,
+            )
+            continue
+        found = differences(file, shape)
+        status |= int(max(found.values()) > AGREEMENT)
+        told = ", ".join(f"{name} {value:.1e}" for name, value in found.items())
+        print(f"{drive}: {told}; {time.process_time() - start:.1f} s of processor time", flush=True)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())
