@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ltca.analysis import loaded_analysis
-from ltca.analysis.engines import Engine, engine_named
+from ltca.analysis.engines import Engine, engine_of
 from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import build_dataset
@@ -190,7 +190,7 @@ def analyse(
     *,
     crank_angle: ArrayLike | None = None,
     torque: float | None = None,
-    compliance: str | Engine = "half-space",
+    compliance: str | Engine | None = None,
     method: str | None = None,
     contacts: str | None = None,
     coefficients: InfluenceCoefficients | Path | str | None = None,
@@ -209,8 +209,10 @@ def analyse(
         Crank angles φ_C, rad, instead.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    compliance : {"half-space", "fe", "hybrid"} or engine
-        How the bodies yield; an engine (`ltca.HalfSpace`, `ltca.PlaneStrain`, `ltca.Hybrid`) brings its options.
+    compliance : {"half-space", "fe", "hybrid"} or engine, optional
+        How the bodies yield; an engine (`ltca.HalfSpace`, `ltca.PlaneStrain`, `ltca.Hybrid`) brings its options. Left out,
+        ``drive.analysis.compliance`` says it: ``hybrid`` unless the drive file has another; a `method` or `contacts` is of
+        half-spaces.
     method : {"tables", "direct", "paper"}, optional
         How the half-space is solved.
     contacts : {"tables", "grids"}, optional
@@ -253,8 +255,8 @@ def analyse(
         crank_angle = position_angles(int(count))
     name = drive.case if case is None else case
     given: Any = Path(coefficients) if isinstance(coefficients, str) else coefficients
-    engine = engine_named(
-        compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
+    engine = engine_of(
+        [drive], compliance, method=method, contacts=contacts, coefficients=given, hole_near_field=hole_near_field
     )
     try:
         return AnalysisResult(case=name, loaded=loaded_analysis.analyse(drive, np.asarray(crank_angle), torque, engine))

@@ -50,7 +50,7 @@ def main() -> int:
     parser.add_argument("--only", choices=DRIVES, action="append")
     parser.add_argument("--write", action="store_true")
     arguments = parser.parse_args()
-    status, wanted = 0, {}
+    status, wanted = 0, dict[str, tuple[str, Drive]]()
     for drive in arguments.only or DRIVES:
         wanted |= {file: (drive, shape) for file, shape in shapes_of(drive).items()}
     for file, (drive, shape) in wanted.items():

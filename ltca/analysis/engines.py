@@ -23,20 +23,21 @@ from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.response import Start
 from ltca.drive.engine_support import require
 from ltca.drive.members.temperatures import warm_drive
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Compliance, Drive
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError, did_you_mean, shortened
-from ltca.reading.arguments import refuse_idle_options
+from ltca.reading.arguments import compliance_for, refuse_idle_options
 
 Method = Literal["tables", "direct", "paper"]
 Contacts = Literal["tables", "grids"]
-Compliance = Literal["half-space", "fe", "hybrid"]
 Given: TypeAlias = InfluenceCoefficients | Sequence[InfluenceCoefficients] | Path | Sequence[Path] | None
 """Influence coefficients as an engine takes them."""
 
+SHARED_BODY = 0.005
+"""Relative change of a dimension or an elastic constant up to which a body keeps its coefficients in studies."""
 METHODS = "cyclo.methods"
 """Entry points of methods that other packages bring: ``paper`` prepares the paper's iteration for a drive."""
 
@@ -79,6 +80,10 @@ class Engine(Protocol):
 
     def with_coefficients(self, drive: Drive) -> Engine:
         """Return the engine with what it has to read or derive for a drive already in it."""
+        ...
+
+    def lending(self, drives: Iterable[Drive]) -> Engine:
+        """Return the engine on which what is derived for some drives serves others of nearly their bodies."""
         ...
 
     def prepare(self, drive: Drive) -> PreparedEngine:
@@ -184,6 +189,10 @@ class HalfSpace:
         """Return the engine itself: half-spaces need none."""
         return self
 
+    def lending(self, drives: Iterable[Drive]) -> HalfSpace:
+        """Return the engine itself: half-spaces need no coefficients."""
+        return self
+
     def prepare(self, drive: Drive) -> PreparedEngine:
         """Return the engine built for a drive."""
         drive = warm_drive(drive)
@@ -207,7 +216,7 @@ class HalfSpace:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Coupled:
+class CoupledEngine:
     """What the engines on derived coefficients share.
 
     Parameters
@@ -217,6 +226,8 @@ class _Coupled:
         its shape, or (None) found in the cache or derived and kept there.
     hole_near_field : bool
         Whether hole walls yield like a Hertz contact.
+    lenders : tuple of Drive
+        Drives of one disc whose coefficients also serve drives of nearly their bodies (`nearly_same_body`), see `lending`.
 
     Raises
     ------
@@ -229,6 +240,7 @@ class _Coupled:
 
     coefficients: Given = field(default=None, repr=False)
     hole_near_field: bool = True
+    lenders: tuple[Drive, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         """Check the options; files become a tuple of paths, which nobody changes."""
@@ -266,10 +278,33 @@ class _Coupled:
         """Return the engine with the coefficients of a drive in it, disc by disc: read from file or cache, or derived."""
         if self._of_discs:
             return self
-        drive = warm_drive(drive)
+        singles = single_discs(warm_drive(drive))
+        return self.with_coefficients_of(self.bodies_of(singles)).lent_to(singles)
+
+    def lending(self, drives: Iterable[Drive]) -> Self:
+        """Return an engine on which drives of nearly the bodies of these are served by their coefficients."""
+        bodies = (single for drive in drives for single in single_discs(warm_drive(drive)))
+        return replace(self, lenders=tuple({body.shape_fingerprint(): body for body in bodies}.values()))
+
+    def bodies_of(self, singles: Sequence[Drive]) -> list[Drive]:
+        """Return the drives whose coefficients serve warm drives of one disc: lenders that have nearly their bodies."""
+        exact = {body.shape_fingerprint(): body for body in self.lenders}
+        return [
+            exact.get(each.shape_fingerprint())
+            or next((body for body in self.lenders if nearly_same_body(body, each)), each)
+            for each in singles
+        ]
+
+    def with_coefficients_of(self, bodies: Sequence[Drive]) -> Self:
+        """Return the engine with the coefficients of each of some drives of one disc."""
         files: Any = self.coefficients
         near_field = NEAR_FIELDS[self.compliance]
-        found = tuple(find_coefficients(single, files, near_field=near_field) for single in single_discs(drive))
+        found = tuple(find_coefficients(each, files, near_field=near_field) for each in bodies)
+        return replace(self, coefficients=found[0] if len(found) == 1 else found)
+
+    def lent_to(self, singles: Sequence[Drive]) -> Self:
+        """Return the engine with its coefficients serving drives of one disc that have nearly their bodies."""
+        found = tuple(own.lent_to(each) for own, each in zip(self._of_discs, singles, strict=True))
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
     def model(self, drive: Drive, *, in_batch: bool = False) -> Reducer:
@@ -305,17 +340,34 @@ class _Coupled:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneStrain(_Coupled):
+class PlaneStrain(CoupledEngine):
     """Plane-strain bodies by finite elements: every contact of a body feels the others (``fe``)."""
 
     compliance: ClassVar[Compliance] = "fe"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hybrid(_Coupled):
+class Hybrid(CoupledEngine):
     """Half-spaces of finite length at the contacts, finite elements for what the bodies have beyond (``hybrid``)."""
 
     compliance: ClassVar[Compliance] = "hybrid"
+
+
+def nearly_same_body(first: Drive, second: Drive) -> bool:
+    """Tell whether no number that determines the bodies of drives of one disc (`Drive.body_shape`) differs by more than
+    `SHARED_BODY` of itself, angles in rad by that; counts are equal.
+    """
+    one, other = first.body_shape(), second.body_shape()
+    if one.keys() != other.keys():
+        return False
+    for name, value in one.items():
+        if "number_of" in name or name == "crank.number":
+            bound = 0.0
+        else:
+            bound = SHARED_BODY * (1.0 if name in ("flank_turn", "crank.angle") else abs(value))
+        if abs(other[name] - value) > bound:
+            return False
+    return True
 
 
 def describe_engine(engine: Engine) -> str:
@@ -334,7 +386,7 @@ def describe_engine(engine: Engine) -> str:
 
 
 def engine_named(
-    compliance: str | Engine = "half-space",
+    compliance: str | Engine,
     *,
     method: str | None = None,
     contacts: str | None = None,
@@ -382,6 +434,32 @@ def engine_named(
     if given.get("method") == "tables":
         del given["method"]
     return PlaneStrain(**given) if compliance == "fe" else Hybrid(**given)
+
+
+def engine_of(
+    drives: Iterable[Drive],
+    compliance: str | Engine | None = None,
+    *,
+    method: str | None = None,
+    contacts: str | None = None,
+    coefficients: Given = None,
+    hole_near_field: bool | None = None,
+) -> Engine:
+    """Return the engine for drives: the one named, or that of their files (`ltca.drive.parts.Analysis`).
+
+    Parameters are those of `engine_named`, where None leaves the choice to method and contacts, which only half-spaces have,
+    and else to the drives.
+
+    Raises
+    ------
+    DriveError
+        As `engine_named`; and when the drives are to be analysed differently.
+    """
+    if compliance is None:
+        compliance = compliance_for(drives, method=method, contacts=contacts)
+    return engine_named(
+        compliance, method=method, contacts=contacts, coefficients=coefficients, hole_near_field=hole_near_field
+    )
 
 
 def _listed(names: Any) -> str:

@@ -66,7 +66,7 @@ def execute(arguments: argparse.Namespace) -> int:
     require_room_for(cases.values(), arguments.positions, out, f"--positions {arguments.positions}")
     from ltca.commands.actions.check import judge_and_write
 
-    engine = compliance_of(arguments)
+    engine = compliance_of(arguments, cases.values())
     writes = ["check.json", *([] if arguments.no_page else ["report.html"])]
     with claimed_folder(out, "check", writes=writes):
         find_coefficients_of(cases, arguments)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ltca.errors import DamagedFileError
-from ltca.reading.arguments import DifferentValues, refuse_idle_options
+from ltca.errors import DamagedFileError, DriveError
+from ltca.reading.arguments import DifferentValues, compliance_for, refuse_idle_options
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from ltca.analysis.engines import Engine
     from ltca.drive.parts import Drive
 
@@ -19,9 +21,14 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--compliance",
         choices=("half-space", "fe", "hybrid"),
-        default="half-space",
-        help="how bodies yield: half-spaces (default), plane-strain finite elements, or finite elements beyond "
-        "half-spaces of finite length",
+        help="how bodies yield: half-spaces, plane-strain finite elements, or (hybrid) half-spaces of finite length on finite "
+        "elements; default [analysis] compliance of the drive file, hybrid where it has none",
+    )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="half-spaces, which need no influence coefficients, with a line that says how far they are off on the nearest "
+        "shipped drive",
     )
     parser.add_argument(
         "--coefficients",
@@ -39,33 +46,46 @@ def add_compliance_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def check_compliance(arguments: argparse.Namespace) -> None:
-    """Check the arguments as far as that goes before the engines are imported, which takes a second."""
-    refuse_idle_options(
-        arguments.compliance,
-        method=getattr(arguments, "method", None),
-        contacts=getattr(arguments, "contacts", None),
-        coefficients=arguments.coefficients,
-        hole_near_field=False if arguments.no_hole_near_field else None,
-    )
+    """Check the arguments as far as that goes before drives are read and engines imported, which takes a second."""
+    if arguments.quick and arguments.compliance not in (None, "half-space"):
+        raise DriveError([f"--quick: is half-spaces, not --compliance {arguments.compliance}; leave one of them out"])
+    compliance = "half-space" if arguments.quick else arguments.compliance
+    if compliance is not None:
+        refuse_idle_options(compliance, **_options(arguments))
     for path in arguments.coefficients or ():
         if not path.is_file():
             raise DamagedFileError(f"--coefficients {path}: no such file")
 
 
-def compliance_of(arguments: argparse.Namespace) -> Engine:
-    """Return the engine that the arguments ask for, method and contacts among them where a command has these."""
+def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) -> str:
+    """Return how the bodies of the drives yield, by the arguments or else as their file says, and keep it in the arguments."""
+    given = _options(arguments)
+    named = "half-space" if arguments.quick else arguments.compliance
+    arguments.compliance = named or compliance_for(drives, method=given["method"], contacts=given["contacts"])
+    refuse_idle_options(arguments.compliance, **given)
+    return str(arguments.compliance)
+
+
+def compliance_of(arguments: argparse.Namespace, drives: Iterable[Drive]) -> Engine:
+    """Return the engine that the arguments ask for, or else the drives; with method and contacts where a command has these."""
     from ltca.analysis.engines import engine_named
 
-    return engine_named(
-        arguments.compliance,
-        method=getattr(arguments, "method", None),
-        contacts=getattr(arguments, "contacts", None),
-        coefficients=tuple(arguments.coefficients) if arguments.coefficients else None,
-        hole_near_field=False if arguments.no_hole_near_field else None,
-    )
+    compliance, given = settle_compliance(arguments, drives), _options(arguments)
+    files = None if given["coefficients"] is None else tuple(arguments.coefficients)
+    return engine_named(compliance, **{**given, "coefficients": files})
 
 
-def find_coefficients_of(cases: dict[str, Drive], arguments: argparse.Namespace) -> None:
+def _options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Options of single engines; None where they are not given."""
+    return {
+        "method": getattr(arguments, "method", None),
+        "contacts": getattr(arguments, "contacts", None),
+        "coefficients": arguments.coefficients or None,
+        "hole_near_field": False if arguments.no_hole_near_field else None,
+    }
+
+
+def find_coefficients_of(cases: Mapping[str, Drive], arguments: argparse.Namespace) -> None:
     """Check the files given against all cases, or derive all that is missing together: the engine finds each again."""
     from ltca.compliance.coefficient_files import find_case_coefficients
     from ltca.compliance.near_field import NEAR_FIELDS

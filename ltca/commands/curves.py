@@ -99,7 +99,7 @@ def execute(arguments: argparse.Namespace) -> int:
     )
 
     asked = (arguments.pressure_limit, arguments.load_rating, arguments.speed, arguments.lost_motion)
-    settings, engine = CurveSettings(*asked), compliance_of(arguments)
+    settings, engine = CurveSettings(*asked), compliance_of(arguments, cases.values())
     for drive in cases.values():
         if drive.duty and settings.speed is not None:
             raise DriveError(["--speed: has no effect with [[duty]], whose entries have their own"])

@@ -73,7 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
     require_folder(out)
     from ltca.commands.actions.optimise import problem_of, search_and_write
 
-    engine = compliance_of(arguments)
+    engine = compliance_of(arguments, file.cases.values())
     tell_unit_mistakes([file.cases[case]])
     problem = problem_of(file.cases[case], arguments)
     figures = figure_files(arguments.figures, "pareto" if len(problem.aims) == 2 else "search")

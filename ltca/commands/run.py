@@ -10,6 +10,7 @@ from ltca.commands.compliance_arguments import (
     check_compliance,
     compliance_of,
     find_coefficients_of,
+    settle_compliance,
 )
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
@@ -105,6 +106,7 @@ def execute(arguments: argparse.Namespace) -> int:
         raise DriveError(["--compare: has no effect with --no-page"])
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
+    settle_compliance(arguments, cases.values())
     out = arguments.out or default_folder(file.name, "run")
     require_folder(out)
     import numpy as np
@@ -125,7 +127,7 @@ def execute(arguments: argparse.Namespace) -> int:
     task = RunTask(
         file=file,
         cases=cases,
-        engine=compliance_of(arguments),
+        engine=compliance_of(arguments, cases.values()),
         torque=arguments.torque,
         angles=angles,
         pressure_angles=None if arguments.pressure is None else np.array(arguments.pressure or [0.0]),

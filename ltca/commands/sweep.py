@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from ltca.commands.compliance_arguments import check_compliance, compliance_of
@@ -37,5 +38,5 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.studies.execution.storage import StudyFolder
     from ltca.studies.sweep_file import load_sweep
 
-    study = load_sweep(arguments.study, compliance_of(arguments))
+    study = load_sweep(arguments.study, partial(compliance_of, arguments))
     return execute_study(study, StudyFolder(path=out), arguments)

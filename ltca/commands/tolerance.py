@@ -76,6 +76,6 @@ def execute(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         sequence=arguments.design,
         quantities=None if arguments.quantities is None else tuple(arguments.quantities),
-        engine=compliance_of(arguments),
+        engine=compliance_of(arguments, file.cases.values()),
     )
     return execute_study(study, StudyFolder(path=out), arguments)

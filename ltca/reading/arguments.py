@@ -38,6 +38,20 @@ class DifferentValues(argparse.Action):
         setattr(namespace, self.dest, [*before, values])
 
 
+def compliance_for(drives: Iterable[Drive], *, method: str | None, contacts: str | None) -> str:
+    """Return how the bodies of drives yield where nobody says so: half-spaces where an option belongs to them alone, else as
+    the drives' files say; DriveError when these differ.
+    """
+    if method is not None or contacts is not None:
+        return "half-space"
+    found = list(dict.fromkeys(drive.analysis.compliance for drive in drives))
+    if len(found) > 1:
+        raise DriveError(
+            [f"analysis.compliance = {', '.join(found)}: must be the same in all drives that are analysed together"]
+        )
+    return found[0]
+
+
 def refuse_idle_options(
     compliance: str, *, method: str | None, contacts: str | None, coefficients: object, hole_near_field: bool | None
 ) -> None:

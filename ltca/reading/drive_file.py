@@ -143,6 +143,11 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     base = _validate(table, base_problems, measured)
     tolerances = parse_tolerances(scatter, problems, base)
     named = _named_cases(cases, problems)
+    problems += [
+        f"case {name}: analysis: must stand outside the cases, which are analysed alike"
+        for name, overrides in named.items()
+        if overrides.pop("analysis", None) is not None
+    ]
     limits = parse_limits(bounds, problems)
     own = {name: parse_limits(overrides.pop("limits", {}), problems) for name, overrides in named.items()}
     if base_problems or base is None:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ltca.analysis.engines import Engine
+from ltca.analysis.engines import CoupledEngine, Engine
 from ltca.compliance.coefficient_files import (
     GROUP,
     cache_folder,
@@ -40,7 +40,7 @@ from ltca.output.regular_files import regular_file
 MAX_KEPT_SHAPES = 8
 """Shapes whose coefficients a process keeps in memory, some 10 MB for each."""
 
-_ENGINES: OrderedDict[tuple[str, ...], Engine] = OrderedDict()
+_ENGINES: OrderedDict[tuple[str, ...], CoupledEngine] = OrderedDict()
 
 
 def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
@@ -49,20 +49,20 @@ def with_kept_coefficients(engine: Engine, drive: Drive) -> Engine:
     Raises `CycloError` when there are none and none can be derived.
     """
     given = _given(engine)
-    if engine.batches or _are_coefficients(given):
+    if not isinstance(engine, CoupledEngine) or _are_coefficients(given):
         return engine
-    drive = warm_drive(drive)
-    singles = single_discs(drive)
-    shapes = [single.shape_fingerprint() for single in singles]
+    singles = single_discs(warm_drive(drive))
+    bodies = engine.bodies_of(singles)
+    shapes = [body.shape_fingerprint() for body in bodies]
     key = (*engine.options.values(), repr(given), *shapes)
     if key not in _ENGINES:
-        there = given is not None or all(has_coefficients(single) for single in singles)
+        there = given is not None or all(has_coefficients(body) for body in bodies)
         with nullcontext() if there else _one_process(shapes[0]):
-            _ENGINES[key] = engine.with_coefficients(drive)
+            _ENGINES[key] = engine.with_coefficients_of(bodies)
         if len(_ENGINES) > MAX_KEPT_SHAPES:
             _ENGINES.popitem(last=False)
     _ENGINES.move_to_end(key)
-    return _ENGINES[key]
+    return _ENGINES[key].lent_to(singles)
 
 
 def _given(engine: Engine) -> Any:
@@ -85,12 +85,15 @@ def _one_process(shape: str) -> Iterator[None]:
         yield
 
 
-def shapes_of(drives: Iterable[Drive]) -> dict[str, Drive]:
-    """Return the first drive of one disc of every distinct shape, by fingerprint."""
+def shapes_of(drives: Iterable[Drive], engine: Engine | None = None) -> dict[str, Drive]:
+    """Return the first drive of one disc of every distinct shape, by fingerprint; on an engine that lends coefficients, of
+    every shape that it needs.
+    """
     found: dict[str, Drive] = {}
     for drive in drives:
-        for single in single_discs(warm_drive(drive)):
-            found.setdefault(single.shape_fingerprint(), single)
+        singles = single_discs(warm_drive(drive))
+        for body in engine.bodies_of(singles) if isinstance(engine, CoupledEngine) else singles:
+            found.setdefault(body.shape_fingerprint(), body)
     return found
 
 
@@ -146,8 +149,9 @@ def coefficients_identity(engine: Engine) -> str:
     if given is not None:
         files = [given] if isinstance(given, Path) else list(given)
         return "files " + " ".join(_checksum(path)[:16] for path in files)
+    lent = "".join(f" lent by {body.shape_fingerprint()}" for body in getattr(engine, "lenders", ()))
     packages = sorted({entry.module.partition(".")[0] for entry in entry_points(group=GROUP)})
-    return f"derived {code_hash(*packages)}"
+    return f"derived {code_hash(*packages)}{lent}"
 
 
 def _checksum(path: Path) -> str:

@@ -69,6 +69,10 @@ class Study:
     drive_file: str = ""
     batch_positions: int = 0
 
+    def __post_init__(self) -> None:
+        """Let the coefficients of the cases serve samples of nearly their bodies."""
+        object.__setattr__(self, "engine", self.engine.lending(drive for _, drive in self.cases))
+
     @property
     def settings(self) -> BatchSettings:
         """How its samples are analysed, each from first contact."""
@@ -141,13 +145,13 @@ class Study:
             # Every scattering field differs between two samples: where they share a shape, all do.
             with suppress(CycloError):
                 drawn = [self.drive_of(self.design.fields(row), check=False) for row in self.design.rows(0, 2)]
-                if len(shapes_of([self.cases[0][1], *drawn])) == 1:
-                    return shapes_of([self.cases[0][1]])
+                if len(shapes_of([self.cases[0][1], *drawn], self.engine)) == 1:
+                    return shapes_of([self.cases[0][1]], self.engine)
         found: dict[str, Drive] = {}
         for number in numbers:
             for row in self.design.rows(*self.samples_of(number)):
                 with suppress(CycloError):
-                    found |= shapes_of([self.drive_of(self.design.fields(row))])
+                    found |= shapes_of([self.drive_of(self.design.fields(row))], self.engine)
         return found
 
     def samples_of(self, number: int) -> tuple[int, int]:

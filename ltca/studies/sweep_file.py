@@ -22,15 +22,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.engines import Engine, engine_of
 from ltca.drive.fields import field_kind, may_be_left_out, read_field
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
@@ -56,6 +56,10 @@ MOST_SAMPLES = 100_000_000
 KEYS = {"drive", "case", "positions", "quantities", "design", "factors"}
 
 
+EngineChoice: TypeAlias = Callable[[Iterable[Drive]], Engine]
+"""What chooses the engine of drives that are analysed together."""
+
+
 @dataclass(slots=True, kw_only=True)
 class _Reader:
     """What is wrong so far, and where the study came from."""
@@ -68,8 +72,11 @@ class _Reader:
             raise DriveError(self.problems, self.source)
 
 
-def load_sweep(path: Path, engine: Engine | None = None) -> Study:
-    """Read a sweep from ``study.toml``; `DriveError` names all mistakes of file, drive, design and factors together."""
+def load_sweep(path: Path, engine: EngineChoice = engine_of) -> Study:
+    """Read a sweep from ``study.toml``; `DriveError` names all mistakes of file, drive, design and factors together.
+
+    `engine` chooses the engine for the cases of its drive.
+    """
     text = read_text(path, "no such file; docs/how-to/studies.md says what a study file holds")
     table = parse_toml(text, str(path), MOST_VALUES, MOST_VALUES)
     source = table.get("drive")
@@ -81,7 +88,7 @@ def load_sweep(path: Path, engine: Engine | None = None) -> Study:
     return replace(study, definition=text)
 
 
-def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", engine: Engine | None = None) -> Study:
+def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", engine: EngineChoice = engine_of) -> Study:
     """Validate the table of a sweep file; see `load_sweep`."""
     reader = _Reader(source=source, problems=[])
     reader.problems += [
@@ -135,7 +142,7 @@ def parse_sweep(table: Mapping[str, Any], drive: str, source: str = "study", eng
         positions=positions,
         quantities=names,
         near_nominal=False,
-        engine=HalfSpace() if engine is None else engine,
+        engine=engine(file.cases.values()),
         definition=json.dumps(table, ensure_ascii=False, default=str),
         drive_file=file.text,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from ltca.analysis.engines import Engine, HalfSpace
+from ltca.analysis.engines import Engine, engine_of
 from ltca.drive.tolerances import Factors
 from ltca.errors import DriveError
 from ltca.reading.drive_file import DriveFile
@@ -75,7 +75,7 @@ def tolerance_study(
         positions=positions,
         quantities=kept,
         near_nominal=True,
-        engine=HalfSpace() if engine is None else engine,
+        engine=engine_of(file.cases.values()) if engine is None else engine,
         definition=json.dumps({"study": "tolerances", **asked, "quantities": kept}, ensure_ascii=False),
         drive_file=file.text,
     )

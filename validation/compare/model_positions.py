@@ -6,13 +6,13 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ltca.analysis.engines import Compliance, Engine, HalfSpace, engine_named
+from ltca.analysis.engines import Engine, HalfSpace, engine_named
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
 from ltca.drive.hole_contact import shaft_pins_yield
-from ltca.drive.parts import Drive
+from ltca.drive.parts import Compliance, Drive
 from ltca.geometry.coordinates import disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
