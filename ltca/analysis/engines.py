@@ -386,7 +386,7 @@ def describe_engine(engine: Engine) -> str:
 
 
 def engine_named(
-    compliance: str | Engine,
+    compliance: str | Engine = "half-space",
     *,
     method: str | None = None,
     contacts: str | None = None,

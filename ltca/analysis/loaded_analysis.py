@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.friction.losses import Losses, losses
+from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.half_width_guard import (
     check_half_widths,
     displacement_warning,
@@ -197,6 +198,11 @@ class LoadedAnalysis:
         if not np.all(self.balanced[rows]):
             return dict.fromkeys(PARTS, np.full(rows.size, np.nan))
         return compliance_shares(self.model, take_positions(self.full, rows))
+
+    @property
+    def engine_words(self) -> str:
+        """What to know of the engine: why half-spaces, and how far off they are; empty for another."""
+        return half_space_words(self.engine, self.drive)
 
     @property
     def torque_share(self) -> FloatArray:

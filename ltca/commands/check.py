@@ -9,6 +9,7 @@ from ltca.commands.compliance_arguments import (
     check_compliance,
     compliance_of,
     find_coefficients_of,
+    settle_compliance,
 )
 from ltca.reading.arguments import (
     add_case_argument,
@@ -58,6 +59,7 @@ def execute(arguments: argparse.Namespace) -> int:
     check_compliance(arguments)
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
+    settle_compliance(arguments, cases.values())
     tell_unit_mistakes(cases.values())
     out = arguments.out or default_folder(file.name, "check")
     require_folder(out)

@@ -52,9 +52,6 @@ def check_compliance(arguments: argparse.Namespace) -> None:
     compliance = "half-space" if arguments.quick else arguments.compliance
     if compliance is not None:
         refuse_idle_options(compliance, **_options(arguments))
-    for path in arguments.coefficients or ():
-        if not path.is_file():
-            raise DamagedFileError(f"--coefficients {path}: no such file")
 
 
 def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) -> str:
@@ -63,6 +60,9 @@ def settle_compliance(arguments: argparse.Namespace, drives: Iterable[Drive]) ->
     named = "half-space" if arguments.quick else arguments.compliance
     arguments.compliance = named or compliance_for(drives, method=given["method"], contacts=given["contacts"])
     refuse_idle_options(arguments.compliance, **given)
+    for path in arguments.coefficients or ():
+        if not path.is_file():
+            raise DamagedFileError(f"--coefficients {path}: no such file")
     return str(arguments.compliance)
 
 

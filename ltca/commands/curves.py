@@ -9,6 +9,7 @@ from ltca.commands.compliance_arguments import (
     check_compliance,
     compliance_of,
     find_coefficients_of,
+    settle_compliance,
 )
 from ltca.errors import DriveError
 from ltca.reading.arguments import (
@@ -86,6 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
     check_compliance(arguments)
     file = load_drive(arguments.drive)
     cases = file.select_warm(arguments.case)
+    settle_compliance(arguments, cases.values())
     tell_unit_mistakes(file.cases[name] for name in cases)
     out = arguments.out or default_folder(file.name, "curves")
     require_folder(out)

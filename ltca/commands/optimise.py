@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from ltca.commands.compliance_arguments import add_compliance_arguments, check_compliance, compliance_of
+from ltca.commands.compliance_arguments import (
+    add_compliance_arguments,
+    check_compliance,
+    compliance_of,
+    settle_compliance,
+)
 from ltca.commands.study_arguments import add_positions_argument, add_seed_argument
 from ltca.reading.arguments import (
     add_case_argument,
@@ -68,6 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     check_compliance(arguments)
     file = load_drive(arguments.drive)
+    settle_compliance(arguments, file.cases.values())
     name, case = file.name, next(iter(file.select(None if arguments.case is None else [arguments.case])))
     out = arguments.out or default_folder(name, "optimise")
     require_folder(out)

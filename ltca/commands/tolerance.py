@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ltca.commands.compliance_arguments import check_compliance, compliance_of
+from ltca.commands.compliance_arguments import check_compliance, compliance_of, settle_compliance
 from ltca.commands.study_arguments import (
     add_positions_argument,
     add_seed_argument,
@@ -61,6 +61,7 @@ def execute(arguments: argparse.Namespace) -> int:
     check_study_arguments(arguments)
     check_compliance(arguments)
     file = load_drive(arguments.drive)
+    settle_compliance(arguments, file.cases.values())
     file.select([arguments.case] if arguments.case is not None else None)
     out = arguments.out or default_folder(file.name, "tolerance")
     require_folder(out)

@@ -342,8 +342,8 @@ class Drive:
         return 0.0 if self.pin_shaft is None else self.pin_shaft.hole_radius + self.clearance.pin_hole
 
     def fingerprint(self) -> str:
-        """Return a hash of the whole definition of the drive in this case (hex, 16 digits)."""
-        return fingerprint_of(self)
+        """Return a hash of the whole definition of the drive in this case (hex, 16 digits), whatever analyses it."""
+        return fingerprint_of(replace(self, analysis=Analysis()))
 
     def body_shape(self) -> dict[str, float]:
         """Return the numbers that determine the plane finite-element bodies, and so their compliance, by name: mm, MPa,

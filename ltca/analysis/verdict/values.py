@@ -77,7 +77,7 @@ def notes(analysis: LoadedAnalysis) -> list[str]:
     """Return what to know beside the checks, one sentence each: warnings, odd sizes, pins that dwarf the disc."""
     drive, shaft = analysis.drive, analysis.drive.pin_shaft
     found = [*analysis.warnings, *odd_proportions(analysis.as_written)]
-    found += [analysis.hole_words] if analysis.hole_words else []
+    found += [words for words in (analysis.engine_words, analysis.hole_words) if words]
     if shaft is not None and shaft.stiffness is not None:
         disc = drive.materials.disc.youngs_modulus * drive.disc.thickness
         if shaft.stiffness > STIFF_PINS * disc:

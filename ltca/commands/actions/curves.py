@@ -14,6 +14,7 @@ import numpy as np
 
 from ltca.analysis import loaded_analysis
 from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.life.bearing_lives import BearingLives, lives_over, passages_of_duty
 from ltca.analysis.life.life_text import life_content, life_lines
 from ltca.analysis.memory_need import positions_together
@@ -164,7 +165,8 @@ def solve_and_write(
     files = [out / "curves.json"]
     if sections:
         loads = dict.fromkeys(drive.load_words() for drive in cases.values())
-        told = f"curves at {', '.join(loads)}, {describe_engine(engine)}"
+        words = half_space_words(engine, next(iter(cases.values())))
+        told = "; ".join(filter(None, (f"curves at {', '.join(loads)}, {describe_engine(engine)}", words)))
         page = StudyPage(name=file.name, told=told, sections=sections, made=engine.options, text=file.text)
         files.append(write_study_page(page, out))
     print("results: " + ", ".join(map(str, files)))
@@ -249,6 +251,8 @@ def _print(found: CaseCurves, title: str, drive: Drive, engine: Engine, settings
     print(
         f"{title}, {drive.load_words()}, {describe_engine(engine)}: torque curve at {ANGLES} crank angles over one mesh"
     )
+    if words := half_space_words(engine, drive):
+        print(f"  {words}")
     floating = f"backlash at the {output}, all clearances"
     print(f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′")
     print(

@@ -250,7 +250,7 @@ def _sampling(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> l
     many = _many(angles)
     whole = is_full_turn(angles)
     lines = [f"means over {many}; extremes over the turn, refined between them" if whole else f"values of {many}"]
-    lines += sorted({analysis.hole_words for analysis in analyses.values()} - {""})
+    lines += sorted({words for one in analyses.values() for words in (one.engine_words, one.hole_words)} - {""})
     warnings = {
         warning
         for analysis in analyses.values()

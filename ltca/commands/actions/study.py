@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ltca.analysis.engines import describe_engine
 from ltca.analysis.extremes import sampling_warning
+from ltca.analysis.half_space_errors import half_space_words
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
 from ltca.output.processes import Terminated
@@ -97,6 +98,8 @@ def tell(message: str) -> None:
 def _print(study: Study, folder: StudyFolder, found: StudySummary, compliance: str) -> None:
     samples = f"{study.design.samples} samples × {study.positions} positions"
     print(f"{study.name}, {study.load_words()}: {samples}, {describe_engine(study.engine)}")
+    if words := half_space_words(study.engine, study.cases[0][1]):
+        print(words)
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
@@ -142,6 +145,7 @@ def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> N
 def _compliance_words(study: Study, coefficients: Sequence[Path] | None) -> str:
     """Options with which `cyclo run` solves a sample as the study did."""
     options = study.engine.options
-    words = "" if options["compliance"] == "half-space" else f" --compliance {options['compliance']}"
+    own = study.cases[0][1].analysis.compliance
+    words = "" if options["compliance"] == own else f" --compliance {options['compliance']}"
     words += "".join(f" --coefficients {path}" for path in coefficients or ())
     return words + (" --no-hole-near-field" if options.get("hole_near_field") == "no" else "")
