@@ -129,13 +129,17 @@ def optimum(drive: Drive) -> np.ndarray:
 
 COMMANDS: dict[str, tuple[str, Callable[[Drive], np.ndarray]]] = {
     "full-fe": ("full FE", full_solution),
-    "curves": ("curves", program(["curves", "--turns", "5"], "curves.json")),
+    "curves": ("curves", program(["curves", "--turns", "5", "--quick"], "curves.json")),
     "tolerance": (
         "studies",
-        program(["tolerance", "--samples", "2", "--positions", "4", "--quantities", "all"], "summary.json", TOLERANCES),
+        program(
+            ["tolerance", "--quick", "--samples", "2", "--positions", "4", "--quantities", "all"],
+            "summary.json",
+            TOLERANCES,
+        ),
     ),
     "optimise": ("studies", optimum),
-    "sweep": ("studies", program(["sweep"], "summary.json", study=True)),
+    "sweep": ("studies", program(["sweep", "--quick"], "summary.json", study=True)),
     "run-fe": ("fe", program(["run", "--positions", "2", "--compliance", "fe"], "summary.json")),
     "run-hybrid": ("hybrid", program(["run", "--positions", "2", "--compliance", "hybrid"], "summary.json")),
 }

@@ -79,6 +79,7 @@ ROUND_OFF = 1e-6
 DIAMETERS = tuple(path for path in field_kinds() if path.endswith("_errors.diameter") and ANY not in path.split("."))
 _NAME = {
     "name": "names a drive and its files, nothing else",
+    "analysis.compliance": "chooses the engine where none is named; here one is",
     "disc.planes": "axial places have no effect where neither pins nor cranks bend",
     "materials.crankshaft.poisson_ratio": "a shaft without shear and torsion bends by its modulus alone",
 }
