@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from ltca.drive.members.bearings import own_bearings, with_named_bearing
 from ltca.drive.members.limits import Limits, parse_limits
 from ltca.drive.members.named_materials import LIKE, with_named_materials
 from ltca.drive.members.temperatures import warm_drive
@@ -140,6 +141,8 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     measured = MeasuredFiles(Path(source).parent)
     # Mistakes of the common part come back in every case: the base is validated alone, first.
     base_problems: list[str] = []
+    own_named, written = own_bearings(table.pop("bearings", {}), base_problems), table.get("crank_bearing")
+    table = with_named_bearing(table, base_problems, own_named)
     base = _validate(table, base_problems, measured)
     tolerances = parse_tolerances(scatter, problems, base)
     named = _named_cases(cases, problems)
@@ -150,11 +153,14 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
     drives: dict[str, Drive] = {}
     mistakes: dict[str, list[str]] = {}
     for name, overrides in named.items():
+        overrides = with_named_bearing(overrides, mistakes.setdefault(name, []), own_named, written)
+        if mistakes[name]:
+            continue
         # Parts that a case leaves alone are valid already; a measured flank deviates from that of each case for itself.
         changed = {key: _merged(table.get(key), value) for key, value in overrides.items()}
         if without_files(table)[1]:
             changed.setdefault("disc", table["disc"])
-        drive = _validate({**_parts(base), **changed, "case": name}, mistakes.setdefault(name, []), measured)
+        drive = _validate({**_parts(base), **changed, "case": name}, mistakes[name], measured)
         if drive is not None:
             drives[name] = drive
     problems += _once(mistakes, {})
@@ -278,8 +284,10 @@ def build_drive(table: dict[str, Any]) -> Drive:
         With every mistake.
     """
     problems: list[str] = []
-    drive = _validate({name: value for name, value in table.items() if name not in BESIDE_THE_DRIVE}, problems)
-    if drive is not None:
+    own = own_bearings(table.get("bearings", {}), problems)
+    plain = {name: value for name, value in table.items() if name not in (*BESIDE_THE_DRIVE, "bearings")}
+    drive = _validate(with_named_bearing(plain, problems, own), problems)
+    if drive is not None and not problems:
         problems += explain_contradictions(drive, find_contradictions(drive))
     if problems or drive is None:
         raise DriveError(problems)

@@ -5,6 +5,8 @@ Modules in the order data passes:
 ===============  ============================================================
 named_materials  Materials by name: ``materials.disc = "PA12"`` stands for numbers that ship as data, each with its scatter
                  and source
+bearings         Bought crank bearings by name: ``crank_bearing.bearing = "K20x26x12"`` stands for races and rollers, a
+                 clearance class for ``clearance.bearing``
 operation        How the drive is built in and used: the member that is held, load, speed, duty, lubricant, what rubs,
                  and how warm it is
 limits           What its results may reach, by the names of the summary, each with its source

@@ -20,6 +20,7 @@ from pydantic.functional_validators import BeforeValidator
 
 from ltca.drive.fields import ANY, field_kinds
 from ltca.drive.materials import PARTS
+from ltca.drive.members.bearings import NAMING_FIELDS
 from ltca.drive.names import Name
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import COUNT, QuantityCheck
@@ -135,6 +136,17 @@ def describe_fields() -> tuple[FieldDescription, ...]:
 
 
 @cache
+def naming_fields() -> tuple[FieldDescription, ...]:
+    """Return what drive files may say in the place of fields: names that stand for several."""
+    return tuple(
+        FieldDescription(
+            path=path, kind=kind, unit="", is_array=False, default=LEFT_OUT, bounds=bounds, meaning=meaning
+        )
+        for path, (kind, bounds, meaning) in NAMING_FIELDS.items()
+    )
+
+
+@cache
 def describe_tables() -> dict[str, TableDescription]:
     """Return every table of a drive by its path, in the order of the definition."""
     return {entry.path: entry for entry in _walk(Drive, "") if isinstance(entry, TableDescription)}
@@ -208,7 +220,7 @@ def find_fields(name: str) -> tuple[FieldDescription, ...]:
         Empty where it means none.
     """
     plain = re.sub(r"\.[0-9]+(?=\.|$)", f".{ANY}", name).removesuffix(".")
-    described = describe_fields()
+    described = (*describe_fields(), *naming_fields())
     if plain.startswith(f"materials.{ANY_PART}"):
         described = gathered(described)
     within = tuple(f for f in described if f.path == plain or f.path.startswith(f"{plain}."))
@@ -295,5 +307,5 @@ def _without_unit(meaning: str, unit: str) -> str:
 
 def known_paths() -> tuple[str, ...]:
     """Return what `find_fields` is asked for: paths of fields and tables, and last parts of paths."""
-    paths = list(field_kinds())
+    paths = [*field_kinds(), *NAMING_FIELDS]
     return (*paths, *describe_tables(), *dict.fromkeys(path.rpartition(".")[2] for path in paths))
