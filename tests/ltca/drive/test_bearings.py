@@ -139,7 +139,8 @@ def test_cases_take_another_bearing_or_class():
 
 
 def test_own_bearings_are_checked():
-    table = '[bearings."MY 30"]\ninner_race_diameter = 30\nouter_race_diameter = "40 mm"\nroller_length = {}\nnumber_of_rollers = {}'
+    table = '[bearings."MY 30"]\ninner_race_diameter = 30\nouter_race_diameter = "40 mm"\n'
+    table += "roller_length = {}\nnumber_of_rollers = {}"
     assert drive("MY 30", case=table.format(10, 17))["nominal"].crank_bearing.roller_radius == 2.5
     found = mistakes("MY 30", case=table.format(70, 37))
     assert any("number_of_rollers = 37: must be at most 21" in problem for problem in found)
